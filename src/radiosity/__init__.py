@@ -1,0 +1,28 @@
+"""Radiosity by tracing lines: B = E + rho F B, without ever forming F.
+
+    scene file -> Scene -> Patches -> [ numbers -> lines -> hits -> tally ] -> Solution -> files, pictures
+
+    scene = load_scene("room.mgf")               # or Scene.from_arrays(...)
+    patches = subdivide(scene, size=0.10)        # or cells=k, or leave it to solve
+    solution = solve(patches, rays=10_000_000)   # radiosity and its standard error, per patch and band
+    solution.export("room.glb")
+"""
+
+from .errors import DeviceError, MethodError, OutputError, RadiosityError, RadiosityWarning, SceneError
+from .patches import Patches, subdivide
+from .scene import Back, Camera, Scene, load_scene
+
+__all__ = [
+    "Back",
+    "Camera",
+    "DeviceError",
+    "MethodError",
+    "OutputError",
+    "Patches",
+    "RadiosityError",
+    "RadiosityWarning",
+    "Scene",
+    "SceneError",
+    "load_scene",
+    "subdivide",
+]

@@ -1,0 +1,32 @@
+"""Errors and warnings. Each message says what, where, the value, and what to do."""
+
+
+class RadiosityError(Exception):
+    """Every error that the library raises on purpose."""
+
+
+class SceneError(RadiosityError, ValueError):
+    """A scene, or the file it comes from, cannot be used as it is."""
+
+
+class MethodError(RadiosityError, ValueError):
+    """A method, one of its axes, or a budget was asked for that does not exist or makes no sense."""
+
+
+class OutputError(RadiosityError, OSError):
+    """A file cannot be written."""
+
+
+class DeviceError(RadiosityError, RuntimeError):
+    """The ray tracing back end cannot run on this machine as it is set up."""
+
+
+class RadiosityWarning(UserWarning):
+    """Something in the input was taken differently from what it says; the message says how."""
+
+
+def shown(names, most: int = 8) -> str:
+    """``'a', 'b' and 12 more``: the first names of a long list, for a message."""
+    names = [str(name) for name in names]
+    text = ", ".join(f"'{name}'" for name in names[:most])
+    return text if len(names) <= most else f"{text} and {len(names) - most} more"

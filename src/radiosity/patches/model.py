@@ -1,0 +1,121 @@
+"""Patches: the radiating sides of congruent cells of the scene's faces."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..scene.model import Back, Scene
+from . import cells
+
+SAMPLES = 4  # texture look-ups along a cell's edge
+
+
+@dataclass(frozen=True, eq=False)
+class Patches:
+    """Ordered by face, side (front, then a radiating back), cell. Made by `subdivide`.
+
+    Attributes:
+        scene: whose faces they divide.
+        columns, rows: (n_faces,) int32, cells along the face's first and second edge (equal for triangles).
+    """
+
+    scene: Scene
+    columns: np.ndarray
+    rows: np.ndarray
+
+    def __len__(self) -> int:
+        return int(self.first[-1])
+
+    @cached_property
+    def cells_per_face(self) -> np.ndarray:
+        """(n_faces,) int64, of one side."""
+        return cells.count(self.columns, self.rows, self.scene.is_quad)
+
+    @cached_property
+    def first(self) -> np.ndarray:
+        """(n_faces + 1,) int64: face f owns patches first[f] to first[f + 1]; a radiating back follows the front."""
+        sides = np.where(self.scene.back == Back.RADIATES, 2, 1)
+        return np.concatenate([[0], np.cumsum(self.cells_per_face * sides)])
+
+    @cached_property
+    def face(self) -> np.ndarray:
+        """(n_patches,) int32."""
+        return np.repeat(np.arange(self.scene.n_faces, dtype=np.int32), np.diff(self.first))
+
+    @cached_property
+    def is_back(self) -> np.ndarray:
+        """(n_patches,) bool."""
+        return np.arange(len(self)) - self.first[self.face] >= self.cells_per_face[self.face]
+
+    @property
+    def place(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Column, row and inverted flag of each patch's cell, (n_patches,) each."""
+        cell = np.arange(len(self)) - self.first[self.face] - np.where(self.is_back, self.cells_per_face[self.face], 0)
+        return cells.place(cell, self.columns[self.face], self.scene.is_quad[self.face])
+
+    @property
+    def corners(self) -> np.ndarray:
+        """(n_patches, 4, 3) float64, metres, counterclockwise seen from the patch's own side; a triangle repeats one."""
+        face = self.face
+        uv = cells.corners(*self.place, self.columns[face], self.rows[face], self.scene.is_quad[face])
+        origin, first, second = (edge[face][:, None, :] for edge in self.scene.frames)
+        points = origin + uv[:, :, :1] * first + uv[:, :, 1:] * second
+        back = self.is_back
+        points[back] = points[back][:, [0, 3, 2, 1]]
+        return points
+
+    @cached_property
+    def area(self) -> np.ndarray:
+        """(n_patches,) float64, m²."""
+        return (self.scene.area / self.cells_per_face)[self.face]
+
+    @cached_property
+    def normal(self) -> np.ndarray:
+        """(n_patches, 3) float64, pointing to the radiating side."""
+        return self.scene.normal[self.face] * np.where(self.is_back, -1.0, 1.0)[:, None]
+
+    @cached_property
+    def centroid(self) -> np.ndarray:
+        """(n_patches, 3) float64, metres."""
+        column, row, inverted = self.place
+        face = self.face
+        middle = np.where(self.scene.is_quad[face], 0.5, np.where(inverted, 2 / 3, 1 / 3))
+        u, v = (column + middle) / self.columns[face], (row + middle) / self.rows[face]
+        origin, first, second = (edge[face] for edge in self.scene.frames)
+        return origin + u[:, None] * first + v[:, None] * second
+
+    @cached_property
+    def surface(self) -> np.ndarray:
+        """(n_patches,) int32 index into ``scene.names``."""
+        return self.scene.surface[self.face]
+
+    @cached_property
+    def reflectance(self) -> np.ndarray:
+        """(n_patches, n_bands) float64."""
+        return self._of_side(self.scene.reflectance, self.scene.back_reflectance, self.scene.reflectance_paint)
+
+    @cached_property
+    def emission(self) -> np.ndarray:
+        """(n_patches, n_bands) float64, self-emitted radiosity, W/m² or lm/m²."""
+        return self._of_side(self.scene.emission, self.scene.back_emission, self.scene.emission_paint)
+
+    def _of_side(self, front, back, paint) -> np.ndarray:
+        value = np.where(self.is_back[:, None], back[self.face], front[self.face])
+        return value if paint is None else np.minimum(value * self._mean(paint), paint.limit)
+
+    def _mean(self, paint) -> np.ndarray:
+        """Mean of a paint over each patch, from a regular grid of points."""
+        column, row, inverted = self.place
+        face = self.face
+        quad = self.scene.is_quad[face]
+        total = np.zeros((len(self), paint.color.shape[2]))
+        steps = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        for a in steps:
+            for b in steps:
+                # the square's points beyond the diagonal fold back into the triangle
+                over = ~quad & (a + b > 1)
+                s, t = np.where(over, 1 - a, a), np.where(over, 1 - b, b)
+                s, t = np.where(inverted, 1 - s, s), np.where(inverted, 1 - t, t)
+                total += paint.factor(face, (column + s) / self.columns[face], (row + t) / self.rows[face], quad)
+        return total / SAMPLES**2

@@ -1,0 +1,76 @@
+"""Faces into congruent cells."""
+
+import numpy as np
+
+from ..errors import SceneError
+from ..scene.model import Back, Scene
+from . import cells as grid
+from .model import Patches
+
+DEFAULT_PATCHES = 20_000
+MOST_PATCHES = 2**31 - 2**16
+
+
+def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = None) -> Patches:
+    """Cut every face into patches.
+
+    Args:
+        size: metres. A parallelogram's cell edges are at most this long, a triangle's cell has at most half its
+            square as area. Surfaces with a patch size of their own in the scene keep it.
+        cells: every face into cells x cells instead (1: a patch for each face and radiating side).
+            Neither: a size that gives about 20 000 patches, never fewer than one for each face and side.
+
+    Raises:
+        SceneError: both or senseless values, or more patches than can be counted.
+    """
+    if size is not None and cells is not None:
+        raise SceneError("give size or cells, not both")
+    if cells is not None:
+        if isinstance(cells, bool) or int(cells) != cells or cells < 1:
+            raise SceneError(f"cells is {cells}; it must be a whole number of 1 or more")
+        columns = rows = np.full(scene.n_faces, int(cells), np.int64)
+    else:
+        if size is not None and not (np.isfinite(size) and size > 0):
+            raise SceneError(f"patch size is {size}; it must be a positive number of metres")
+        columns, rows = _by_size(scene, _default_size(scene) if size is None else float(size))
+    return _checked(scene, columns, rows)
+
+
+def _edges(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    _, first, second = scene.frames
+    half = np.sqrt(2 * scene.area)
+    return tuple(np.where(scene.is_quad, np.linalg.norm(edge, axis=1), half) for edge in (first, second))  # type: ignore[return-value]
+
+
+def _by_size(scene: Scene, size: float) -> tuple[np.ndarray, np.ndarray]:
+    own = scene.patch_size[scene.surface] if len(scene.patch_size) else np.full(scene.n_faces, np.nan)
+    wanted = np.where(np.isfinite(own), own, size)
+    columns, rows = (np.maximum(np.ceil(edge / wanted * (1 - 1e-9)), 1) for edge in _edges(scene))
+    return np.minimum(columns, 2**31), np.minimum(rows, 2**31)
+
+
+def _default_size(scene: Scene) -> float:
+    sides = np.where(scene.back == Back.RADIATES, 2, 1)
+    low, high = 0.0, float(max(edge.max() for edge in _edges(scene)))
+    if sides.sum() >= DEFAULT_PATCHES:
+        return high
+    low = high * 1e-6
+    for _ in range(60):
+        middle = np.sqrt(low * high)
+        columns, rows = _by_size(scene, middle)
+        low, high = (middle, high) if (columns * rows * sides).sum() > DEFAULT_PATCHES else (low, middle)
+    return high
+
+
+def _checked(scene: Scene, columns, rows) -> Patches:
+    sides = np.where(scene.back == Back.RADIATES, 2, 1)
+    total = float((columns.astype(np.float64) * rows * sides).sum())
+    if max(columns.max(), rows.max()) > grid.MOST:
+        face = int(np.argmax(np.maximum(columns, rows)))
+        raise SceneError(
+            f"{scene.source}: face {face} of surface '{scene.names[scene.surface[face]]}' would have "
+            f"{int(max(columns[face], rows[face]))} cells along an edge, more than {grid.MOST}; take larger patches"
+        )
+    if total > MOST_PATCHES:
+        raise SceneError(f"{scene.source}: {total:.3g} patches, more than {MOST_PATCHES}; take larger patches")
+    return Patches(scene, columns.astype(np.int32), rows.astype(np.int32))

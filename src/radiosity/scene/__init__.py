@@ -1,0 +1,27 @@
+"""file -> Scene"""
+
+from pathlib import Path
+
+from .assemble import ReadOptions
+from .model import Back, Camera, Scene
+
+__all__ = ["Back", "Camera", "Scene", "load_scene"]
+
+
+def load_scene(name, *, max_reflectance: float = 0.95, strict: bool = False) -> Scene:
+    """Load a scene file, or build a built-in scene by its name.
+
+    Args:
+        name: path of a .xml (Mitsuba), .glb, .gltf, .obj, .ply, .stl, .mgf or .toml file, or ``cornell-box``, ``room``, ``labyrinth``.
+        max_reflectance: larger reflectances in the file are brought down to this, with one warning.
+        strict: faults in a file that could be skipped with a warning are errors.
+
+    Raises:
+        SceneError: the file cannot be used; the message says why and what to do.
+    """
+    from . import builtin, formats
+
+    options = ReadOptions(max_reflectance, strict)
+    if str(name) in builtin.SCENES:
+        return builtin.SCENES[str(name)]()
+    return formats.read(Path(name), options)

@@ -1,0 +1,52 @@
+"""File formats by suffix. A new one is one new module with ``read(path, options) -> Scene`` and one line here."""
+
+from importlib import import_module
+from pathlib import Path
+
+from ...errors import RadiosityError, SceneError
+from ..assemble import ReadOptions
+from ..model import Scene
+
+FORMATS = {
+    ".xml": "mitsuba_xml",
+    ".glb": "gltf",
+    ".gltf": "gltf",
+    ".obj": "obj",
+    ".ply": "mesh",
+    ".stl": "mesh",
+    ".mgf": "mgf",
+    ".toml": "toml",
+}
+
+
+def read(path: Path, options: ReadOptions) -> Scene:
+    """Read a scene file.
+
+    Raises:
+        SceneError: the file is missing, empty, of an unknown format, or not what its name says.
+    """
+    if not path.exists():
+        raise SceneError(f"{path}: no such file; built-in scenes are {_builtin_names()}")
+    if path.is_dir():
+        raise SceneError(f"{path}: is a folder; name a file")
+    suffix = path.suffix.lower()
+    if suffix == ".rad":
+        raise SceneError(f"{path}: Radiance scenes are not read yet (they come with daylight); convert it to MGF with rad2mgf")
+    if suffix not in FORMATS:
+        raise SceneError(f"{path}: unknown format '{suffix}'; known are {', '.join(FORMATS)}")
+    try:
+        if path.stat().st_size == 0:
+            raise SceneError(f"{path}: the file is empty")
+        return import_module(f".{FORMATS[suffix]}", __package__).read(path, options)
+    except RadiosityError:
+        raise
+    except ModuleNotFoundError as error:
+        raise SceneError(f"{path}: reading {suffix} files needs '{error.name}'; pip install 'radiosity[formats]'") from error
+    except PermissionError as error:
+        raise SceneError(f"{path}: cannot be read ({error.strerror})") from None
+
+
+def _builtin_names() -> str:
+    from ..builtin import SCENES
+
+    return ", ".join(SCENES)

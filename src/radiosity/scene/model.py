@@ -1,0 +1,224 @@
+"""A scene: flat diffuse faces with reflectance and self-emitted radiosity, in metres and W/m² (or lm/m²)."""
+
+import hashlib
+import warnings
+from dataclasses import dataclass, field, replace
+from enum import IntEnum
+from functools import cached_property
+
+import numpy as np
+
+from ..errors import RadiosityWarning, SceneError, shown
+from .paint import Paint
+
+
+class Back(IntEnum):
+    """What the back of a face does."""
+
+    ABSORBS = 0
+    RADIATES = 1
+    PASSES = 2  # invisible from behind: lines go on
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera: ``origin``, ``target`` in metres, ``up``; ``fov`` is the vertical field of view, degrees."""
+
+    origin: tuple[float, float, float]
+    target: tuple[float, float, float]
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    fov: float = 40.0
+    width: int = 800
+    height: int = 600
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Faces and what they do to light. Build one with `Scene.from_arrays` or `radiosity.load_scene`.
+
+    Attributes:
+        vertices: (n_vertices, 3) float64, metres.
+        faces: (n_faces, 4) int64. Corners counterclockwise seen from the front; a triangle has -1 in the last
+            column, every other face is a parallelogram.
+        reflectance: (n_faces, n_bands) float64 in [0, 1), of the front.
+        emission: (n_faces, n_bands) float64, self-emitted radiosity (exitance) of the front, W/m² or lm/m².
+        back: (n_faces,) uint8, a `Back`.
+        back_reflectance, back_emission: the same of the back; used where ``back`` is RADIATES.
+        surface: (n_faces,) int32 index into ``names``.
+        names: surface names.
+        bands: band names, ("grey",) or ("red", "green", "blue").
+        photometric: units are lm/m², not W/m².
+        patch_size: (n_surfaces,) float64 metres, NaN where the scene asks for none.
+        reflectance_paint, emission_paint: variation within faces, or None.
+        cameras: cameras found in the file.
+        unit, scale: the file's length unit and metres per file unit (already applied).
+        source: where the scene comes from, for messages.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    reflectance: np.ndarray
+    emission: np.ndarray
+    back: np.ndarray
+    back_reflectance: np.ndarray
+    back_emission: np.ndarray
+    surface: np.ndarray
+    names: tuple[str, ...]
+    bands: tuple[str, ...] = ("grey",)
+    photometric: bool = False
+    patch_size: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    reflectance_paint: Paint | None = None
+    emission_paint: Paint | None = None
+    cameras: tuple[Camera, ...] = ()
+    scale: float = 1.0
+    source: str = "arrays"
+
+    @staticmethod
+    def from_arrays(
+        vertices,
+        faces,
+        reflectance,
+        emission,
+        *,
+        surface=None,
+        names=None,
+        two_sided=False,
+        back=None,
+        back_reflectance=None,
+        back_emission=None,
+        bands=None,
+        photometric=False,
+        cameras=(),
+        source="arrays",
+    ) -> "Scene":
+        """A scene from arrays; values are checked, never repaired.
+
+        Args:
+            vertices: (n_vertices, 3) metres.
+            faces: (n_faces, 3) triangles or (n_faces, 4) quadrilaterals (-1 in the last column: a triangle),
+                corners counterclockwise seen from the front. A quadrilateral that is no parallelogram becomes two triangles.
+            reflectance: a number, (n_faces,), (1, n_bands) or (n_faces, n_bands), in [0, 1).
+            emission: likewise, self-emitted radiosity (exitance), W/m², not negative.
+            surface: (n_faces,) index of each face's surface; default: one surface.
+            names: a name for each surface.
+            two_sided: bool or (n_faces,): the back radiates like the front. Otherwise it absorbs.
+            back: (n_faces,) of `Back`, instead of ``two_sided``.
+            back_reflectance, back_emission: of radiating backs, default as the front.
+            bands: band names; default ("grey",), ("red", "green", "blue") or numbers.
+            photometric: emission is in lm/m².
+
+        Raises:
+            SceneError: shapes, indices or values out of range; nothing left that has an area.
+        """
+        from .arrays import build
+
+        return build(
+            vertices, faces, reflectance, emission, surface=surface, names=names, two_sided=two_sided, back=back,
+            back_reflectance=back_reflectance, back_emission=back_emission, bands=bands, photometric=photometric,
+            cameras=cameras, source=source,
+        )  # fmt: skip
+
+    @property
+    def n_faces(self) -> int:
+        return len(self.faces)
+
+    @property
+    def n_bands(self) -> int:
+        return self.reflectance.shape[1]
+
+    @property
+    def unit(self) -> str:
+        """Unit of radiosity, irradiance and exitance."""
+        return "lm/m²" if self.photometric else "W/m²"
+
+    @property
+    def power_unit(self) -> str:
+        return "lm" if self.photometric else "W"
+
+    @cached_property
+    def is_quad(self) -> np.ndarray:
+        """(n_faces,) bool: parallelogram rather than triangle."""
+        return self.faces[:, 3] >= 0
+
+    @cached_property
+    def frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Origin and two edges of each face, (n_faces, 3) each: a point is origin + u edge_1 + v edge_2."""
+        corners = self.vertices[self.faces[:, :3]]
+        last = np.where(self.is_quad, self.faces[:, 3], self.faces[:, 2])
+        return corners[:, 0], corners[:, 1] - corners[:, 0], self.vertices[last] - corners[:, 0]
+
+    @cached_property
+    def area(self) -> np.ndarray:
+        """(n_faces,) m², of one side."""
+        _, first, second = self.frames
+        return np.linalg.norm(np.cross(first, second), axis=1) * np.where(self.is_quad, 1.0, 0.5)
+
+    @cached_property
+    def normal(self) -> np.ndarray:
+        """(n_faces, 3) unit normal of the front."""
+        _, first, second = self.frames
+        cross = np.cross(first, second)
+        return cross / np.linalg.norm(cross, axis=1, keepdims=True)
+
+    @cached_property
+    def bounds(self) -> np.ndarray:
+        """(2, 3) lowest and highest coordinates, metres."""
+        used = self.vertices[np.unique(self.faces[self.faces >= 0])]
+        return np.stack([used.min(axis=0), used.max(axis=0)])
+
+    @cached_property
+    def hash(self) -> str:
+        """SHA-256 over everything that a solution depends on."""
+        digest = hashlib.sha256()
+        for array in (
+            self.vertices, self.faces, self.reflectance, self.emission, self.back, self.back_reflectance,
+            self.back_emission, self.surface,
+        ):  # fmt: skip
+            digest.update(str((array.dtype.str, array.shape)).encode())
+            digest.update(np.ascontiguousarray(array).tobytes())
+        for paint in (self.reflectance_paint, self.emission_paint):
+            for array in () if paint is None else (*paint.images, paint.image, paint.uv, paint.color):
+                digest.update(np.ascontiguousarray(array).tobytes())
+        digest.update(repr((self.names, self.bands, self.photometric)).encode())
+        return digest.hexdigest()
+
+    def take(self, keep: np.ndarray) -> "Scene":
+        """The scene of a choice of faces (indices or mask)."""
+        rows = np.flatnonzero(keep) if np.asarray(keep).dtype == bool else np.asarray(keep)
+        return replace(
+            self, faces=self.faces[rows], reflectance=self.reflectance[rows], emission=self.emission[rows],
+            back=self.back[rows], back_reflectance=self.back_reflectance[rows], back_emission=self.back_emission[rows],
+            surface=self.surface[rows],
+            reflectance_paint=self.reflectance_paint and self.reflectance_paint.take(rows),
+            emission_paint=self.emission_paint and self.emission_paint.take(rows),
+        )  # fmt: skip
+
+    def without_degenerate_faces(self) -> "Scene":
+        """Leave out, with one warning, faces that single precision cannot tell from a line or a point where they lie.
+
+        Raises:
+            SceneError: no face is left.
+        """
+        if self.n_faces == 0:
+            raise SceneError(f"{self.source}: the scene has no faces; add geometry")
+        _, first, second = self.frames
+        longest = np.max([np.linalg.norm(e, axis=1) for e in (first, second, second - first)], axis=0)
+        height = np.linalg.norm(np.cross(first, second), axis=1) / np.where(longest > 0, longest, 1)
+        used = self.vertices[np.unique(self.faces[self.faces >= 0])]
+        centre = (used.min(axis=0) + used.max(axis=0)) / 2
+        reach = np.abs(self.vertices[self.faces[:, :3]] - centre).max(axis=(1, 2))
+        bad = height <= 4 * np.finfo(np.float32).eps * reach
+        if not bad.any():
+            return self
+        counts = np.bincount(self.surface[bad], minlength=len(self.names))
+        where = shown([self.names[s] for s in np.flatnonzero(counts)])
+        total = int(bad.sum())
+        if bad.all():
+            raise SceneError(f"{self.source}: no face is left: all {total} have no area (surfaces {where}); check the unit and the file")
+        warnings.warn(
+            f"{self.source}: {total} face{'s' if total > 1 else ''} without area left out "
+            f"(first: face {int(np.flatnonzero(bad)[0])}; surfaces {where})",
+            RadiosityWarning,
+            stacklevel=2,
+        )
+        return self.take(~bad)

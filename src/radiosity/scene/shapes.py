@@ -1,0 +1,48 @@
+"""Boxes and parallelograms for the built-in scenes."""
+
+import numpy as np
+
+from .model import Scene
+
+
+def quad(origin, first, second) -> np.ndarray:
+    """(4, 3) corners; the front is on the side of first x second."""
+    o, a, b = (np.asarray(x, np.float64) for x in (origin, first, second))
+    return np.array([o, o + a, o + a + b, o + b])
+
+
+def box(low, high, *, inward: bool = False, turn: float = 0.0) -> list[np.ndarray]:
+    """Faces of an axis-aligned box: y low, y high, x low, x high, z low, z high; turned by degrees about its vertical axis."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
+    faces = [
+        quad((x0, y0, z0), (dx, 0, 0), (0, 0, dz)),
+        quad((x0, y1, z0), (0, 0, dz), (dx, 0, 0)),
+        quad((x0, y0, z0), (0, 0, dz), (0, dy, 0)),
+        quad((x1, y0, z0), (0, dy, 0), (0, 0, dz)),
+        quad((x0, y0, z0), (0, dy, 0), (dx, 0, 0)),
+        quad((x0, y0, z1), (dx, 0, 0), (0, dy, 0)),
+    ]
+    if inward:
+        faces = [face[[0, 3, 2, 1]] for face in faces]
+    if turn:
+        angle = np.deg2rad(turn)
+        rotation = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+        centre = np.array([(x0 + x1) / 2, (y0 + y1) / 2, 0])
+        faces = [(face - centre) @ rotation.T + centre for face in faces]
+    return faces
+
+
+def join(parts, *, source: str, cameras=()) -> Scene:
+    """A grey scene from (name, reflectance, emission, [corners, ...])."""
+    rows = [(i, reflectance, emission, corners) for i, (_, reflectance, emission, quads) in enumerate(parts) for corners in quads]
+    return Scene.from_arrays(
+        np.concatenate([corners for *_, corners in rows]),
+        np.arange(4 * len(rows)).reshape(-1, 4),
+        np.array([r for _, r, _, _ in rows], np.float64),
+        np.array([e for _, _, e, _ in rows], np.float64),
+        surface=[i for i, *_ in rows],
+        names=[name for name, *_ in parts],
+        source=source,
+        cameras=cameras,
+    )
