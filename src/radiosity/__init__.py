@@ -8,9 +8,12 @@
     solution.export("room.glb")
 """
 
+from . import llvm
 from .errors import DeviceError, MethodError, OutputError, RadiosityError, RadiosityWarning, SceneError
 from .patches import Patches, subdivide
 from .scene import Back, Camera, Scene, load_scene
+
+llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
 
 __all__ = [
     "Back",

@@ -1,5 +1,7 @@
 """Faces into congruent cells."""
 
+from numbers import Real
+
 import numpy as np
 
 from ..errors import SceneError
@@ -26,12 +28,12 @@ def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = No
     if size is not None and cells is not None:
         raise SceneError("give size or cells, not both")
     if cells is not None:
-        if isinstance(cells, bool) or int(cells) != cells or cells < 1:
-            raise SceneError(f"cells is {cells}; it must be a whole number of 1 or more")
-        columns = rows = np.full(scene.n_faces, int(cells), np.int64)
+        if isinstance(cells, bool) or not isinstance(cells, Real) or not np.isfinite(cells) or int(cells) != cells or cells < 1:
+            raise SceneError(f"cells is {cells!r}; it must be a whole number of 1 or more")
+        columns = rows = np.full(scene.n_faces, min(int(cells), 2**31), np.int64)
     else:
-        if size is not None and not (np.isfinite(size) and size > 0):
-            raise SceneError(f"patch size is {size}; it must be a positive number of metres")
+        if size is not None and not (isinstance(size, Real) and np.isfinite(size) and size > 0):
+            raise SceneError(f"patch size is {size!r}; it must be a positive number of metres")
         columns, rows = _by_size(scene, _default_size(scene) if size is None else float(size))
     return _checked(scene, columns, rows)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..errors import SceneError
-from .model import Back, Scene
+from .model import Back, Camera, Scene
 from .paint import Paint
 
 PARALLEL_TOLERANCE = 2e-6  # of the longest edge: what single precision coordinates can hold
@@ -45,9 +45,10 @@ def build_rows(vertices, faces, reflectance, emission, *, surface=None, names=No
         _check_values(value, what, surface, names, source)
     bands = _bands(bands, n_bands, source)
     faces, rows = _parallelograms(vertices, faces)
+    reflectance, emission, back_reflectance, back_emission = (value[rows] for value in values)
     scene = Scene(
-        vertices, faces, *(values[i][rows] for i in (0, 1)), back[rows], *(values[i][rows] for i in (2, 3)),
-        surface[rows], names, bands, bool(photometric), np.full(len(names), np.nan), None, None, tuple(cameras), 1.0, str(source),
+        vertices, faces, reflectance, emission, back[rows], back_reflectance, back_emission, surface[rows], names, bands,
+        bool(photometric), np.full(len(names), np.nan), cameras=_cameras(cameras, source), source=str(source),
     )  # fmt: skip
     return scene, rows
 
@@ -60,22 +61,41 @@ def split_paint(paint: Paint, scene: Scene, rows: np.ndarray, faces: np.ndarray)
 
 
 def _array(value, dtype, what, source) -> np.ndarray:
+    if isinstance(value, np.ndarray) and np.iscomplexobj(value):
+        raise SceneError(f"{source}: {what} cannot be read as numbers (they are complex)")
     try:
         return np.array(value, dtype=dtype)
     except (TypeError, ValueError, OverflowError) as error:
         raise SceneError(f"{source}: {what} cannot be read as numbers ({error})") from None
 
 
+def _whole(value, what, kind, source) -> np.ndarray:
+    raw = _array(value, np.float64, what, source)
+    if not np.isfinite(raw).all() or (raw != np.floor(raw)).any() or np.abs(raw).max(initial=0) > 2**53:
+        raise SceneError(f"{source}: {what} must hold whole {kind}")
+    return raw.astype(np.int64)
+
+
+def _words(value, what, source) -> tuple[str, ...]:
+    if isinstance(value, str) or not np.iterable(value):
+        raise SceneError(f"{source}: {what} is {value!r}; expected a sequence of names")
+    return tuple(str(word) for word in value)
+
+
+def _cameras(value, source) -> tuple[Camera, ...]:
+    if not np.iterable(value) or not all(isinstance(camera, Camera) for camera in value):
+        raise SceneError(f"{source}: cameras must be a sequence of Camera")
+    return tuple(value)
+
+
 def _indices(faces, source) -> np.ndarray:
-    raw = _array(faces, np.float64, "faces", source)
+    raw = _whole(faces, "faces", "vertex numbers", source)
     if raw.size == 0:
         return np.zeros((0, 4), np.int64)
     if raw.ndim != 2 or raw.shape[1] not in (3, 4):
         raise SceneError(f"{source}: faces have shape {raw.shape}; expected (n_faces, 3) or (n_faces, 4)")
-    if not np.isfinite(raw).all() or (raw != np.floor(raw)).any() or np.abs(raw).max() > 2**53:
-        raise SceneError(f"{source}: faces must hold whole vertex numbers")
     result = np.full((len(raw), 4), -1, np.int64)
-    result[:, : raw.shape[1]] = raw.astype(np.int64)
+    result[:, : raw.shape[1]] = raw
     return result
 
 
@@ -106,7 +126,7 @@ def _widen(value, n_bands, source) -> np.ndarray:
 
 
 def _surfaces(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]:
-    index = np.zeros(n, np.int64) if surface is None else _array(surface, np.int64, "surface", source)
+    index = np.zeros(n, np.int64) if surface is None else _whole(surface, "surface", "surface numbers", source)
     if index.shape != (n,):
         raise SceneError(f"{source}: surface has shape {index.shape}; expected ({n},)")
     if index.min() < 0:
@@ -115,7 +135,7 @@ def _surfaces(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]:
         if index.max() >= max(n, 1) * 4 + 1024:
             raise SceneError(f"{source}: surface of face {int(index.argmax())} is {index.max()}; number the surfaces from 0 without gaps")
         names = ("surface",) if index.max() == 0 else tuple(f"surface {i}" for i in range(int(index.max()) + 1))
-    names = tuple(str(name) for name in names)
+    names = _words(names, "names", source)
     if index.max() >= len(names):
         raise SceneError(f"{source}: face {int(index.argmax())} has surface {index.max()}, but there are {len(names)} names")
     return index.astype(np.int32), names
@@ -123,11 +143,12 @@ def _surfaces(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]:
 
 def _backs(back, two_sided, n, source) -> np.ndarray:
     if back is None:
-        sides = np.asarray(two_sided)
-        if sides.shape not in ((), (n,)) or sides.dtype != bool and not np.isin(sides, (0, 1)).all():
+        sides = _array(two_sided, np.float64, "two_sided", source)
+        if sides.shape not in ((), (n,)) or not np.isin(sides, (0, 1)).all():
             raise SceneError(f"{source}: two_sided must be True, False or ({n},) of them")
         return np.where(np.broadcast_to(sides.astype(bool), (n,)), Back.RADIATES, Back.ABSORBS).astype(np.uint8)
-    values = np.broadcast_to(_array(back, np.int64, "back", source), (n,)) if np.ndim(back) == 0 else _array(back, np.int64, "back", source)
+    values = _whole(back, "back", "numbers", source)
+    values = np.broadcast_to(values, (n,)) if values.ndim == 0 else values
     if values.shape != (n,) or not np.isin(values, tuple(Back)).all():
         raise SceneError(f"{source}: back must hold {', '.join(f'{int(b)} ({b.name.lower()})' for b in Back)} for each of {n} faces")
     return values.astype(np.uint8)
@@ -145,9 +166,10 @@ def _check_values(value, what, surface, names, source) -> None:
 def _bands(bands, n_bands, source) -> tuple[str, ...]:
     if bands is None:
         bands = {1: ("grey",), 3: ("red", "green", "blue")}.get(n_bands, tuple(f"band {i}" for i in range(n_bands)))
+    bands = _words(bands, "bands", source)
     if len(bands) != n_bands:
         raise SceneError(f"{source}: {len(bands)} band names for {n_bands} bands")
-    return tuple(str(band) for band in bands)
+    return bands
 
 
 def _parallelograms(vertices, faces) -> tuple[np.ndarray, np.ndarray]:

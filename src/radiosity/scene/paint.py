@@ -29,9 +29,10 @@ class Paint:
 
         A face's second edge ends in its corner 3 where it is a parallelogram, in corner 2 where it is a triangle.
         """
-        last = np.where(is_quad, 3, 2)
-        result = _affine(self.color[face], last, face, u, v).astype(np.float64)
-        at = _affine(self.uv[face], last, face, u, v)
+        result = _between(self.color[face], is_quad, u, v).astype(np.float64)
+        if not self.images:
+            return result
+        at = _between(self.uv[face], is_quad, u, v)
         which = self.image[face]
         for index, image in enumerate(self.images):
             rows = np.flatnonzero(which == index)
@@ -43,10 +44,11 @@ class Paint:
         return Paint(self.images, self.image[faces], self.uv[faces], self.color[faces], self.limit)
 
 
-def _affine(corners: np.ndarray, last: np.ndarray, face: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    rows = np.arange(len(face))
-    origin = corners[:, 0]
-    return origin + (corners[:, 1] - origin) * u[:, None] + (corners[rows, last] - origin) * v[:, None]
+def _between(corners: np.ndarray, is_quad: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Corner values (m, 4, k) at (u, v): linear in a triangle, bilinear in a parallelogram."""
+    one, two, three, four = (corners[:, i] for i in range(4))
+    u, v, quad = u[:, None], v[:, None], is_quad[:, None]
+    return one + (two - one) * u + (np.where(quad, four, three) - one) * v + np.where(quad, one - two + three - four, 0) * (u * v)
 
 
 def _look_up(image: np.ndarray, uv: np.ndarray) -> np.ndarray:

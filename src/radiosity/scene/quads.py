@@ -43,7 +43,10 @@ def merge_triangles(scene: Scene) -> Scene:
     for name in ("reflectance_paint", "emission_paint"):
         paint = getattr(scene, name)
         if paint is not None:
-            merged = replace(merged, **{name: _merge_paint(paint, one[chosen], two[chosen], first_corner[chosen], shared[1][fits][chosen], keep)})
+            merged = replace(
+                merged,
+                **{name: _merge_paint(paint, one[chosen], two[chosen], first_corner[chosen], shared[1][fits][chosen], keep)},
+            )
     kept = np.ones(scene.n_faces, bool)
     kept[gone] = False
     return merged.take(kept)
@@ -61,7 +64,9 @@ def _candidates(scene: Scene):
     surface = scene.surface[face]
     low, high = np.minimum(start, end), np.maximum(start, end)
     order = np.lexsort((start, surface, high, low))
-    same = (low[order][1:] == low[order][:-1]) & (high[order][1:] == high[order][:-1]) & (surface[order][1:] == surface[order][:-1])
+    same = (
+        (low[order][1:] == low[order][:-1]) & (high[order][1:] == high[order][:-1]) & (surface[order][1:] == surface[order][:-1])
+    )
     group = np.concatenate([[0], np.cumsum(~same)])
     pair = np.flatnonzero(same & (np.bincount(group)[group[1:]] == 2))
     left, right = order[pair], order[pair + 1]
@@ -87,7 +92,7 @@ def _same_paint(paint: Paint, one, two, shared) -> np.ndarray:
     same = paint.image[one] == paint.image[two]
     for values, used in ((paint.uv, paint.image[one] >= 0), (paint.color, np.ones(len(one), bool))):
         a, b, c, b_two, a_two, d = _corners(values, one, two, shared)
-        scale = 1e-5 * (1 + np.abs(values).max(initial=0))
+        scale = 1e-5 * (1 + np.max([np.abs(x).max(axis=1, initial=0) for x in (a, b, c, d)], axis=0))
         affine = np.abs(a + b - c - d).max(axis=1, initial=0) <= scale
         equal = (np.abs(a - a_two).max(axis=1, initial=0) <= scale) & (np.abs(b - b_two).max(axis=1, initial=0) <= scale)
         same &= ~used | affine & equal

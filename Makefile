@@ -1,0 +1,59 @@
+# Needs make and a Python of version 3.11 or later with its venv module. Everything else goes into .venv.
+
+VENV := .venv
+BIN := $(VENV)/bin
+OUT := out
+ARGS :=
+
+# the first interpreter that is young enough and can make environments; name another with make PYTHON=...
+PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 python; do \
+	"$$p" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo "$$p"; break; }; done)
+
+.PHONY: help demo test bench check ci clean
+
+help:
+	@echo 'make demo    solve the built-in room and write a picture, a mesh and the numbers into $(OUT)/'
+	@echo 'make test    run the tests (make test ARGS="-k name" for some of them)'
+	@echo 'make bench   print lines per second against the bare ray caster'
+	@echo 'make check   lint and types'
+	@echo 'make ci      what the continuous integration runs: check, test and every command of the README'
+	@echo 'make clean   remove what these made, except $(VENV)'
+
+demo: $(VENV)/.user
+	@mkdir -p $(OUT)
+	$(BIN)/radiosity solve room --rays 10M -o $(OUT)/room.png $(OUT)/room.glb $(OUT)/room.npz
+
+test: $(VENV)/.developer
+	$(BIN)/python -m pytest $(ARGS)
+
+bench: $(VENV)/.developer
+	$(BIN)/python benchmarks/bench.py $(ARGS)
+
+check: $(VENV)/.developer
+	$(BIN)/ruff check
+	$(BIN)/pyright
+
+ci:
+	.ci/run
+
+clean:
+	rm -rf $(OUT) build dist .bench .pytest_cache .ruff_cache .hypothesis
+	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# an environment that is there already is used; one that is broken or too old is made anew
+$(VENV)/.made:
+	@$(BIN)/python -c 'import pip, sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 || { \
+		python='$(PYTHON)'; \
+		test -n "$$python" || { echo 'No Python 3.11 or later with venv was found: install one, or name it: make PYTHON=/path/to/python3' >&2; exit 1; }; \
+		echo "making $(VENV) with $$python"; "$$python" -m venv --clear $(VENV); }
+	@touch $@
+
+$(VENV)/.user: pyproject.toml $(VENV)/.made
+	@echo 'installing radiosity into $(VENV)'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[formats]'
+	@touch $@
+
+$(VENV)/.developer: pyproject.toml $(VENV)/.made
+	@echo 'installing radiosity and the tools of its developers into $(VENV)'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all,dev]'
+	@touch $@

@@ -1,0 +1,14 @@
+"""The command line. It may import the library; the library never imports it (a test holds this)."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run ``radiosity`` and return its exit status.
+
+    0: done; 1: it could not be done, or `check` and `doctor` found something serious; 2: the input is wrong;
+    130: interrupted, with everything written that was there.
+    """
+    import sys
+
+    from .app import run
+
+    return run(sys.argv[1:] if arguments is None else list(arguments))

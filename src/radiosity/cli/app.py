@@ -1,0 +1,97 @@
+"""The commands, and what an error, a warning or an interruption looks like to whoever typed one."""
+
+import os
+import sys
+import warnings
+from contextlib import contextmanager
+
+from cyclopts import App, CoercionError, CycloptsError
+
+from ..errors import DeviceError, RadiosityError, RadiosityWarning
+from .check import check
+from .doctor import doctor
+from .render import render
+from .solve import solve
+
+FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
+
+
+def _version() -> str:
+    from importlib.metadata import version
+
+    return version("radiosity")
+
+
+app = App(
+    name="radiosity",
+    help="Radiosity of real scenes by tracing lines, with error bars on every patch.",
+    help_epilogue="`radiosity COMMAND --help` explains a command. With --debug, errors come with a traceback.",
+    version=_version,
+    help_format="markdown",
+    suppress_keyboard_interrupt=False,
+)
+for place, command in enumerate((solve, render, check, doctor)):
+    app.command(command, sort_key=place)
+
+
+def run(arguments: list[str]) -> int:
+    """Run a command and return the exit status; errors become one line on stderr."""
+    debug = "--debug" in arguments
+    arguments = [argument for argument in arguments if argument != "--debug"]
+    try:
+        with tidy_warnings(debug):
+            status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        sys.stdout.flush()
+        return status if isinstance(status, int) else 0
+    except CycloptsError as error:
+        if debug:
+            raise
+        hint = "" if isinstance(error, CoercionError) else " (--help lists what there is)"
+        say("error", f"{error}{hint}")
+        return WRONG_INPUT
+    except RadiosityError as error:
+        if debug:
+            raise
+        say("error", error)
+        return FAILED if isinstance(error, DeviceError) else WRONG_INPUT
+    except KeyboardInterrupt:
+        say("interrupted", "nothing was written")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # whoever read our output has gone; nothing more can be said there, not even by Python as it ends
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except MemoryError:
+        if debug:
+            raise
+        say("error", "out of memory; take larger patches (--patch-size, --cells) or fewer replicates")
+        return FAILED
+    except Exception as error:
+        if debug:
+            raise
+        say("error", f"a fault of the program, not of your input: {type(error).__name__}: {error} (--debug shows where)")
+        return FAILED
+
+
+def say(kind: str, message) -> None:
+    """One line on stderr: ``radiosity: error: ...``."""
+    print(f"radiosity: {kind}: {' '.join(str(message).split())}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def tidy_warnings(debug: bool):
+    """Our warnings as one line each, once; those of other packages only with ``--debug``."""
+    seen = set()
+
+    def show(message, category, filename, lineno, file=None, line=None):
+        if issubclass(category, RadiosityWarning):
+            if str(message) not in seen:
+                seen.add(str(message))
+                say("warning", message)
+        elif debug:
+            sys.stderr.write(warnings.formatwarning(message, category, filename, lineno, line))
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", RadiosityWarning)
+        warnings.showwarning = show
+        yield

@@ -1,0 +1,92 @@
+"""``radiosity check``"""
+
+from .options import Flag
+
+COLORS = {"error": "bold red", "warning": "yellow", "note": "cyan"}
+MOST_ROWS = 40
+
+
+def check(scene: str, /, *, max_reflectance: float = 0.95, strict: Flag = False, device: str = "auto") -> int:
+    """Say what a scene holds and what in it is probably not meant.
+
+    Parameters
+    ----------
+    scene
+        A scene file or a built-in scene.
+    max_reflectance
+        Bring larger reflectances in the scene down to this.
+    strict
+        Faults in the scene that could be skipped with a warning are errors.
+    device
+        auto, cpu or cuda: what the lines are traced on.
+    """
+    from ..scene.check import check_file
+
+    report = check_file(scene, max_reflectance=max_reflectance, strict=strict, device=device)
+    _print(report)
+    return 1 if report.serious else 0
+
+
+def _print(report) -> None:
+    from rich.console import Console
+    from rich.text import Text
+
+    console = Console(highlight=False, soft_wrap=True)
+    if report.scene is not None:
+        for line in _facts(report):
+            console.print(Text(line))
+        console.print(_table(report))
+        if len(report.surfaces) > MOST_ROWS:
+            console.print(Text(f"and {len(report.surfaces) - MOST_ROWS} smaller surfaces"))
+    for finding in report.findings:
+        console.print(Text(finding.severity, COLORS[finding.severity]), Text(f"{finding.kind}: {finding.message}"))
+    if not report.findings:
+        console.print(Text("nothing suspicious found", "green"))
+
+
+def _facts(report):
+    scene = report.scene
+    low, high = scene.bounds
+    size = " x ".join(f"{d:.4g}" for d in high - low)
+    yield report.source
+    scale = "" if scale_is_one(scene) else f" (a unit of the file is {scene.scale:g} m)"
+    yield f"extent    {size} m{scale}, from {_point(low)} to {_point(high)}"
+    quads = int(scene.is_quad.sum())
+    yield f"faces     {scene.n_faces}: {scene.n_faces - quads} triangles, {quads} parallelograms"
+    yield f"surfaces  {len(report.surfaces)}, {sum(s.area for s in report.surfaces):.4g} m² radiating"
+    yield f"bands     {', '.join(scene.bands)}"
+    yield f"cameras   {len(scene.cameras)}"
+    lights = [surface for surface in report.surfaces if any(surface.power)]
+    power = " / ".join(f"{sum(s.power[b] for s in lights):.4g}" for b in range(scene.n_bands)) if lights else "0"
+    yield f"emitters  {len(lights)}, {power} {scene.power_unit} in all"
+
+
+def scale_is_one(scene) -> bool:
+    return abs(scene.scale - 1) < 1e-12
+
+
+def _point(values) -> str:
+    return "(" + ", ".join(f"{v:.4g}" for v in values) + ")"
+
+
+def _table(report):
+    from rich.table import Table
+
+    unit, power = report.scene.unit, report.scene.power_unit
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    table.add_column("surface", overflow="fold")
+    for name in ("faces", "area m²", "reflectance", f"emission {unit}", f"power {power}"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("sides", no_wrap=True)
+    rows = sorted(report.surfaces, key=lambda s: (not any(s.power), -s.area))  # emitters first, then by area
+    for s in rows[:MOST_ROWS]:
+        lit = any(s.power)
+        table.add_row(s.name, str(s.faces), f"{s.area:.4g}", _bands(s.reflectance), _bands(s.emission) if lit else "-",
+                      _bands(s.power) if lit else "-", s.sides)  # fmt: skip
+    return table
+
+
+def _bands(values) -> str:
+    """One number where all bands are equal, else all of them."""
+    texts = [f"{v:.3g}" for v in values]
+    return texts[0] if len(set(texts)) == 1 else " / ".join(texts)

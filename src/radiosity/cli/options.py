@@ -1,0 +1,35 @@
+"""Option types that several commands share."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from . import amounts
+
+
+def _by(parse):
+    def converter(_, tokens):
+        return parse(tokens[0].value)
+
+    return converter
+
+
+def _point(text: str) -> str:
+    amounts.numbers(text, 3)
+    return text
+
+
+def _pair(text: str) -> str:
+    amounts.numbers(text, 2)
+    return text
+
+
+Count = Annotated[int | None, Parameter(converter=_by(amounts.count))]
+Seconds = Annotated[float | None, Parameter(converter=_by(amounts.seconds))]
+Share = Annotated[float | None, Parameter(converter=_by(amounts.share))]
+Length = Annotated[float | None, Parameter(converter=_by(amounts.length))]
+Point = Annotated[str | None, Parameter(converter=_by(_point))]
+Pair = Annotated[str | None, Parameter(converter=_by(_pair))]
+Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
+Outputs = Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], consume_multiple=True, negative=(), show_default=False)]

@@ -1,0 +1,50 @@
+"""Output files: refused before the run where they cannot be written, and none lost because of another."""
+
+import tempfile
+from pathlib import Path
+
+from ..errors import OutputError, RadiosityError
+
+
+def check(paths) -> None:
+    """Refuse, before any work, outputs that could not be written after it.
+
+    Raises:
+        OutputError: an unknown format, a folder that is not there or not writable, or one file named twice.
+    """
+    from ..image import check_writable
+
+    seen = set()
+    for path in paths:
+        place = Path(path).resolve()
+        if place in seen:
+            raise OutputError(f"{path} is named twice; give each output its own name")
+        seen.add(place)
+        check_writable(path)
+
+
+def write(solution, paths, *, exposure: float | None = None) -> None:
+    """Write each output. Where one fails the others are written all the same; then its error is raised.
+
+    Raises:
+        OutputError: at least one file could not be written. The solution has then been saved somewhere as NPZ.
+    """
+    failures, saved = [], False
+    for path in paths:
+        options = {"exposure": exposure} if exposure is not None and Path(path).suffix.lower() in (".png", ".exr") else {}
+        try:
+            solution.export(path, **options)
+        except (RadiosityError, OSError, MemoryError, ValueError) as error:
+            failures.append(str(error) or f"{path}: {type(error).__name__}")
+        else:
+            saved |= Path(path).suffix.lower() == ".npz"
+            print(f"wrote {path}")
+    if failures:
+        kept = "" if saved else f"; the solution was kept in {_rescue(solution)}"
+        raise OutputError("; ".join(failures) + kept)
+
+
+def _rescue(solution) -> Path:
+    folder = Path(tempfile.mkdtemp(prefix="radiosity-"))
+    solution.save(folder / "solution.npz")
+    return folder / "solution.npz"

@@ -1,0 +1,98 @@
+"""``radiosity solve``"""
+
+from ..errors import MethodError
+from . import outputs
+from .options import Count, Flag, Length, Outputs, Seconds, Share
+
+DEFAULT_RAYS = 10_000_000
+INTERRUPTED = 130
+
+
+def solve(
+    scene: str,
+    /,
+    *,
+    output: Outputs = (),
+    rays: Count = None,
+    seconds: Seconds = None,
+    error: Share = None,
+    quanta: Count = None,
+    method: str = "random-walk",
+    equation: str | None = None,
+    lines: str | None = None,
+    order: str | None = None,
+    numbers: str | None = None,
+    patch_size: Length = None,
+    cells: Count = None,
+    replicates: int = 8,
+    seed: int = 0,
+    device: str = "auto",
+    coherent: Flag = False,
+    max_reflectance: float = 0.95,
+    strict: Flag = False,
+    exposure: float | None = None,
+) -> int:
+    """Solve a scene, print a report and write the outputs.
+
+    Parameters
+    ----------
+    scene
+        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene: cornell-box, room, labyrinth.
+    output
+        Files to write: .npz .glb .ply .vtp .csv .png .exr, several at once.
+    rays
+        Lines to trace in all, such as 10M (the default), 500k or 1e7.
+    seconds
+        Or: for how long to trace, such as 60, 5min or 1h.
+    error
+        Or: until the relative error is below this, such as 1% or 0.01.
+    quanta
+        Or: exactly so many quanta of power in each replicate; the report of a run names its number.
+    method
+        A named method.
+    equation
+        Another choice for the method's part of this name: where a particle leaves the patch that it hit.
+    lines
+        Likewise: what carries it.
+    order
+        Likewise: which line is fired next.
+    numbers
+        Likewise: which points of the unit cube the lines are made from.
+    patch_size
+        Longest edge of a patch, in metres. Default: what gives about 20 000 patches.
+    cells
+        Or: cut every face into CELLS x CELLS patches.
+    replicates
+        Independent randomised runs, from which the errors come.
+    seed
+        Of all randomisation; equal seeds give equal results.
+    device
+        auto, cpu or cuda.
+    coherent
+        Trace packets of like lines: faster, but not equal bit for bit where a line meets two faces in one point.
+    max_reflectance
+        Bring larger reflectances in the scene down to this.
+    strict
+        Faults in the scene that could be skipped with a warning are errors.
+    exposure
+        Of pictures, in stops. Default: fitted.
+    """
+    budget = {name: value for name, value in (("rays", rays), ("seconds", seconds), ("error", error), ("quanta", quanta)) if value}
+    if len(budget) > 1:
+        raise MethodError(f"give one of --rays, --seconds, --error and --quanta, not {' and '.join('--' + b for b in budget)}")
+    outputs.check(output)
+
+    import radiosity as rd
+
+    from .progress import bar
+
+    loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict)
+    patches = rd.subdivide(loaded, size=patch_size, cells=cells)
+    with bar() as progress:
+        solution = rd.solve(
+            patches, method, **(budget or {"rays": DEFAULT_RAYS}), equation=equation, lines=lines, order=order, numbers=numbers,
+            replicates=replicates, seed=seed, device=device, coherent=coherent, progress=progress,
+        )  # fmt: skip
+    print(solution.report())
+    outputs.write(solution, output, exposure=exposure)
+    return INTERRUPTED if solution.status == "interrupted" else 0

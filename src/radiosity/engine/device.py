@@ -1,0 +1,96 @@
+"""The one place that chooses and enters a Dr.Jit back end, and the one door from numpy to it."""
+
+import os
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import DeviceError
+from .. import llvm
+
+VARIANTS = {"cpu": "llvm_ad_rgb", "cuda": "cuda_ad_rgb"}
+PACKET = 64  # kernels may read whole packets past an array's end: every upload is padded to this
+
+
+@dataclass(frozen=True)
+class Device:
+    """A back end: its name (``cpu`` or ``cuda``), Mitsuba's variant, and Dr.Jit's module of array types."""
+
+    name: str
+    variant: str
+    types: Any
+
+
+def choose(name: str = "auto") -> Device:
+    """The device called ``auto`` (CUDA where there is one), ``cpu`` or ``cuda``.
+
+    Raises:
+        DeviceError: unknown name, no CUDA device, or no LLVM.
+    """
+    if name not in ("auto", *VARIANTS):
+        raise DeviceError(f"device '{name}' does not exist; known are auto, {', '.join(VARIANTS)}")
+    import drjit as dr
+
+    if name == "cuda" and not dr.has_backend(dr.JitBackend.CUDA):
+        raise DeviceError("device 'cuda': no NVIDIA driver or device was found; take --device cpu")
+    if name == "auto":
+        name = "cuda" if os.environ.get("CUDA_VISIBLE_DEVICES") != "" and dr.has_backend(dr.JitBackend.CUDA) else "cpu"
+    if name == "cpu":
+        llvm.prepare()
+        import drjit.llvm.ad as types
+    else:
+        import drjit.cuda.ad as types
+    return Device(name, VARIANTS[name], types)
+
+
+@contextmanager
+def entered(device: Device):
+    """Mitsuba in the device's variant; the variant found before is set again on leaving."""
+    import mitsuba as mi
+
+    if mi.variant() == device.variant:
+        yield mi
+        return
+    before = mi.variant()
+    mi.set_variant(device.variant)
+    try:
+        yield mi
+    finally:
+        if before is not None:
+            mi.set_variant(before)
+
+
+def upload(dtype, values: np.ndarray):
+    """Copy a one-dimensional numpy array to a Dr.Jit array of type ``dtype``.
+
+    A Dr.Jit array made straight from numpy may borrow its memory, and kernels read whole packets: at the end of a page
+    that ends the process. So a padded copy is handed over, and gathered into memory of Dr.Jit's own.
+    """
+    import drjit as dr
+
+    values = np.ascontiguousarray(values).ravel()
+    padded = np.zeros(len(values) // PACKET * PACKET + 2 * PACKET, values.dtype)
+    padded[: len(values)] = values
+    result = dr.gather(dtype, dtype(padded), dr.arange(dr.uint32_array_t(dtype), len(values)))
+    dr.eval(result)
+    dr.sync_thread()
+    return result
+
+
+def describe() -> dict[str, str]:
+    """Facts for ``radiosity doctor``."""
+    library = llvm.prepare()
+    import drjit as dr
+    import mitsuba as mi
+
+    return {
+        "LLVM": f"{library.version} ({library.path}, {library.origin})",
+        "device": choose("auto").name,
+        "CUDA": "found" if dr.has_backend(dr.JitBackend.CUDA) else "none",
+        "threads": str(dr.thread_count()),
+        "drjit": dr.__version__,
+        "mitsuba": mi.__version__,
+        "numpy": np.__version__,
+    }

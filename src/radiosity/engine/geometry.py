@@ -1,0 +1,167 @@
+"""The scene as kernels see it: the ray caster's faces, and records to go from a patch to a line and from a hit to a patch.
+
+The ray caster holds whole faces (a parallelogram as two triangles); a patch is found from a hit by arithmetic, so that
+finer patches neither grow the tree nor slow a line. Coordinates are moved to the scene's centre in double precision and
+scaled by a power of two before they become single, so that a scene's place and size do not matter.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ..patches import cells
+from ..patches.model import Patches
+from ..scene.model import Back, Scene
+from .device import Device, entered, upload
+
+EPSILON = float(np.finfo(np.float32).eps)
+OFFSET = 8 * EPSILON  # of a face's largest coordinate: lines begin this far in front of it
+INSET = 4 * OFFSET  # and this far from its edges, so that the offset does not lead through a neighbour
+
+COLUMN_BITS = 14
+QUAD, SECOND_HALF, INVERTED = 1 << 28, 1 << 29, 1 << 30
+ABSORBS, PASSES = 0xFFFFFFFF, 0xFFFFFFFE  # instead of a back's first patch
+HIT_WORDS, FACE_WORDS = 8, 16
+
+_trees: "WeakKeyDictionary[Scene, dict[str, Tree]]" = WeakKeyDictionary()
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """Embree's (or OptiX's) tree over the faces of a scene.
+
+    Attributes:
+        caster: the Mitsuba scene.
+        centre, scale: a point x in metres is (x - centre) * scale for the caster.
+        vertices: (n_vertices, 3) float32, as the caster has them.
+    """
+
+    caster: Any
+    centre: np.ndarray
+    scale: float
+    vertices: np.ndarray
+
+
+def tree(scene: Scene, device: Device) -> Tree:
+    """The scene's tree on a device; built once."""
+    known = _trees.setdefault(scene, {})
+    if device.name not in known:
+        known[device.name] = _build(scene, device)
+    return known[device.name]
+
+
+def _build(scene: Scene, device: Device) -> Tree:
+    low, high = scene.bounds
+    centre = (low + high) / 2
+    scale = 2.0 ** -np.ceil(np.log2(max((high - low).max() / 2, 1e-300)))
+    vertices = ((scene.vertices - centre) * scale).astype(np.float32)
+    triangles, _ = primitives(scene)
+    with entered(device) as mi:
+        mesh = mi.Mesh("scene", len(vertices), len(triangles))
+        parameters = mi.traverse(mesh)
+        parameters["vertex_positions"] = upload(device.types.Float, vertices)
+        parameters["faces"] = upload(device.types.UInt32, triangles.astype(np.uint32))
+        parameters.update()
+        caster = mi.load_dict({"type": "scene", "embree_use_robust_intersections": True, "mesh": mesh})
+    return Tree(caster, centre, scale, vertices)
+
+
+def primitives(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles of the caster, (n, 3), and the face of each. A parallelogram a b c d gives a b d and c d b, so that
+    coordinates (u, v) in the second half are (1 - u, 1 - v) in the face."""
+    quad = scene.is_quad
+    face = np.repeat(np.arange(scene.n_faces), 1 + quad)
+    second = np.concatenate([[False], face[1:] == face[:-1]])
+    corners = scene.faces[face]
+    triangle = corners[:, :3].copy()
+    triangle[quad[face]] = corners[quad[face]][:, [0, 1, 3]]
+    triangle[second] = corners[second][:, [2, 3, 1]]
+    return triangle, face
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """Patches of a scene on a device."""
+
+    patches: Patches
+    device: Device
+
+    @property
+    def scene(self) -> Scene:
+        return self.patches.scene
+
+    @cached_property
+    def tree(self) -> Tree:
+        return tree(self.scene, self.device)
+
+    @cached_property
+    def some_backs_pass(self) -> bool:
+        return bool((self.scene.back == Back.PASSES).any())
+
+    @cached_property
+    def frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Origin and edges of the faces in the caster's coordinates, float64 from its own vertices, and their offset."""
+        scene, vertices = self.scene, self.tree.vertices.astype(np.float64)
+        origin = vertices[scene.faces[:, 0]]
+        first = vertices[scene.faces[:, 1]] - origin
+        second = vertices[np.where(scene.is_quad, scene.faces[:, 3], scene.faces[:, 2])] - origin
+        corners = np.stack([origin, origin + first, origin + second, origin + first + second * scene.is_quad[:, None]])
+        return origin, first, second, OFFSET * np.abs(corners).max(axis=(0, 2))
+
+    @cached_property
+    def face_records(self):
+        """(n_faces * 16,) Float: origin, edges of a cell, normal, tangent and offset; the face drawn in from its edges."""
+        scene = self.scene
+        origin, first, second, offset = self.frames
+        cross = np.cross(first, second)
+        area = np.linalg.norm(cross, axis=1)
+        normal = cross / area[:, None]
+        lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, second - first)]
+        inset = offset * (INSET / OFFSET)
+        # of a triangle the same share about the centroid, of a parallelogram a margin on each side
+        share = np.minimum(3 * inset * np.max(lengths, axis=0) / area, 0.75)
+        margins = [np.minimum(inset * lengths[1 - i] / area, 0.375) for i in (0, 1)]
+        low_u, low_v = (np.where(scene.is_quad, m, share / 3) for m in margins)
+        size_u, size_v = (np.where(scene.is_quad, 1 - 2 * m, 1 - share) for m in margins)
+        drawn = origin + low_u[:, None] * first + low_v[:, None] * second
+        cell_first = first * (size_u / self.patches.columns)[:, None]
+        cell_second = second * (size_v / self.patches.rows)[:, None]
+        tangent = first / lengths[0][:, None]
+        record = np.concatenate([drawn, cell_first, cell_second, normal, tangent, offset[:, None]], axis=1)
+        return upload(self.device.types.Float, record.astype(np.float32))
+
+    @cached_property
+    def hit_records(self):
+        """(n_primitives * 8,) UInt32: front's first patch, cell counts and flags, back's first patch, face, normal, offset."""
+        scene, patches = self.scene, self.patches
+        _, face = primitives(scene)
+        origin, first, second, offset = self.frames
+        cross = np.cross(first, second)
+        normal = cross / np.linalg.norm(cross, axis=1, keepdims=True)
+        back = np.select(
+            [scene.back == Back.RADIATES, scene.back == Back.PASSES], [patches.first[:-1] + patches.cells_per_face, PASSES], ABSORBS
+        )
+        packed = patches.columns | (patches.rows.astype(np.int64) << COLUMN_BITS) | np.where(scene.is_quad, QUAD, 0)
+        record = np.zeros((len(face), HIT_WORDS), np.uint32)
+        record[:, 0], record[:, 1] = patches.first[:-1][face], packed[face]
+        record[:, 2], record[:, 3] = back[face], face
+        record[np.concatenate([[False], face[1:] == face[:-1]]), 1] |= SECOND_HALF
+        record[:, 4:7] = normal[face].astype(np.float32).view(np.uint32)
+        record[:, 7] = offset[face].astype(np.float32).view(np.uint32)
+        return upload(self.device.types.UInt32, record)
+
+    @cached_property
+    def patch_records(self):
+        """(n_patches * 2,) UInt32: face (top bit: its back), and column, row and flags of the cell."""
+        patches = self.patches
+        column, row, inverted = patches.place
+        record = np.empty((len(patches), 2), np.uint32)
+        record[:, 0] = patches.face + np.where(patches.is_back, 1 << 31, 0)
+        record[:, 1] = column | (row << COLUMN_BITS) | np.where(inverted, INVERTED, 0) | np.where(self.scene.is_quad[patches.face], QUAD, 0)
+        return upload(self.device.types.UInt32, record)
+
+
+assert cells.MOST < 1 << COLUMN_BITS

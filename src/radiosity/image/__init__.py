@@ -1,0 +1,61 @@
+"""Solution -> files, pictures. A new file format is one new module with ``write(solution, path, look)`` and one line here."""
+
+from importlib import import_module
+from pathlib import Path
+
+from .look import Look
+from .output import check_writable as _check
+from .render import render
+
+FORMATS = {
+    ".glb": "gltf",
+    ".ply": "ply",
+    ".vtp": "vtp",
+    ".csv": "tables",
+    ".png": "still",
+    ".exr": "still",
+}
+SUFFIXES = (".npz", *FORMATS)  # a solution saves itself as .npz
+
+__all__ = ["Look", "check_writable", "export", "render"]
+
+
+def check_writable(path) -> Path:
+    """Find out before a run whether a result can be written to ``path``.
+
+    Raises:
+        OutputError: unknown suffix, missing or read-only folder, a folder or a read-only file of that name.
+    """
+    path = _check(path, SUFFIXES)
+    if path.suffix.lower() == ".csv":
+        from .tables import surfaces_path
+
+        _check(surfaces_path(path), SUFFIXES)
+    return path
+
+
+def export(solution, path, *, smooth=True, quantity="radiosity", band=None, exposure=None, scale=None) -> Path:
+    """Write a solution in the format that the suffix names.
+
+    .glb, .ply: coloured meshes. .vtp: mesh with all quantities. .csv: all quantities of the patches, and beside it
+    ``x.surfaces.csv`` of the surfaces. .png, .exr: a picture, as `render` takes by default. .npz: ``solution.save``.
+
+    Args:
+        solution: to write.
+        path: of the file, which appears whole or not at all.
+        smooth: values are smoothed within surfaces where the format has colours; otherwise one value a patch.
+        quantity, band, exposure, scale: of the colours, see `radiosity.image.look.Look`; .vtp, .csv and .npz hold everything.
+
+    Returns:
+        The path.
+
+    Raises:
+        OutputError: the file cannot be written, or an option makes no sense.
+    """
+    path = check_writable(path)
+    if path.suffix.lower() == ".npz":
+        solution.save(path)
+    else:
+        module = import_module(f".{FORMATS[path.suffix.lower()]}", __package__)
+        module.write(solution, path, Look(quantity, band, smooth, exposure, scale))
+    return path

@@ -1,0 +1,94 @@
+"""A display mesh with values and colours on its vertices: what GLB and PLY files hold."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import display_mesh, tone
+from .look import Look
+from .quantity import choose
+from .view import up_axis
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePart:
+    """One surface of a coloured mesh, with vertex numbers of its own; arrays as in `ColouredMesh`."""
+
+    name: str
+    vertices: np.ndarray
+    triangles: np.ndarray
+    values: np.ndarray
+    linear: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class ColouredMesh:
+    """Triangles with values and colours on their vertices.
+
+    Attributes:
+        vertices: (n, 3) float64, metres.
+        triangles: (m, 3) int32.
+        patch: (m,) int32, patch of each triangle.
+        surface: (m,) int32, surface of each triangle.
+        names: of the surfaces.
+        values: (n, n_bands) float64, the quantity, in ``unit``; NaN where unknown.
+        linear: (n, 3) float64, linear colours: values x ``scale``, not clipped.
+        key, unit, bands: which quantity, its unit, and the names of its bands.
+        scale: colour for one unit.
+        up: ``y`` or ``z``.
+        smooth: values are smoothed to shared vertices; otherwise each patch has vertices of its own.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    patch: np.ndarray
+    surface: np.ndarray
+    names: tuple[str, ...]
+    values: np.ndarray
+    linear: np.ndarray
+    key: str
+    unit: str
+    bands: tuple[str, ...]
+    scale: float
+    up: str
+    smooth: bool
+
+    def facts(self) -> dict:
+        """What a reader needs to turn colours back into physical values."""
+        return {
+            "quantity": self.key, "unit": self.unit, "bands": list(self.bands), "scale": self.scale,
+            "colour": "linear colour = value x scale, clipped to 1", "up": self.up, "smoothed": self.smooth,
+        }  # fmt: skip
+
+    def by_surface(self) -> Iterator[SurfacePart]:
+        """Its surfaces one by one; those without a radiating patch are left out."""
+        order = np.argsort(self.surface, kind="stable")
+        ends = np.cumsum(np.bincount(self.surface, minlength=len(self.names)))
+        local = np.empty(len(self.vertices), np.int32)
+        for index, (begin, end) in enumerate(zip(np.concatenate([[0], ends]), ends, strict=False)):
+            if begin == end:
+                continue
+            corners = self.triangles[order[begin:end]]
+            used = np.unique(corners)
+            local[used] = np.arange(len(used))
+            yield SurfacePart(self.names[index], self.vertices[used], local[corners], self.values[used], self.linear[used])
+
+
+def coloured(solution, look: Look) -> ColouredMesh:
+    """The mesh of a solution. The automatic scale comes from an area-weighted percentile of the patches that do not emit."""
+    patches = solution.patches
+    shown = choose(solution, look.quantity, look.band)
+    dark = ~shown.own_light if not shown.own_light.all() else np.ones(len(patches), bool)
+    scale = tone.chosen_scale(look, lambda: tone.automatic_scale(shown.values[dark], patches.area[dark]))
+    mesh = display_mesh.build(patches)
+    if look.smooth:
+        values = mesh.smoothed(shown.values)
+    else:
+        mesh, owner = mesh.flat()
+        values = shown.values[owner]
+    triangles, patch = mesh.triangles()
+    return ColouredMesh(
+        mesh.vertices, triangles, patch, mesh.surface[patch], patches.scene.names, values, tone.colours(values) * scale,
+        look.quantity, shown.unit, shown.bands, scale, up_axis(patches.scene), look.smooth,
+    )  # fmt: skip

@@ -1,0 +1,71 @@
+"""Files appear whole or not at all, and what would stop them is found before a run."""
+
+import os
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from ..errors import OutputError, RadiosityError
+
+
+def check_writable(path, suffixes) -> Path:
+    """Find out, without leaving a trace, whether a file can be written.
+
+    Args:
+        path: of the file.
+        suffixes: those that are known.
+
+    Returns:
+        The path.
+
+    Raises:
+        OutputError: unknown suffix, missing or read-only folder, a folder or a read-only file of that name.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in suffixes:
+        raise OutputError(f"{path}: unknown output format '{path.suffix}'; known are {', '.join(suffixes)}")
+    try:
+        if path.is_dir():
+            raise OutputError(f"{path}: is a folder; name a file in it")
+        if not path.parent.exists():
+            raise OutputError(f"{path}: the folder '{path.parent}' does not exist; create it first")
+        if not path.parent.is_dir():
+            raise OutputError(f"{path}: '{path.parent}' is a file, not a folder; choose another place")
+        if path.exists() and not os.access(path, os.W_OK):
+            raise OutputError(f"{path}: the file is read-only; remove it or choose another name")
+        trial = _beside(path)
+        trial.open("xb").close()  # only trying tells, on network drives and full disks too
+        trial.unlink()
+    except OutputError:
+        raise
+    except (OSError, ValueError) as error:
+        raise OutputError(f"{path}: cannot write there ({_reason(error)}); choose another place") from None
+    return path
+
+
+@contextmanager
+def replacing(path):
+    """A path in the same folder to write to; the finished file then takes the place of ``path`` in one step.
+
+    Raises:
+        OutputError: the system refuses; nothing is left behind, and a file that was there stays as it was.
+    """
+    path = Path(os.path.realpath(path))
+    temporary = _beside(path)
+    try:
+        yield temporary
+        temporary.replace(path)
+    except RadiosityError:
+        raise
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written ({_reason(error)})") from error
+    finally:
+        with suppress(OSError):
+            temporary.unlink()
+
+
+def _beside(path: Path) -> Path:
+    return path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+
+
+def _reason(error: Exception) -> str:
+    return getattr(error, "strerror", None) or str(error)

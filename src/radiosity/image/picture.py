@@ -1,0 +1,100 @@
+"""What a camera sees of a solution, pixel by pixel, in physical units."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import OutputError
+from ..scene import Camera
+from . import tone
+from .fit import fitted
+from .lookup import Lookup
+from .quantity import Quantity
+from .view import check, directions
+
+CHUNK = 1 << 19  # lines of sight at once
+DARK = 0.5  # share of a pixel's samples that must see a patch for the pixel to count in scales
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What a camera sees, in physical units.
+
+    Attributes:
+        values: (height, width, n) float64, mean of the samples that see a patch; NaN where that patch is unknown,
+            0 where none is seen.
+        cover: (height, width) share of the samples that see a patch; the rest see nothing, or an absorbing back.
+        own_light: (height, width) bool, pixels on surfaces that shine by themselves.
+        camera: it was taken with.
+    """
+
+    values: np.ndarray
+    cover: np.ndarray
+    own_light: np.ndarray
+    camera: Camera
+
+    @property
+    def counted(self) -> np.ndarray:
+        """(m, n) values that decide scales: of pixels on patches, without lamps unless there is nothing else."""
+        on = self.cover > DARK
+        return self.values[on & ~self.own_light] if (on & ~self.own_light).any() else self.values[on]
+
+
+def take(solution, shown: Quantity, camera: Camera, *, smooth=True, samples=4, hits=None) -> Picture:
+    """Sample a picture: ``samples`` lines of sight a pixel, at the points of a Hammersley set (each row and column once)."""
+    if isinstance(samples, bool) or int(samples) != samples or not 1 <= samples <= 1024:
+        raise OutputError(f"samples is {samples}; it must be a whole number from 1 to 1024")
+    hits, camera, samples = hits or first_hits, check(camera), int(samples)
+    look = Lookup(solution.patches, shown.values, smooth)
+    width, n = int(camera.width), int(camera.width) * int(camera.height)
+    total, count, own = np.zeros((n, shown.values.shape[1])), np.zeros(n), np.zeros(n)
+    offsets = np.stack([(np.arange(samples) + 0.5) / samples, _bits_reversed(samples)], axis=1)
+    step = max(1, CHUNK // samples)
+    for begin in range(0, n, step):
+        pixel = np.arange(begin, min(begin + step, n))
+        x, y = (pixel % width)[:, None] + offsets[:, 0], (pixel // width)[:, None] + offsets[:, 1]
+        rays = directions(camera, x.ravel(), y.ravel())
+        values, patch = look(hits(solution.patches.scene, np.broadcast_to(camera.origin, rays.shape).copy(), rays))
+        seen = patch >= 0
+        total[pixel] = values.reshape(len(pixel), samples, -1).sum(axis=1)
+        count[pixel] = seen.reshape(len(pixel), samples).sum(axis=1)
+        own[pixel] = (seen & shown.own_light[patch]).reshape(len(pixel), samples).sum(axis=1)
+    shape = (int(camera.height), width)
+    values = total / np.maximum(count, 1)[:, None]
+    return Picture(values.reshape(*shape, -1), (count / samples).reshape(shape), (own > 0).reshape(shape), camera)
+
+
+def choose_camera(solution, camera: Camera | int | None, width, height, hits) -> Camera:
+    """The camera asked for (a `Camera`, or the number of one of the scene's), the scene's first, or a fitted one."""
+    cameras = solution.patches.scene.cameras
+    if isinstance(camera, Camera):
+        chosen = camera
+    elif camera is None and not cameras:
+        light = tone.luminance(np.asarray(solution.radiosity, np.float64))
+        return fitted(solution.patches, light, hits, width=width or 800, height=height or 600)
+    else:
+        number = 0 if camera is None else camera
+        if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(cameras):
+            raise OutputError(f"camera {camera!r} does not exist; the scene has {len(cameras)} (counted from 0)")
+        chosen = cameras[number]
+    if width is None and height is not None:
+        width = max(1, round(height * chosen.width / chosen.height))
+    if height is None and width is not None:
+        height = max(1, round(width * chosen.height / chosen.width))
+    return replace(chosen, width=width or chosen.width, height=height or chosen.height)
+
+
+def first_hits(scene, origins, directions):
+    """The ray caster; imported when a picture is taken, since it starts a back end."""
+    from ..engine import caster
+
+    return caster.first_hits(scene, origins, directions)
+
+
+def _bits_reversed(n: int) -> np.ndarray:
+    """Radical inverses to base 2 of 0 to n - 1, moved to the middle of their cells."""
+    k, result, place = np.arange(n), np.full(n, 0.5 / 2 ** max(n - 1, 0).bit_length()), 0.5
+    while k.any():
+        result += place * (k & 1)
+        k, place = k >> 1, place / 2
+    return result

@@ -1,0 +1,102 @@
+"""`render`: a picture of a solution, to look at (PNG) or to measure in (EXR)."""
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError, RadiosityWarning
+from ..scene import Camera
+from . import bitmap, tone
+from . import false_color as maps
+from .look import Look
+from .output import check_writable
+from .picture import choose_camera, first_hits, take
+from .quantity import choose
+
+SUFFIXES = (".png", ".exr")
+
+
+def render(
+    solution,
+    path=None,
+    *,
+    camera: Camera | int | None = None,
+    width: int | None = None,
+    height: int | None = None,
+    exposure: float | None = None,
+    scale: float | None = None,
+    smooth: bool = True,
+    quantity: str = "radiosity",
+    band: str | int | None = None,
+    false_color: bool = False,
+    range: tuple[float, float] | None = None,
+    log: bool = False,
+    color_map: str = "viridis",
+    samples: int = 4,
+    hits=None,
+) -> np.ndarray:
+    """Look at a solution through a pinhole camera. What radiates nothing (absorbing backs, the void) is black.
+
+    Args:
+        solution: to look at.
+        path: .png or .exr file to write, or None.
+        camera: a `Camera`, or the number of one of the scene's; default: its first, or a fitted one where it has none.
+        width, height: pixels; default: the camera's. One alone keeps its proportions.
+        exposure, scale, smooth, quantity, band: see `radiosity.image.look.Look`. The automatic scale takes the 95th
+            percentile of the pixels' luminance, lamps apart, to a light tone.
+        false_color: colours of a map, one for each value, with a legend; several bands are shown by their luminance.
+        range, log, color_map: of the false colours; see `radiosity.image.false_color.colour`.
+        samples: lines of sight a pixel.
+        hits: ``hits(scene, origins, directions)`` with the result of `radiosity.engine.caster.first_hits`, the default.
+
+    Returns:
+        For PNG or no path: (height, width, 3) uint8, sRGB; with false colours the legend makes it wider. For EXR:
+        (height, width, n_bands) float32, linear, in the solution's unit.
+
+    Raises:
+        OutputError: the file cannot be written, or an option makes no sense.
+        SceneError: the camera makes no picture.
+        DeviceError: rays cannot be traced here.
+    """
+    path = None if path is None else check_writable(path, SUFFIXES)
+    linear = path is not None and path.suffix.lower() == ".exr"
+    if linear and false_color:
+        raise OutputError(f"{path}: EXR holds physical values; write false colours to a .png file")
+    hits = hits or first_hits
+    shown = choose(solution, quantity, band, single=false_color)
+    view = choose_camera(solution, camera, width, height, hits)
+    picture = take(solution, shown, view, smooth=smooth, samples=samples, hits=hits)
+    facts = {"quantity": shown.title, "unit": shown.unit, "bands": ", ".join(shown.bands), "camera": repr(view)}
+    if false_color:
+        pixels = maps.colour(picture, title=shown.title, unit=shown.unit, limits=range, log=log, color_map=color_map)
+    else:
+        values = _known(picture.values) * picture.cover[..., None]
+        if linear:
+            pixels = values.astype(np.float32)
+        else:
+            look = Look(quantity, band, smooth, exposure, scale)
+            factor = tone.chosen_scale(look, lambda: tone.automatic_scale(picture.counted))
+            facts |= {"scale": repr(factor), "colour": "sRGB of value x scale, clipped to 1"}
+            pixels = tone.eight_bits(tone.srgb(tone.colours(values) * factor))
+    if path is not None:
+        _save(pixels, path, facts, shown.bands)
+    return pixels
+
+
+def _save(pixels: np.ndarray, path: Path, facts: dict[str, str], bands: tuple[str, ...]) -> None:
+    if path.suffix.lower() == ".exr":
+        bitmap.write_exr(pixels, path, facts, bands)
+    else:
+        bitmap.write_png(pixels, path, facts)
+
+
+def _known(values: np.ndarray) -> np.ndarray:
+    unknown = np.isnan(values).any(axis=-1)
+    if unknown.any():
+        warnings.warn(
+            f"{int(unknown.sum())} pixels show patches whose value is unknown; they are black (false colours show them grey)",
+            RadiosityWarning,
+            stacklevel=3,
+        )
+    return np.where(np.expand_dims(unknown, -1), 0.0, values)

@@ -1,0 +1,9 @@
+"""PNG and EXR files from the default camera."""
+
+from .look import Look
+from .render import render
+
+
+def write(solution, path, look: Look) -> None:
+    """Write a picture; see `radiosity.image.render`."""
+    render(solution, path, smooth=look.smooth, quantity=look.quantity, band=look.band, exposure=look.exposure, scale=look.scale)

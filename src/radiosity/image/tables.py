@@ -1,0 +1,88 @@
+"""CSV: ``x.csv`` with a row for each patch, and beside it ``x.surfaces.csv`` with a row for each surface.
+
+UTF-8, comma separated, a header row with units; what is unknown is ``nan``.
+"""
+
+import csv
+import io
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+
+from .look import Look
+from .output import replacing
+
+CHUNK = 1 << 16
+
+
+def write(solution, path, look: Look | None = None) -> None:
+    """Write both tables; they show everything whatever the look."""
+    _patches(solution, Path(path))
+    _surfaces(solution, surfaces_path(path))
+
+
+def surfaces_path(path) -> Path:
+    """``x.surfaces.csv`` for ``x.csv``."""
+    path = Path(path)
+    return path.with_name(f"{path.stem}.surfaces{path.suffix}")
+
+
+def _patches(solution, path: Path) -> None:
+    patches = solution.patches
+    bands, unit = [str(band) for band in solution.bands], solution.unit
+    names = np.array([_cells([name]) for name in patches.scene.names], object)
+    sides = np.array(["front", "back"], object)
+    columns = {"patch": np.arange(len(patches)), "surface": names[patches.surface], "side": sides[patches.is_back.astype(int)]}
+    for title, values in (("centroid", patches.centroid), ("normal", patches.normal)):
+        columns |= {f"{title} {axis}{' [m]' if title == 'centroid' else ''}": values[:, i] for i, axis in enumerate("xyz")}
+    columns["area [m²]"] = patches.area
+    for title, values, measure in (
+        ("reflectance", patches.reflectance, ""),
+        ("emission", patches.emission, unit),
+        ("radiosity", solution.radiosity, unit),
+        ("standard error of radiosity", solution.standard_error, unit),
+        ("irradiance", solution.irradiance, unit),
+        ("standard error of irradiance", solution.irradiance_standard_error, unit),
+    ):
+        for i, band in enumerate(bands):
+            label = f"{title} {band}" if len(bands) > 1 else title
+            columns[f"{label} [{measure}]" if measure else label] = np.asarray(values)[:, i]
+    columns["arrivals"] = np.asarray(solution.arrivals)
+    row = ",".join("%.9g" if value.dtype.kind == "f" else "%s" for value in columns.values()).__mod__
+    with replacing(path) as temporary, _text(temporary) as file:
+        file.write(_cells(columns) + "\n")
+        for begin in range(0, len(patches), CHUNK):
+            part = [value[begin : begin + CHUNK].tolist() for value in columns.values()]
+            file.write("\n".join(map(row, zip(*part, strict=True))) + "\n")
+
+
+def _surfaces(solution, path: Path) -> None:
+    rows = [_flattened(row, [str(band) for band in solution.bands]) for row in solution.surface_table()]
+    with replacing(path) as temporary, _text(temporary) as file:
+        writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def _flattened(row: dict, bands: list[str]) -> dict:
+    """A column for each band where a value has several."""
+    result = {}
+    for key, value in row.items():
+        several = isinstance(value, (list, tuple, np.ndarray)) and np.ndim(value) == 1
+        if several and len(value) == len(bands) > 1:
+            result |= {f"{key} {band}": item for band, item in zip(bands, value, strict=True)}
+        else:
+            result[key] = value[0] if several and len(value) == 1 else value
+    return result
+
+
+def _text(path: Path) -> TextIO:
+    return path.open("w", encoding="utf-8", errors="backslashreplace", newline="")
+
+
+def _cells(values) -> str:
+    """Values as they stand in a row, quoted where CSV needs it."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\r\n").writerow(values)  # so that either of them within a name is quoted
+    return text.getvalue()[:-2]

@@ -1,0 +1,66 @@
+"""Physical values to display values: a scale, then the sRGB curve. Nothing is compressed, so the scale undoes it."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..errors import OutputError
+from .look import Look
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear sRGB, ITU-R BT.709
+PERCENTILE, LEVEL = 95.0, 0.8  # the automatic scale takes this percentile of the luminance to this linear value
+
+
+def srgb(linear: np.ndarray) -> np.ndarray:
+    """Linear values to the sRGB curve (IEC 61966-2-1), both clipped to [0, 1]; NaN becomes 0."""
+    linear = np.clip(np.nan_to_num(linear, nan=0.0, posinf=1.0, neginf=0.0), 0.0, 1.0)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def eight_bits(display: np.ndarray) -> np.ndarray:
+    """Values in [0, 1] to uint8, rounded."""
+    return (np.clip(display, 0, 1) * 255 + 0.5).astype(np.uint8)
+
+
+def colours(values: np.ndarray) -> np.ndarray:
+    """(..., n_bands) to (..., 3): three bands are red, green, blue; one is grey; of other numbers the mean is taken as grey."""
+    if values.shape[-1] == 3:
+        return values
+    return np.repeat(luminance(values)[..., None], 3, axis=-1)
+
+
+def luminance(values: np.ndarray) -> np.ndarray:
+    """(..., n_bands) to (...): three bands weighted as linear sRGB, otherwise the mean of the bands."""
+    return values @ LUMINANCE if values.shape[-1] == 3 else values.mean(axis=-1)
+
+
+def automatic_scale(values: np.ndarray, weight: np.ndarray | None = None) -> float:
+    """Scale that takes a high percentile of the lit values to a light tone; 1 where nothing is lit.
+
+    Args:
+        values: (m, n_bands), in any unit.
+        weight: (m,), how much each counts (its area); default: all the same.
+    """
+    level = luminance(values)
+    lit = np.isfinite(level) & (level > 0)
+    if not lit.any():
+        return 1.0
+    level, weight = level[lit], np.ones(int(lit.sum())) if weight is None else weight[lit]
+    order = np.argsort(level)
+    total = np.cumsum(weight[order])
+    at = np.searchsorted(total, PERCENTILE / 100 * total[-1])
+    return LEVEL / float(level[order[min(at, len(order) - 1)]])
+
+
+def chosen_scale(look: Look, automatic: Callable[[], float]) -> float:
+    """The scale asked for, or else the automatic one, times two to the power of the exposure.
+
+    Raises:
+        OutputError: a scale that is not positive, an exposure that is no number of stops.
+    """
+    exposure, scale = look.exposure or 0.0, look.scale
+    if not (np.isfinite(exposure) and abs(exposure) <= 100):
+        raise OutputError(f"exposure is {exposure}; it must be a number of stops between -100 and 100")
+    if scale is not None and not (np.isfinite(scale) and scale > 0):
+        raise OutputError(f"scale is {scale}; it must be a positive number (display value for one unit)")
+    return (automatic() if scale is None else float(scale)) * 2.0 ** float(exposure)

@@ -1,0 +1,73 @@
+"""Pinhole cameras: which way is up, the rays of a picture, and where a point appears in it."""
+
+from pathlib import PurePath
+
+import numpy as np
+
+from ..errors import SceneError
+from ..scene import Camera, Scene
+
+Y_UP = (".glb", ".gltf", ".obj", ".xml")  # formats whose scenes are mostly modelled with y upwards
+MOST_PIXELS = 2**28
+
+
+def up_axis(scene: Scene) -> str:
+    """``y`` or ``z``: the main direction of the scene's cameras' ups, or else what is usual in its file format."""
+    if scene.cameras:
+        up = np.abs(np.asarray(scene.cameras[0].up, np.float64))
+        return "y" if up[1] > up[2] else "z"
+    return "y" if PurePath(scene.source).suffix.lower() in Y_UP else "z"
+
+
+def check(camera: Camera) -> Camera:
+    """The camera, if a picture can be taken with it.
+
+    Raises:
+        SceneError: sizes, angles or directions that make no picture.
+    """
+    numbers = np.array([*camera.origin, *camera.target, *camera.up, camera.fov], np.float64)
+    if numbers.shape != (10,) or not np.isfinite(numbers).all():
+        raise SceneError(f"camera {camera}: origin, target and up must be three finite numbers each, and fov one")
+    if not 0 < camera.fov < 180:
+        raise SceneError(f"camera: the vertical field of view is {camera.fov}°; it must lie between 0 and 180")
+    if not (int(camera.width) == camera.width >= 1 and int(camera.height) == camera.height >= 1):
+        raise SceneError(
+            f"camera: the picture is {camera.width} x {camera.height} pixels; both must be whole numbers of 1 or more"
+        )
+    if camera.width * camera.height > MOST_PIXELS:
+        raise SceneError(f"camera: the picture is {camera.width} x {camera.height} pixels, more than {MOST_PIXELS}")
+    if not np.linalg.norm(numbers[3:6] - numbers[:3]) > 0:
+        raise SceneError(f"camera: origin and target are both {camera.origin}; move one of them")
+    return camera
+
+
+def axes(camera: Camera) -> np.ndarray:
+    """(3, 3) unit rows: right, up and forward of the picture."""
+    forward = np.subtract(camera.target, camera.origin, dtype=np.float64)
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, camera.up)
+    if np.linalg.norm(right) <= 1e-9 * np.linalg.norm(camera.up):
+        # looking along up, where any right will do
+        right = np.cross(forward, np.eye(3)[np.argmin(np.abs(forward))])
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(right, forward), forward])
+
+
+def directions(camera: Camera, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """(m, 3) unit directions through picture points; x runs right and y down, in pixels from the top left corner."""
+    right, up, forward = axes(camera)
+    half = np.tan(np.deg2rad(camera.fov) / 2)
+    across = (2 * x - camera.width) / camera.height * half
+    down = (2 * y - camera.height) / camera.height * half
+    result = forward + across[:, None] * right - down[:, None] * up
+    return result / np.linalg.norm(result, axis=1, keepdims=True)
+
+
+def project(camera: Camera, points: np.ndarray) -> np.ndarray:
+    """(m, 3) picture x, y (pixels from the top left corner) and depth along the view (metres) of points (m, 3)."""
+    right, up, depth = axes(camera) @ (np.asarray(points, np.float64) - camera.origin).T
+    half = np.tan(np.deg2rad(camera.fov) / 2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        x = camera.width / 2 + right / depth / half * camera.height / 2
+        y = camera.height / 2 - up / depth / half * camera.height / 2
+    return np.stack([x, y, depth], axis=1)

@@ -1,0 +1,3 @@
+"""Where does a particle leave a patch it hit?"""
+
+EQUATIONS = ("discrete",)

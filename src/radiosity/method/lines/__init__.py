@@ -1,0 +1,3 @@
+"""What carries a particle?"""
+
+LINES = ("local",)

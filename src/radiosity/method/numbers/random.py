@@ -1,0 +1,39 @@
+"""Random numbers without state: Philox 4x32-10 (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3", 2011)."""
+
+from dataclasses import dataclass
+
+import drjit as dr
+import numpy as np
+
+from .base import AbstractNumbers
+
+MULTIPLIERS = (0xD2511F53, 0xCD9E8D57)
+WEYL = (0x9E3779B9, 0xBB67AE85)
+ROUNDS = 10
+
+
+@dataclass(frozen=True)
+class Random(AbstractNumbers):
+    """The counter is (index, patch), the key and the rest of the counter come from the seed and replicate."""
+
+    def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
+        return stream.generate_state(4, np.uint32)
+
+    def points(self, index, patch, randomisation, bits):
+        Float = dr.float32_array_t(type(index))
+        return [Float(word >> 8) * 2.0**-24 for word in philox([index, patch, *randomisation[2:]], randomisation[:2])]
+
+    def steps(self):
+        return (32,)
+
+
+def philox(counter, key):
+    """Four UInt32 words from a counter of four and a key of two."""
+    UInt32 = type(counter[0])
+    x, (k0, k1) = list(counter), (UInt32(key[0]), UInt32(key[1]))
+    for _ in range(ROUNDS):
+        low = [x[0] * MULTIPLIERS[0], x[2] * MULTIPLIERS[1]]
+        high = [dr.mul_hi(x[0], UInt32(MULTIPLIERS[0])), dr.mul_hi(x[2], UInt32(MULTIPLIERS[1]))]
+        x = [high[1] ^ x[1] ^ k0, low[1], high[0] ^ x[3] ^ k1, low[0]]
+        k0, k1 = k0 + WEYL[0], k1 + WEYL[1]
+    return x

@@ -1,0 +1,81 @@
+"""Image files as linear images for paints."""
+
+import io
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import SceneError
+from ..assemble import Part
+
+LARGEST = 1024  # pixels along an edge: larger images are averaged, patches are larger than their texels
+
+
+def linear_image(data: bytes, what: str) -> np.ndarray:
+    """Decode a PNG, JPEG, WebP, TGA, ... whose values are sRGB encoded; alpha is left out.
+
+    Args:
+        data: the file's bytes.
+        what: names the image in errors.
+
+    Returns:
+        (height, width, 1 or 3) float32, linear, row 0 at the top, at most `LARGEST` pixels high and wide.
+
+    Raises:
+        SceneError: the bytes are no image that Pillow reads.
+    """
+    import warnings
+
+    from PIL import Image
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            image = Image.open(io.BytesIO(data))
+            if image.mode.startswith("I"):  # 16 bits a pixel
+                return _reduced(np.asarray(image)[:, :, None], lambda block: decode_srgb(np.clip(block / 65535, 0, 1)))
+            grey = image.mode in ("1", "L", "LA")
+            pixels = np.asarray(image.convert("L" if grey else "RGB"))
+    except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
+        raise SceneError(f"{what}: the image is too large ({error}); scale it down") from None
+    except Exception as error:  # Pillow's decoders raise whatever they like on damaged files
+        raise SceneError(f"{what}: the image cannot be decoded ({error}); save it as PNG or JPEG") from None
+    table = decode_srgb(np.arange(256) / 255).astype(np.float32)
+    return _reduced(pixels.reshape(*pixels.shape[:2], -1), lambda block: table[block])
+
+
+def decode_srgb(value: np.ndarray) -> np.ndarray:
+    """sRGB values in [0, 1] to linear ones (IEC 61966-2-1)."""
+    value = np.asarray(value, np.float64)
+    return np.where(value <= 0.04045, value / 12.92, ((np.maximum(value, 0) + 0.055) / 1.055) ** 2.4)
+
+
+def _reduced(pixels: np.ndarray, decode) -> np.ndarray:
+    """Decoded rows, averaged in blocks so that no edge is longer than `LARGEST`."""
+    height, width = (min(length, LARGEST) for length in pixels.shape[:2])
+    if (height, width) == pixels.shape[:2]:
+        return np.ascontiguousarray(decode(pixels), np.float32)
+    top = np.linspace(0, pixels.shape[0], height + 1).astype(int)
+    left = np.linspace(0, pixels.shape[1], width + 1).astype(int)
+    result = np.empty((height, width, pixels.shape[2]), np.float32)
+    for row in range(height):
+        mean = decode(pixels[top[row] : top[row + 1]]).mean(axis=0)
+        result[row] = np.add.reduceat(mean, left[:-1], axis=0) / np.diff(left)[:, None]
+    return result
+
+
+def without_coordinates(part: Part) -> Part:
+    """A part whose textures cannot be placed takes their mean."""
+    if part.texture is not None:
+        mean = part.texture.mean(axis=(0, 1), dtype=np.float64)
+        part = replace(
+            part,
+            texture=None,
+            color=np.broadcast_to(mean, (len(part.vertices), len(mean))) * (1.0 if part.color is None else part.color),
+        )
+    if part.emission_texture is not None:
+        glow = tuple(
+            float(v) for v in np.asarray(part.material.emission) * part.emission_texture.mean(axis=(0, 1), dtype=np.float64)
+        )
+        part = replace(part, emission_texture=None, material=replace(part.material, emission=glow))
+    return part

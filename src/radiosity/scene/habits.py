@@ -1,0 +1,107 @@
+"""Values that strangers' files hold by habit are taken, each kind with one warning; senseless ones are errors."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import RadiosityWarning, SceneError, shown
+from .parts import Part, ReadOptions
+
+DEFAULT_REFLECTANCE = 0.5
+BELOW_ONE = float(np.nextafter(1.0, 0.0))
+
+
+def settle(parts: list[Part], source: str, options: ReadOptions) -> list[Part]:
+    """Parts with a reflectance each, at most ``options.max_reflectance`` (where painted: the paint's limit does it).
+
+    Raises:
+        SceneError: a coordinate, colour, reflectance or emission that makes no sense.
+    """
+    missing, bright, glossy, result = {}, {}, {}, []
+    for part in parts:
+        _check_arrays(part, source)
+        m = part.material
+        if not m.diffuse:
+            glossy[part.name] = True
+        if m.reflectance is None:
+            missing[part.name] = True
+            m = replace(m, reflectance=(DEFAULT_REFLECTANCE,))
+        _check_values(part.name, m, source)
+        for value in (m.reflectance, m.back_reflectance):
+            highest = 0.0 if value is None else float(np.max(np.asarray(value) * _peak(part)))
+            if highest > options.max_reflectance + 1e-12:
+                bright[part.name] = max(bright.get(part.name, 0.0), highest)
+        result.append(_lower(replace(part, material=m), options.max_reflectance))
+    if missing:
+        warn(f"{source}: no material for {shown(missing)}; reflectance {DEFAULT_REFLECTANCE} taken")
+    if bright:
+        warn(f"{source}: reflectance above {options.max_reflectance:g} brought down to it (at most "
+             f"{max(bright.values()):.4g}): {shown(bright)}; --max-reflectance sets the bound")  # fmt: skip
+    if glossy:
+        warn(f"{source}: not diffuse, taken by the diffuse albedo: {shown(glossy)}")
+    return result
+
+
+def warn(text: str) -> None:
+    """One `RadiosityWarning`."""
+    warnings.warn(text, RadiosityWarning, stacklevel=4)
+
+
+def _peak(part: Part) -> np.ndarray:
+    """(n_bands,) highest factor of the paint, by band."""
+    peak = np.ones(1)
+    if part.color is not None and len(part.color):
+        peak = peak * part.color.max(axis=0)
+    if part.texture is not None and part.texture.size:
+        peak = peak * part.texture.max(axis=(0, 1))
+    return peak
+
+
+def _lower(part: Part, limit: float) -> Part:
+    m = part.material
+    if part.color is None and part.texture is None:
+        back = m.back_reflectance and tuple(min(v, limit) for v in m.back_reflectance)
+        return replace(part, material=replace(m, reflectance=tuple(min(v, limit) for v in m.reflectance), back_reflectance=back))
+    if max(m.reflectance) >= 1.0:
+        # a base of 1 and more moves into the corner colours, so that the product stays what the file says
+        color = np.ones((len(part.vertices), 1)) if part.color is None else part.color
+        part = replace(part, color=color * np.asarray(m.reflectance))
+        m = replace(m, reflectance=(BELOW_ONE,))
+    back = m.back_reflectance and tuple(min(v, BELOW_ONE) for v in m.back_reflectance)
+    return replace(part, material=replace(m, back_reflectance=back))
+
+
+def _check_values(name: str, m, source: str) -> None:
+    for which in ("reflectance", "back_reflectance"):
+        for v in getattr(m, which) or ():
+            if not 0 <= v < np.inf:
+                raise SceneError(f"{source}: {which.replace('_', ' ')} of surface '{name}' is {v:g}; it must lie in [0, 1)")
+    for v in (*m.emission, *(m.back_emission or ())):
+        if not 0 <= v < np.inf:
+            raise SceneError(f"{source}: emission of surface '{name}' is {v:g}; it must be finite and not negative")
+
+
+def _check_arrays(part: Part, source: str) -> None:
+    """Numbers of the vertices that faces use."""
+    faces = np.asarray(part.faces)
+    used = np.zeros(len(part.vertices), bool)
+    used[faces[faces >= 0]] = True
+    for values, what, low in (
+        (part.vertices, "coordinates", -np.inf),
+        (part.color, "colour", 0.0),
+        (part.uv, "texture coordinates", -np.inf),
+        (part.emission_uv, "texture coordinates", -np.inf),
+    ):
+        if values is None:
+            continue
+        good = (np.isfinite(values) & (values >= low)).all(axis=1)
+        if not good[used].all():
+            vertex = int(np.flatnonzero(used & ~good)[0])
+            face = int(np.flatnonzero((faces == vertex).any(axis=1))[0])
+            rule = "must be finite" if low < 0 else "must be finite and not negative"
+            raise SceneError(f"{source}: {what} of vertex {vertex} (face {face} of surface '{part.name}') "
+                             f"are {np.asarray(values)[vertex].tolist()}; they {rule}")  # fmt: skip
+    for image, what in ((part.texture, "texture"), (part.emission_texture, "emission texture")):
+        if image is not None and not (np.isfinite(image) & (image >= 0)).all():
+            raise SceneError(f"{source}: the {what} of surface '{part.name}' holds values that are negative or not finite")

@@ -1,0 +1,83 @@
+"""What the readers of files hand over: parts of surfaces with materials, and how to take them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import SceneError
+from .model import Back
+
+
+@dataclass(frozen=True)
+class Material:
+    """Of one side, or of both. Bands are 1 (grey) or 3 numbers.
+
+    Attributes:
+        reflectance: diffuse reflectance, or None where the file gives no material.
+        emission: exitance, W/m² or lm/m² (pi times the radiance of a diffuse emitter).
+        back: what the back does.
+        back_reflectance, back_emission: of a radiating back; None: as the front.
+        diffuse: False where the file's material is not diffuse and was taken by its diffuse albedo.
+    """
+
+    reflectance: tuple[float, ...] | None = None
+    emission: tuple[float, ...] = (0.0,)
+    back: Back = Back.RADIATES
+    back_reflectance: tuple[float, ...] | None = None
+    back_emission: tuple[float, ...] | None = None
+    diffuse: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Faces of one surface (object x material).
+
+    Attributes:
+        name: of the surface. Parts of equal name become one surface.
+        vertices: (n, 3) metres.
+        faces: (m, 3) or (m, 4) int, as in `Scene.from_arrays`.
+        material: of all its faces.
+        uv: (n, 2) texture coordinates of the vertices, or None.
+        color: (n, n_bands) linear vertex colours that multiply the reflectance, or None.
+        texture, emission_texture: (height, width, 1 or 3) linear images that multiply reflectance, emission; or None.
+        emission_uv: (n, 2) texture coordinates of the emission's texture; None: ``uv``.
+        patch_size: metres, or NaN.
+    """
+
+    name: str
+    vertices: np.ndarray
+    faces: np.ndarray
+    material: Material = field(default_factory=Material)
+    uv: np.ndarray | None = None
+    color: np.ndarray | None = None
+    texture: np.ndarray | None = None
+    emission_texture: np.ndarray | None = None
+    emission_uv: np.ndarray | None = None
+    patch_size: float = np.nan
+
+    @property
+    def n_bands(self) -> int:
+        m = self.material
+        values = [m.reflectance, m.emission, m.back_reflectance, m.back_emission]
+        arrays = [self.color, self.texture, self.emission_texture]
+        return max([1] + [len(v) for v in values if v is not None] + [a.shape[-1] for a in arrays if a is not None])
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """How to take a file.
+
+    Attributes:
+        max_reflectance: larger reflectances are brought down to this, with a warning.
+        strict: faults that can be skipped are errors.
+        edit: changes the parts that were read before they become a scene (the .toml reader's hook).
+    """
+
+    max_reflectance: float = 0.95
+    strict: bool = False
+    edit: Callable[[list[Part]], list[Part]] | None = None
+
+    def __post_init__(self):
+        if not 0 < self.max_reflectance < 1:
+            raise SceneError(f"max_reflectance is {self.max_reflectance}; it must lie between 0 and 1")

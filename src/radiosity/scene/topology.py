@@ -1,0 +1,86 @@
+"""Which faces lie on each other, and which edges belong to one face only."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .model import Scene
+
+WELD = 1e-6  # of the scene's largest extent: vertices that are closer are one
+
+
+@dataclass(frozen=True, eq=False)
+class OpenEdges:
+    """Edges of one face only, after vertices were welded.
+
+    Attributes:
+        face: (n_open,) int64, the face of each.
+        length: (n_open,) float64, metres.
+        total: number of all edges.
+    """
+
+    face: np.ndarray
+    length: np.ndarray
+    total: int
+
+
+def weld(scene: Scene) -> np.ndarray:
+    """(n_faces, 4) int64: corners by number of the welded vertex, -1 where a face has no fourth."""
+    used = np.unique(scene.faces[scene.faces >= 0])
+    low, high = scene.bounds
+    step = WELD * float((high - low).max())
+    cells = np.round((scene.vertices[used] - low) / step)
+    # vertices on either side of a rounding border meet on one of two grids, half a step apart
+    shifted = np.floor((scene.vertices[used] - low) / step)
+    number = _joined(_numbered(cells), _numbered(shifted))
+    table = np.full(len(scene.vertices) + 1, -1)
+    table[used] = number
+    return table[scene.faces]
+
+
+def _numbered(rows: np.ndarray) -> np.ndarray:
+    return np.unique(rows, axis=0, return_inverse=True)[1].ravel()
+
+
+def _joined(one: np.ndarray, two: np.ndarray) -> np.ndarray:
+    """Classes of points that are equal in either numbering, by propagating the least label."""
+    label = np.arange(len(one))
+    while True:
+        before = label
+        for numbering in (one, two):
+            least = np.full(numbering.max() + 1, len(one))
+            np.minimum.at(least, numbering, label)
+            label = least[numbering]
+        if (label == before).all():
+            return label
+
+
+def coincident(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Pairs of faces with the same corners: first face, second face, and whether both look the same way."""
+    corners = np.sort(weld(scene), axis=1)
+    order = np.lexsort(corners.T)
+    same = (corners[order][1:] == corners[order][:-1]).all(axis=1)
+    one, two = order[:-1][same], order[1:][same]
+    return np.minimum(one, two), np.maximum(one, two), np.einsum("ij,ij->i", scene.normal[one], scene.normal[two]) > 0
+
+
+def open_edges(scene: Scene) -> OpenEdges:
+    """Edges that belong to one face only. An edge that meets two shorter ones counts as open."""
+    corners = weld(scene)
+    after = np.roll(corners, -1, axis=1)
+    triangle = ~scene.is_quad
+    after[triangle, 2] = corners[triangle, 0]
+    start, end = corners.ravel(), after.ravel()
+    face = np.repeat(np.arange(scene.n_faces), 4)
+    real = (start >= 0) & (start != end)
+    face, low, high = face[real], np.minimum(start, end)[real], np.maximum(start, end)[real]
+    _, first, number, many = np.unique(
+        np.column_stack([low, high]), axis=0, return_index=True, return_inverse=True, return_counts=True
+    )
+    alone = first[many == 1]
+    corner = np.flatnonzero(real)[alone]
+    points = scene.vertices[scene.faces.ravel()]
+    following = np.roll(scene.faces, -1, axis=1)
+    following[triangle, 2] = scene.faces[triangle, 0]
+    length = np.linalg.norm(scene.vertices[following.ravel()[corner]] - points[corner], axis=1)
+    return OpenEdges(face[alone], length, len(first))

@@ -1,0 +1,37 @@
+"""What the tests share: scenes made by strangers, where a checkout has them, and a small closed box."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+import radiosity as rd
+
+settings.register_profile("repeatable", deadline=None, derandomize=True, database=None)
+settings.load_profile("repeatable")
+
+STRANGERS = Path(__file__).resolve().parents[2] / "shared" / "scenes"
+
+
+@pytest.fixture(scope="session")
+def strangers() -> Path:
+    """Folder of scenes made by others; tests that need it are skipped where it is absent."""
+    if not STRANGERS.is_dir():
+        pytest.skip("the scenes made by strangers are not beside this checkout (../shared/scenes)")
+    return STRANGERS
+
+
+@pytest.fixture
+def random() -> np.random.Generator:
+    return np.random.Generator(np.random.Philox(7))
+
+
+@pytest.fixture
+def cube() -> rd.Scene:
+    """A closed unit cube seen from inside, reflectance 1/2, emission 1 on all six sides."""
+    from radiosity.scene.shapes import box, join
+
+    names = ("south", "north", "west", "east", "floor", "ceiling")
+    faces = box((0, 0, 0), (1, 1, 1), inward=True)
+    return join([(name, 0.5, 1.0, [face]) for name, face in zip(names, faces, strict=True)], source="cube")
