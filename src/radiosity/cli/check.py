@@ -35,7 +35,7 @@ def _print(report) -> None:
     if report.scene is not None:
         for line in _facts(report):
             console.print(Text(line))
-        console.print(_table(report))
+        Console(highlight=False, width=1000).print(_table(report))  # never cut off a name
         if len(report.surfaces) > MOST_ROWS:
             console.print(Text(f"and {len(report.surfaces) - MOST_ROWS} smaller surfaces"))
     for finding in report.findings:
@@ -49,7 +49,7 @@ def _facts(report):
     low, high = scene.bounds
     size = " x ".join(f"{d:.4g}" for d in high - low)
     yield report.source
-    scale = "" if scale_is_one(scene) else f" (a unit of the file is {scene.scale:g} m)"
+    scale = "" if abs(scene.scale - 1) < 1e-12 else f" (a unit of the file is {scene.scale:g} m)"
     yield f"extent    {size} m{scale}, from {_point(low)} to {_point(high)}"
     quads = int(scene.is_quad.sum())
     yield f"faces     {scene.n_faces}: {scene.n_faces - quads} triangles, {quads} parallelograms"
@@ -61,10 +61,6 @@ def _facts(report):
     yield f"emitters  {len(lights)}, {power} {scene.power_unit} in all"
 
 
-def scale_is_one(scene) -> bool:
-    return abs(scene.scale - 1) < 1e-12
-
-
 def _point(values) -> str:
     return "(" + ", ".join(f"{v:.4g}" for v in values) + ")"
 
@@ -74,7 +70,7 @@ def _table(report):
 
     unit, power = report.scene.unit, report.scene.power_unit
     table = Table(box=None, pad_edge=False, header_style="bold")
-    table.add_column("surface", overflow="fold")
+    table.add_column("surface", no_wrap=True)
     for name in ("faces", "area m²", "reflectance", f"emission {unit}", f"power {power}"):
         table.add_column(name, justify="right", no_wrap=True)
     table.add_column("sides", no_wrap=True)

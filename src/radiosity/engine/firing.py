@@ -14,6 +14,7 @@ from ..errors import MethodError
 from ..method.model import Method
 from ..method.numbers import make
 from . import quanta as contract
+from .bands import BandGroups, BandTally
 from .device import upload
 from .geometry import Geometry
 from .lines import land, local_line, patch_of
@@ -36,7 +37,8 @@ class Lanes:
 class Engine:
     """Counters and kernels. What fires when is the business of an order."""
 
-    def __init__(self, geometry: Geometry, source: contract.Source, method: Method, seed: int, replicates: int):
+    def __init__(self, geometry: Geometry, source: contract.Source, method: Method, seed: int, replicates: int,
+                 groups: BandGroups | None = None):  # fmt: skip
         self.geometry, self.source, self.method = geometry, source, method
         self.n, self.replicates = len(geometry.patches), replicates
         self.total = self.n * replicates
@@ -53,8 +55,7 @@ class Engine:
         self.fired = dr.zeros(u32, self.total)
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
         self.quanta = 0
-        self.largest = 0  # line number asked of the sequence so far
-        self.lines = 0
+        self.bands = BandTally(self, groups) if groups is not None and groups.n_groups > 1 else None
 
     # ---- host side -------------------------------------------------------------------------------------------------
 
@@ -103,6 +104,15 @@ class Engine:
         landed = patch_of(self.geometry, hit, none - 1, none)
         missed = dr.select(landed == none, types.UInt32(self.total), types.UInt32(self.total + self.replicates)) + replicate
         return dr.select(landed >= none - 1, missed, landed + replicate * self.n_opaque)
+
+    def fire(self, lanes: Lanes, bits: int) -> None:
+        """Trace lanes and count where they land."""
+        number, index = self.read(lanes)
+        landed = self.trace(number, index, bits)
+        dr.scatter_add(self.arrivals, self.types.UInt32(1), landed)
+        if self.bands is not None:
+            self.bands.deposit(number, landed)
+        dr.eval(self.arrivals)
 
     def lanes(self, deficit):
         """Chunks of lanes, one a line, for a deficit (UInt32 for each patch number), and how many lines in all."""

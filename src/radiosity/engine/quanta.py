@@ -41,7 +41,12 @@ class Source:
         total = math.fsum(power)
         if not (math.isfinite(total) and total > 0):
             raise SceneError(f"{patches.scene.source}: no surface emits (total power {total:g} {patches.scene.power_unit}); give one an emission")
-        return Source(power / total, np.floor(reflectance * ONE).astype(np.uint32), total)
+        return Source(power / total, Source.fixed(reflectance), total)
+
+    @staticmethod
+    def fixed(reflectance: np.ndarray) -> np.ndarray:
+        """Reflectance in [0, 1) times 2^32, uint32."""
+        return np.floor(reflectance * ONE).astype(np.uint32)
 
     def emitted(self, quanta: int) -> tuple[np.ndarray, np.ndarray]:
         """E_i A_i / delta at N quanta: whole lines and 2^-32ths, uint32 each. Never falls when N grows."""

@@ -11,6 +11,7 @@ from .model import Back, Scene
 
 SERIOUS, WARNING, NOTE = "error", "warning", "note"
 SIDES = {Back.ABSORBS: "one", Back.RADIATES: "two", Back.PASSES: "one, clear from behind"}
+LITTLE = 0.01  # of the lines: that much is lost on the backs of lamps in many sound scenes
 BOX_SIDES = ("x low", "x high", "y low", "y high", "z low", "z high")
 
 
@@ -70,7 +71,7 @@ def check_file(name, *, max_reflectance: float = 0.95, strict: bool = False, dev
     return Report(str(name), scene, report.surfaces, (*findings, *report.findings))
 
 
-def check(scene: Scene, *, lines: int = leaks.LINES, seed: int = 0, device: str = "auto") -> Report:
+def check(scene: Scene, *, walks: int = leaks.WALKS, seed: int = 0, device: str = "auto") -> Report:
     """Check a scene: geometry, materials, light, and by tracing lines where light gets lost.
 
     Raises:
@@ -80,10 +81,10 @@ def check(scene: Scene, *, lines: int = leaks.LINES, seed: int = 0, device: str 
 
     patches = subdivide(scene, cells=1)
     surfaces = _surfaces(patches)
-    findings = [*_values(patches), *_light(patches, surfaces), *_topology(scene), *_lines(scene, lines, seed, device)]
-    emits = np.zeros(scene.n_faces, bool)
-    emits[patches.face[(patches.emission > 0).any(axis=1) & ~patches.is_back]] = True
-    for surface, front, back in leaks.flipped_emitters(scene, emits, seed=seed, device=device):
+    power = np.zeros((2, scene.n_faces))  # of fronts and backs, all bands together
+    np.add.at(power, (patches.is_back.astype(int), patches.face), (patches.emission * patches.area[:, None]).sum(axis=1))
+    findings = [*_values(patches), *_light(power), *_topology(scene), *_lines(scene, power, walks, seed, device)]
+    for surface, front, back in leaks.flipped_emitters(scene, power[0] > 0, seed=seed, device=device):
         findings.append(Finding(SERIOUS, "flipped light", (
             f"light '{scene.names[surface]}' seems to face the wrong way: {_percent(front)} of the lines from its emitting side see the "
             f"scene, {_percent(back)} from behind; turn its faces round"
@@ -124,8 +125,8 @@ def _values(patches):
         yield Finding(WARNING, "empty surface", f"no face with an area in {shown(empty)}; a light among them emits nothing")
 
 
-def _light(patches, surfaces):
-    if not (patches.emission > 0).any():
+def _light(power: np.ndarray):
+    if not power.any():
         yield Finding(SERIOUS, "no light", "no surface emits; give one an emission (Ke, an area emitter, ed, or emission in a .toml)")
 
 
@@ -150,26 +151,28 @@ def _topology(scene: Scene):
         ))  # fmt: skip
 
 
-def _lines(scene: Scene, lines: int, seed: int, device: str):
-    fates = leaks.follow(scene, lines, seed=seed, device=device)
+def _lines(scene: Scene, power: np.ndarray, walks: int, seed: int, device: str):
+    fates = leaks.follow(scene, power, walks, seed=seed, device=device)
+    lines = len(fates.fate)
     if fates.escaped + fates.lost > 0.99:
         yield Finding(SERIOUS, "leaks", (
             f"{_percent(fates.escaped + fates.lost)} of {lines} lines meet no radiating side; are the normals turned round?"
         ))  # fmt: skip
         return
-    for share, fate, what, advice in (
-        (fates.escaped, leaks.ESCAPED, "leave the scene", "a crack where the share is small, an open scene where it is large"),
-        (fates.lost, leaks.LOST, "land on absorbing backs", "turn those faces round, or make them two-sided"),
-    ):
+    for share, fate, severity, what, advice in (
+        (fates.escaped, leaks.ESCAPED, WARNING, "leave the scene", "an open scene where the share is large, a crack where it is small"),
+        (fates.lost, leaks.LOST, WARNING if fates.lost > LITTLE else NOTE, "land on absorbing backs", "if they should reflect, turn "
+         "those faces round or make them two-sided"),
+    ):  # fmt: skip
         if share > 0:
-            gone = fates.fate == fate
-            yield Finding(WARNING, "leaks", f"{_percent(share)} of {lines} lines {what} ({_where(scene, fates, gone, fate)}): {advice}")
+            where = _where(scene, fates, fates.fate == fate, fate)
+            yield Finding(severity, "leaks", f"{_percent(share)} of {lines} lines {what} ({where}): {advice}")
 
 
 def _where(scene: Scene, fates: leaks.Fates, gone: np.ndarray, fate: int) -> str:
     if fate == leaks.LOST:
         counts = np.bincount(scene.surface[fates.hit[gone]], minlength=len(scene.names))
-        return "the backs of " + _ranked(scene.names, counts)
+        return "of " + _ranked(scene.names, counts)
     starts = np.bincount(scene.surface[fates.face[gone]], minlength=len(scene.names))
     ends = np.bincount(fates.exit[gone], minlength=6)
     return f"from {_ranked(scene.names, starts)}; through {_ranked(BOX_SIDES, ends)}"

@@ -1,13 +1,14 @@
 """Where lines go: light that leaves the scene or lands on absorbing backs, and light sources that face the wrong way."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
 
 from .model import Back, Scene
 
-LINES = 100_000
+WALKS = 20_000
+BOUNCES = 8
 PER_EMITTER = 512  # lines from each side of each emitting surface
 ULPS = 64  # origins stand off their face by so many units in the last place of the largest coordinate, single precision
 NEAR = 0.1  # of the square root of the emitting face's area: closer than this is the surface that carries the lamp
@@ -43,14 +44,31 @@ class Fates:
         return float((self.fate == LOST).mean())
 
 
-def follow(scene: Scene, lines: int = LINES, *, seed: int = 0, device: str = "auto") -> Fates:
-    """Trace cosine lines from points that are uniform over the radiating sides of the scene."""
+def follow(scene: Scene, power: np.ndarray, walks: int = WALKS, *, seed: int = 0, device: str = "auto") -> Fates:
+    """Trace cosine lines from where light is emitted, and on from where they land, so that only lit places are judged.
+
+    Args:
+        power: (2, n_faces), emitted by front and back; where all is zero, lines begin anywhere on the radiating sides.
+        walks: lines of the first generation. Those that meet a side that is not black go on, up to `BOUNCES` times.
+    """
     generator = np.random.Generator(np.random.Philox(seed))
-    weight = np.concatenate([scene.area, np.where(scene.back == Back.RADIATES, scene.area, 0.0)])
-    # stratified in area, so that large faces get their share exactly
-    at = (np.arange(lines) + generator.random(lines)) / lines * weight.sum()
-    side = np.minimum(np.searchsorted(np.cumsum(weight), at, side="right"), len(weight) - 1)
-    return _trace(scene, side % scene.n_faces, side >= scene.n_faces, generator, device)
+    if not power.any():
+        power = np.stack([scene.area, np.where(scene.back == Back.RADIATES, scene.area, 0.0)])
+    share = np.cumsum(power.ravel() / power.sum())
+    # stratified, so that large shares are met closely
+    at = (np.arange(walks) + generator.random(walks)) / walks
+    side = np.minimum(np.searchsorted(share, at * share[-1], side="right"), len(share) - 1)
+    face, back, place = side % scene.n_faces, side >= scene.n_faces, None
+    generations = []
+    for _ in range(BOUNCES):
+        fates, front, place = _trace(scene, face, back, place or _places(scene, face, generator), generator, device)
+        generations.append(fates)
+        goes_on = fates.fate == SEEN
+        goes_on &= (np.where(front[:, None], scene.reflectance[fates.hit], scene.back_reflectance[fates.hit]) > 0).any(axis=1)
+        face, back, place = fates.hit[goes_on], ~front[goes_on], (place[0][goes_on], place[1][goes_on])
+        if len(face) == 0:
+            break
+    return Fates(*(np.concatenate([getattr(g, field.name) for g in generations]) for field in fields(Fates)))
 
 
 def flipped_emitters(scene: Scene, emits: np.ndarray, *, seed: int = 0, device: str = "auto") -> list[tuple[int, float, float]]:
@@ -75,34 +93,37 @@ def flipped_emitters(scene: Scene, emits: np.ndarray, *, seed: int = 0, device: 
     face = np.concatenate(faces)
     shares = []
     for back in (False, True):
-        fates = _trace(scene, face, np.full(len(face), back), generator, device)
+        fates, *_ = _trace(scene, face, np.full(len(face), back), _places(scene, face, generator), generator, device)
         useful = (fates.fate == SEEN) & (fates.distance > NEAR * np.sqrt(scene.area[face]))
         useful &= scene.surface[fates.hit] != scene.surface[face]
         shares.append(useful.reshape(len(surfaces), -1).mean(axis=1))
     return [(int(s), float(f), float(b)) for s, f, b in zip(surfaces, *shares, strict=True) if f < 0.05 and b > 0.5]
 
 
-def _trace(scene: Scene, face: np.ndarray, back: np.ndarray, generator, device: str) -> Fates:
-    from ..engine.caster import first_hits  # the tracer stands later in the walk, and takes seconds to start
+def _places(scene: Scene, face: np.ndarray, generator) -> tuple[np.ndarray, np.ndarray]:
+    """Face coordinates (u, v) of a uniform point on each face."""
+    a, b = generator.random((2, len(face)))
+    root = np.sqrt(a)
+    return np.where(scene.is_quad[face], a, root * (1 - b)), np.where(scene.is_quad[face], b, root * b)
 
-    n = len(face)
-    u, v, radius, turn = np.sqrt(generator.random(n)), generator.random(n), np.sqrt(generator.random(n)), generator.random(n)
-    quad = scene.is_quad[face]
-    s, t = np.where(quad, u * u, u * (1 - v)), np.where(quad, v, u * v)
+
+def _trace(scene: Scene, face, back, place, generator, device: str):
+    """Fates of cosine lines, and for each hit whether it is of the front, and its (u, v)."""
+    from ..engine.caster import first_hits  # the tracer stands later in the walk, and takes a while to start
+
+    radius, turn = np.sqrt(generator.random(len(face))), 2 * np.pi * generator.random(len(face))
     origin, first, second = (part[face] for part in scene.frames)
     normal = scene.normal[face] * np.where(back, -1.0, 1.0)[:, None]
     tangent = first / np.linalg.norm(first, axis=1, keepdims=True)
-    bitangent = np.cross(normal, tangent)
-    x, y = radius * np.cos(2 * np.pi * turn), radius * np.sin(2 * np.pi * turn)
-    direction = x[:, None] * tangent + y[:, None] * bitangent + np.sqrt(1 - radius**2)[:, None] * normal
-    centre = scene.bounds.mean(axis=0)
-    offset = ULPS * np.finfo(np.float32).eps * float(np.abs(scene.bounds - centre).max())
-    start = origin + s[:, None] * first + t[:, None] * second + offset * normal
+    across = np.cross(normal, tangent)
+    x, y, z = radius * np.cos(turn), radius * np.sin(turn), np.sqrt(1 - radius**2)
+    direction = x[:, None] * tangent + y[:, None] * across + z[:, None] * normal
+    offset = ULPS * np.finfo(np.float32).eps * float(np.ptp(scene.bounds, axis=0).max()) / 2
+    start = origin + place[0][:, None] * first + place[1][:, None] * second + offset * normal
     hits = first_hits(scene, start, direction, device=device)
-    hit = np.asarray(hits.face)
-    landed_on_back = ~np.asarray(hits.front) & (scene.back[hit] != Back.RADIATES)
-    fate = np.where(hit < 0, ESCAPED, np.where(landed_on_back, LOST, SEEN))
-    return Fates(face, fate, hit, _exit(scene, start, direction), np.where(hit < 0, np.inf, hits.distance))
+    dead_back = ~hits.front & (scene.back[hits.face] != Back.RADIATES)
+    fate = np.where(hits.face < 0, ESCAPED, np.where(dead_back, LOST, SEEN))
+    return Fates(face, fate, hits.face, _exit(scene, start, direction), hits.distance), hits.front, (hits.u, hits.v)
 
 
 def _exit(scene: Scene, start: np.ndarray, direction: np.ndarray) -> np.ndarray:

@@ -11,11 +11,13 @@ def run(engine, progress) -> None:
     """Follow all walks to their ends."""
     types = engine.types
     deficit = engine.owed() - engine.fired
-    dr.eval(deficit)
+    before = dr.sum(types.UInt64(engine.fired))
+    dr.eval(deficit, before)
     for lanes in engine.lanes(deficit):
         walk(engine, lanes)
-        engine.lines = None  # counted at the stage's end
-        progress()
+        after = dr.sum(types.UInt64(engine.fired))
+        progress(int(after[0]) - int(before[0]))
+        before = after
 
 
 def walk(engine, lanes) -> None:

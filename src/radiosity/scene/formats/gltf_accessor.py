@@ -47,7 +47,7 @@ def _values(file: GltfFile, info: dict, count: int, width: int, dtype: np.dtype,
     data, stride = file.view(info.get("bufferView"))
     start, row = file.whole(info, "byteOffset", what, 0), width * dtype.itemsize
     stride = stride or row
-    if stride < row or count and start + (count - 1) * stride + row > len(data):
+    if stride < row or (count and start + (count - 1) * stride + row > len(data)):
         raise file.fail(
             f"{what} needs {count} elements of {row} bytes, {stride} apart, from byte {start}; its view has {len(data)} bytes"
         )

@@ -92,7 +92,7 @@ class Materials:
             for key, default in (("metallicFactor", 1.0 if textured else 0.0), ("roughnessFactor", 1.0))
         )
         through = extensions.get("KHR_materials_transmission", {})
-        return metallic > 0 or rough < GLOSSY_ROUGHNESS and not textured or bool(through and through.get("transmissionFactor", 0))
+        return metallic > 0 or (rough < GLOSSY_ROUGHNESS and not textured) or bool(through and through.get("transmissionFactor", 0))
 
     def _texture(self, use, what: str) -> Texture | None:
         if use is None:

@@ -88,7 +88,7 @@ def _finish(path: Path, entry: dict, images: dict, lost: list[str], options: Rea
     specular = max(_color(path, entry, "ks") or (0.0,))
     illumination = _number(path, entry, "illum", 2.0)
     # many programs write Ks 0.5 with illum 2 for everything: only what outweighs Kd, or is traced as a mirror, counts
-    glossy = illumination >= 3 and specular > 0 or illumination >= 2 and specular > max(diffuse or (1.0,))
+    glossy = (illumination >= 3 and specular > 0) or (illumination >= 2 and specular > max(diffuse or (1.0,)))
     material = Material(
         reflectance=diffuse,
         emission=tuple(np.pi * v for v in radiance),
@@ -133,7 +133,7 @@ def _map(path: Path, entry: dict, key: str, images: dict, lost: list[str], optio
     while words and words[0].lower() in OPTIONS:
         option = words.pop(0).lower()
         for place in range(OPTIONS[option]):
-            if len(words) < 2 or option in ("-o", "-s", "-t") and not _is_number(words[0]):
+            if len(words) < 2 or (option in ("-o", "-s", "-t") and not _is_number(words[0])):
                 break
             value = words.pop(0)
             if option in moves and place < 2:

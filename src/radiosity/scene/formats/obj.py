@@ -12,8 +12,8 @@ import numpy as np
 from ...errors import SceneError, shown
 from ..assemble import Material, Part, ReadOptions, assemble, warn
 from ..model import Scene
-from .mtl import Finish, read_library, read_text
 from .faces import cut
+from .mtl import Finish, read_library, read_text
 from .textures import decode_srgb, without_coordinates
 
 NO_NAME = ("", "default", "off", "(null)")
@@ -73,7 +73,7 @@ def _parse(path: Path) -> _Tables:
             if key == "v":
                 tables.vertices.append(_floats(words[1:], 3))
             elif key == "vt":
-                tables.uv.append((_floats(words[1:], 1) + [0.0])[:2])
+                tables.uv.append([*_floats(words[1:], 1), 0.0][:2])
             elif key in ("f", "fo"):
                 if faces is None:
                     full = "/".join(n for n in dict.fromkeys(name.values()) if n.lower() not in NO_NAME)

@@ -1,0 +1,110 @@
+"""Bands: which of them are one problem, and the powers that lines carry where they are not (contract 3)."""
+
+from dataclasses import dataclass
+
+import drjit as dr
+import numpy as np
+
+from ..patches.model import Patches
+from .device import upload
+from .quanta import Source
+
+QUANTUM = 2**31  # fixed point units of a quantum: an arrival adds at most one, and 2^32 of them fit in 64 bits
+
+
+@dataclass(frozen=True, eq=False)
+class BandGroups:
+    """Bands whose reflectances are equal everywhere and whose emissions are proportional are solved once.
+
+    Attributes:
+        index: (n_bands,) int, the group of each band.
+        scale: (n_bands,) float64: the band's emission over the group's.
+        emission, reflectance: (n_patches, n_groups) float64, of each group.
+    """
+
+    index: np.ndarray
+    scale: np.ndarray
+    emission: np.ndarray
+    reflectance: np.ndarray
+
+    @staticmethod
+    def of(patches: Patches) -> "BandGroups":
+        """Compare the bands of a scene."""
+        emission, reflectance = patches.emission, patches.reflectance
+        n_bands = emission.shape[1]
+        index, scale, leaders = np.zeros(n_bands, np.int64), np.zeros(n_bands), []
+        for band in sorted(range(n_bands), key=lambda b: (not emission[:, b].any(), b)):
+            if leaders and not emission[:, band].any():
+                continue  # nothing in, nothing out: any group times zero
+            for group, leader in enumerate(leaders):
+                at = int(np.argmax(emission[:, leader]))
+                ratio = emission[at, band] / emission[at, leader] if emission[at, leader] else 0.0
+                if ratio and np.array_equal(reflectance[:, band], reflectance[:, leader]) and np.allclose(
+                    emission[:, band], ratio * emission[:, leader], rtol=1e-14, atol=0
+                ):  # fmt: skip
+                    index[band], scale[band] = group, ratio
+                    break
+            else:
+                index[band], scale[band] = len(leaders), 1.0
+                leaders.append(band)
+        return BandGroups(index, scale, emission[:, leaders], reflectance[:, leaders])
+
+    @property
+    def n_groups(self) -> int:
+        return self.emission.shape[1]
+
+
+class BandTally:
+    """Power of each group, in 64-bit fixed point, received by every patch and carried by its lines.
+
+    A line carries, of each band, what its patch received since the last sweep divided by the real number of lines owed
+    for it, not by the number fired: that would leave the power of patches that fire nothing behind.
+    """
+
+    def __init__(self, engine, groups: BandGroups):
+        self.engine = engine
+        types, device = engine.types, engine.geometry.device
+        areas = engine.geometry.patches.area
+        width = engine.total + 2 * engine.replicates
+        self.share = upload(types.Float64, engine.source.share)
+        self.shares = [upload(types.Float64, groups.emission[:, g] * areas / engine.source.power) for g in range(groups.n_groups)]
+        self.rhos = [upload(types.UInt32, Source.fixed(groups.reflectance[:, g])) for g in range(groups.n_groups)]
+        self.received = [dr.zeros(types.UInt64, width) for _ in self.shares]
+        self.weights = [dr.zeros(types.UInt32, engine.total) for _ in self.shares]
+        self.before = [dr.zeros(types.UInt64, engine.total) for _ in self.shares]
+        self.arrivals_before = dr.zeros(types.UInt32, engine.total)
+        self.quanta_before = 0
+        self.fired = np.zeros((groups.n_groups, engine.replicates), object)
+        assert device is engine.geometry.device
+
+    def weigh(self, deficit) -> None:
+        """Before a sweep: what each patch's lines carry now."""
+        engine, types = self.engine, self.engine.types
+        number = dr.arange(types.UInt32, engine.total)
+        patch = number - engine.replicate(number) * engine.n_opaque
+        wide = types.Float64
+        new = dr.opaque(wide, float(engine.quanta - self.quanta_before))
+        arrivals = dr.gather(types.UInt32, engine.arrivals, number)
+        owed = dr.fma(dr.gather(wide, self.share, patch), new, self._fraction(engine.rho, patch) * wide(arrivals - self.arrivals_before))
+        for g, (share, rho) in enumerate(zip(self.shares, self.rhos, strict=True)):
+            received = dr.gather(types.UInt64, self.received[g], number)
+            power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, self._fraction(rho, patch) * wide(received - self.before[g]))
+            carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
+            self.weights[g] = types.UInt32(dr.floor(carried + 0.5))
+            self.before[g] = received
+        self.arrivals_before = arrivals
+        self.quanta_before = engine.quanta
+        sums = [dr.block_sum(types.UInt64(w) * types.UInt64(deficit), engine.n) for w in self.weights]
+        dr.eval(self.weights, self.before, self.arrivals_before, sums)
+        self.fired += np.array([[int(x) for x in np.array(s)] for s in sums], object)
+
+    def _fraction(self, rho, patch):
+        types = self.engine.types
+        return types.Float64(dr.gather(types.UInt32, rho, patch)) * 2.0**-32
+
+    def deposit(self, number, landed) -> None:
+        """In a kernel: lines of patch numbers land in slots."""
+        types = self.engine.types
+        for received, weight in zip(self.received, self.weights, strict=True):
+            dr.scatter_add(received, types.UInt64(dr.gather(types.UInt32, weight, number)), landed)
+        dr.schedule(self.received)
