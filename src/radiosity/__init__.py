@@ -9,16 +9,21 @@
 """
 
 from . import llvm
+from .engine.solve import solve
 from .errors import DeviceError, MethodError, OutputError, RadiosityError, RadiosityWarning, SceneError
+from .method import PRESETS, Method
 from .patches import Patches, subdivide
 from .scene import Back, Camera, Scene, load_scene
+from .solution import Solution, load_solution
 
 llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
 
 __all__ = [
     "Back",
     "Camera",
+    "PRESETS",
     "DeviceError",
+    "Method",
     "MethodError",
     "OutputError",
     "Patches",
@@ -26,6 +31,9 @@ __all__ = [
     "RadiosityWarning",
     "Scene",
     "SceneError",
+    "Solution",
     "load_scene",
+    "load_solution",
+    "solve",
     "subdivide",
 ]

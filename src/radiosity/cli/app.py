@@ -55,11 +55,16 @@ def run(arguments: list[str]) -> int:
         say("error", error)
         return FAILED if isinstance(error, DeviceError) else WRONG_INPUT
     except KeyboardInterrupt:
-        say("interrupted", "nothing was written")
+        say("interrupted", "stopped before the end; what was not written yet is lost")
         return INTERRUPTED
     except BrokenPipeError:
         # whoever read our output has gone; nothing more can be said there, not even by Python as it ends
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except ModuleNotFoundError as error:
+        if debug or error.name is None or error.name.startswith("radiosity"):
+            raise
+        say("error", f"this needs the package '{error.name}'; pip install 'radiosity[all]' brings it")
         return FAILED
     except MemoryError:
         if debug:

@@ -7,7 +7,7 @@ from importlib.metadata import PackageNotFoundError, version
 from ..errors import DeviceError
 
 EXTRAS = {
-    "formats": ("trimesh", "pillow", "pyradiance", "pydantic"),
+    "formats": ("trimesh", "pyradiance", "pydantic"),
     "plots": ("matplotlib",),
 }
 

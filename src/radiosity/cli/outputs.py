@@ -31,11 +31,12 @@ def write(solution, paths, *, exposure: float | None = None) -> None:
     """
     failures, saved = [], False
     for path in paths:
-        options = {"exposure": exposure} if exposure is not None and Path(path).suffix.lower() in (".png", ".exr") else {}
         try:
-            solution.export(path, **options)
-        except (RadiosityError, OSError, MemoryError, ValueError) as error:
-            failures.append(str(error) or f"{path}: {type(error).__name__}")
+            solution.export(path, exposure=exposure)
+        except RadiosityError as error:
+            failures.append(str(error))
+        except Exception as error:  # one output must not take the others with it
+            failures.append(f"{path}: {type(error).__name__}: {error}")
         else:
             saved |= Path(path).suffix.lower() == ".npz"
             print(f"wrote {path}")

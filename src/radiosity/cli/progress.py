@@ -2,6 +2,7 @@
 
 import sys
 from contextlib import contextmanager
+from math import isnan
 
 from .amounts import short
 
@@ -29,11 +30,10 @@ def bar():
 
 
 def facts(state) -> str:
-    """``stage 3 of 8, 12.3M rays, 21.4M/s, error 1.2 %, 8 s left``"""
-    parts = [f"stage {state.stage}" + (f" of {state.stages}" if state.stages else "")]
-    parts.append(f"{short(state.rays)} rays, {short(state.rays_per_second)}/s")
-    if state.error is not None:
-        parts.append(f"error {100 * state.error:.3g} %")
+    """``stage 3, 12.3M rays, 21.4M/s, error 1.2 %, 8 s left``"""
+    parts = [f"stage {state.stage + 1}", f"{short(state.rays)} rays", f"{short(state.rays_per_second)}/s"]
+    if state.error is not None and not isnan(state.error):
+        parts.append(f"error {100 * state.error:.2g} %")
     if state.seconds_left is not None:
         parts.append(f"{duration(state.seconds_left)} left")
     return ", ".join(parts)

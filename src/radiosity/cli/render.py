@@ -23,11 +23,13 @@ def render(
     width: int | None = None,
     height: int | None = None,
     exposure: float | None = None,
-    smooth: Flag = False,
+    smooth: bool = True,
     quantity: str = "radiosity",
+    band: str | None = None,
     false_color: Flag = False,
     limits: Annotated[Pair, Parameter(name="--range")] = None,
     log: Flag = False,
+    color_map: str = "viridis",
 ) -> None:
     """Render a saved solution to pictures.
 
@@ -36,7 +38,7 @@ def render(
     solution
         An .npz file that `radiosity solve` wrote.
     output
-        Pictures to write, .png or .exr.
+        Pictures to write: .png to look at, .exr to measure in.
     camera
         Number of the scene's camera, from 0. Default: the first, or one fitted to the scene.
     origin
@@ -44,7 +46,7 @@ def render(
     target
         What it looks at, in metres.
     up
-        Its upward direction. Default 0,0,1.
+        Its upward direction. Default: the one usual in the scene's format.
     fov
         Its vertical field of view, in degrees.
     width
@@ -52,24 +54,29 @@ def render(
     height
         Of the picture, in pixels.
     exposure
-        In stops. Default: fitted.
+        Stops brighter than the automatic scale; +1 is twice.
     smooth
-        Interpolate within surfaces instead of showing patches.
+        Interpolate within surfaces, or show each patch as it is.
     quantity
-        What to show: radiosity, irradiance or standard_error.
+        radiosity, irradiance, standard_error, irradiance_standard_error or relative_error.
+    band
+        One band, by name or number. Default: all.
     false_color
         Colours for values, with a legend in physical units.
     limits
         Lowest and highest value of the legend, such as 0,500.
     log
         A logarithmic legend.
+    color_map
+        One of matplotlib's, for false colours.
     """
     outputs.check(output)
     for path in output:
         if path.suffix.lower() not in (".png", ".exr"):
-            raise OutputError(f"{path}: pictures are .png or .exr")
+            raise OutputError(f"{path}: pictures are .png or .exr; meshes and tables come from `radiosity solve`")
     if not output:
         raise OutputError("no output; name a picture with -o, such as -o view.png")
+    interval = None if limits is None else amounts.numbers(limits, 2)
 
     import radiosity as rd
 
@@ -77,35 +84,32 @@ def render(
 
     loaded = rd.load_solution(solution)
     view = _view(loaded.patches.scene, camera, origin, target, up, fov)
-    interval = None if limits is None else amounts.numbers(limits, 2)
     for path in output:
         draw(
             loaded, path, camera=view, width=width, height=height, exposure=exposure, smooth=smooth, quantity=quantity,
-            false_color=false_color, range=interval, log=log,
+            band=band, false_color=false_color, range=interval, log=log, color_map=color_map,
         )  # fmt: skip
         print(f"wrote {path}")
 
 
 def _view(scene, number: int | None, origin: str | None, target: str | None, up: str | None, fov: float | None):
-    """The camera asked for, or None for the one that the renderer chooses."""
+    """The camera asked for: a `Camera`, the number of one of the scene's, or None for what the renderer chooses."""
     from dataclasses import replace
 
-    from ..scene.model import Camera
+    from ..image.view import up_axis
+    from ..scene import Camera
 
     if (origin is None) != (target is None):
         raise SceneError("--origin and --target go together: where the camera stands and what it looks at")
-    if number is not None and not 0 <= number < len(scene.cameras):
-        raise SceneError(f"--camera is {number}; the scene has {len(scene.cameras)} cameras, numbered from 0")
     if number is not None and origin is not None:
         raise SceneError("give --camera, or --origin and --target, not both")
-    points = {name: amounts.numbers(text, 3) for name, text in (("origin", origin), ("target", target), ("up", up)) if text}
-    if fov is not None:
-        if not 0 < fov < 180:
-            raise SceneError(f"--fov is {fov:g}; it must lie between 0 and 180 degrees")
-        points["fov"] = fov
+    changes = {name: amounts.numbers(text, 3) for name, text in (("origin", origin), ("target", target), ("up", up)) if text}
+    changes |= {} if fov is None else {"fov": fov}
     if origin is not None:
-        return Camera(**points)
-    known = scene.cameras[number or 0] if scene.cameras else None
-    if known is None and points:
+        usual = (0.0, 1.0, 0.0) if up_axis(scene) == "y" else (0.0, 0.0, 1.0)
+        return Camera(**{"up": usual} | changes)
+    if not changes or number is not None and not 0 <= number < len(scene.cameras):
+        return number
+    if not scene.cameras:
         raise SceneError("the scene has no camera for --up or --fov to change; give --origin and --target too")
-    return replace(known, **points) if known and (points or number is not None) else None
+    return replace(scene.cameras[number or 0], **changes)

@@ -75,7 +75,7 @@ def solve(
     strict
         Faults in the scene that could be skipped with a warning are errors.
     exposure
-        Of pictures, in stops. Default: fitted.
+        Of pictures and meshes: stops brighter than the automatic scale; +1 is twice.
     """
     budget = {name: value for name, value in (("rays", rays), ("seconds", seconds), ("error", error), ("quanta", quanta)) if value}
     if len(budget) > 1:
@@ -91,7 +91,7 @@ def solve(
     with bar() as progress:
         solution = rd.solve(
             patches, method, **(budget or {"rays": DEFAULT_RAYS}), equation=equation, lines=lines, order=order, numbers=numbers,
-            replicates=replicates, seed=seed, device=device, coherent=coherent, progress=progress,
+            replicates=replicates, seed=seed, device=device, coherent=coherent or None, progress=progress,
         )  # fmt: skip
     print(solution.report())
     outputs.write(solution, output, exposure=exposure)

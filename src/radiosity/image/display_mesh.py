@@ -65,17 +65,17 @@ def build(patches: Patches) -> DisplayMesh:
     sheets = Sheets(patches)
     polygons, angle = np.empty((n, 4), np.int32), np.empty((n, 4), np.float32)
     column, row, inverted = patches.place
+    angles = _angles(scene)  # of inverted cells too: they are upright ones turned by half a circle, corner by corner
     for begin in range(0, n, CHUNK):
         part = slice(begin, begin + CHUNK)
         face, back = patches.face[part], patches.is_back[part]
         quad, one = scene.is_quad[face], np.ones(len(face))
         corner = np.rint(cells.corners(column[part], row[part], inverted[part], one, one, quad)).astype(np.int64)
         number = sheets.number(face, back, corner)
-        angles = _angles(scene)[face]  # inverted cells are upright ones turned by half a circle, corner by corner
         flip = np.where(quad[:, None], [0, 3, 2, 1], [0, 2, 1, 1])
         turn = np.where(back[:, None], flip, np.where(quad[:, None], [0, 1, 2, 3], [0, 1, 2, 2]))
         polygons[part] = np.take_along_axis(number, turn, axis=1)
-        angle[part] = np.take_along_axis(angles, turn, axis=1) * np.where(quad[:, None], 1, [1, 1, 1, 0])
+        angle[part] = np.take_along_axis(angles[face], turn, axis=1) * np.where(quad[:, None], 1, [1, 1, 1, 0])
     vertices, renumber = sheets.welded()
     return DisplayMesh(vertices, renumber[polygons], angle, patches.surface.astype(np.int32))
 

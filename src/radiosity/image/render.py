@@ -43,8 +43,8 @@ def render(
         path: .png or .exr file to write, or None.
         camera: a `Camera`, or the number of one of the scene's; default: its first, or a fitted one where it has none.
         width, height: pixels; default: the camera's. One alone keeps its proportions.
-        exposure, scale, smooth, quantity, band: see `radiosity.image.look.Look`. The automatic scale takes the 95th
-            percentile of the pixels' luminance, lamps apart, to a light tone.
+        exposure, scale, smooth, quantity, band: see `radiosity.image.look.Look`. The automatic scale takes the 97th
+            percentile of the pixels' strongest channel, lamps apart, to a light tone.
         false_color: colours of a map, one for each value, with a legend; several bands are shown by their luminance.
         range, log, color_map: of the false colours; see `radiosity.image.false_color.colour`.
         samples: lines of sight a pixel.

@@ -8,7 +8,7 @@ from ..errors import OutputError
 from .look import Look
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear sRGB, ITU-R BT.709
-PERCENTILE, LEVEL = 95.0, 0.8  # the automatic scale takes this percentile of the luminance to this linear value
+PERCENTILE, LEVEL = 97.0, 0.85  # the automatic scale takes this percentile of the strongest channel to this linear value
 
 
 def srgb(linear: np.ndarray) -> np.ndarray:
@@ -41,7 +41,7 @@ def automatic_scale(values: np.ndarray, weight: np.ndarray | None = None) -> flo
         values: (m, n_bands), in any unit.
         weight: (m,), how much each counts (its area); default: all the same.
     """
-    level = luminance(values)
+    level = colours(values).max(axis=-1)  # not the luminance: a channel that clips alone changes the hue
     lit = np.isfinite(level) & (level > 0)
     if not lit.any():
         return 1.0

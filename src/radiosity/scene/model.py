@@ -214,10 +214,13 @@ class Scene:
         where = shown([self.names[s] for s in np.flatnonzero(counts)])
         total = int(bad.sum())
         if bad.all():
-            raise SceneError(f"{self.source}: no face is left: all {total} have no area (surfaces {where}); check the unit and the file")
+            raise SceneError(
+                f"{self.source}: no face is left: all {total} have no area (surfaces {where}); check the unit and the file"
+            )
+        lights = int((self.emission[bad] > 0).any(axis=1).sum())
         warnings.warn(
-            f"{self.source}: {total} face{'s' if total > 1 else ''} without area left out "
-            f"(first: face {int(np.flatnonzero(bad)[0])}; surfaces {where})",
+            f"{self.source}: {total} face{'s' if total > 1 else ''} without area left out (first: face "
+            f"{int(np.flatnonzero(bad)[0])}; surfaces {where}{f'; {lights} of them should emit light' if lights else ''})",
             RadiosityWarning,
             stacklevel=2,
         )

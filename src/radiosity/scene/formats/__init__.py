@@ -3,6 +3,8 @@
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
+
 from ...errors import RadiosityError, SceneError
 from ..assemble import ReadOptions
 from ..model import Scene
@@ -25,25 +27,30 @@ def read(path: Path, options: ReadOptions) -> Scene:
     Raises:
         SceneError: the file is missing, empty, of an unknown format, or not what its name says.
     """
-    if not path.exists():
-        raise SceneError(f"{path}: no such file; built-in scenes are {_builtin_names()}")
-    if path.is_dir():
-        raise SceneError(f"{path}: is a folder; name a file")
     suffix = path.suffix.lower()
-    if suffix == ".rad":
-        raise SceneError(f"{path}: Radiance scenes are not read yet (they come with daylight); convert it to MGF with rad2mgf")
-    if suffix not in FORMATS:
-        raise SceneError(f"{path}: unknown format '{suffix}'; known are {', '.join(FORMATS)}")
     try:
+        if not path.exists():
+            raise SceneError(f"{path}: no such file; built-in scenes are {_builtin_names()}")
+        if path.is_dir():
+            raise SceneError(f"{path}: is a folder; name a file")
+        if suffix == ".rad":
+            raise SceneError(f"{path}: Radiance scenes are not read yet (they come with daylight); convert it to MGF with rad2mgf")
+        if suffix not in FORMATS:
+            raise SceneError(f"{path}: unknown format '{suffix}'; known are {', '.join(FORMATS)}")
         if path.stat().st_size == 0:
             raise SceneError(f"{path}: the file is empty")
-        return import_module(f".{FORMATS[suffix]}", __package__).read(path, options)
-    except RadiosityError:
+        with np.errstate(all="ignore"):  # numbers out of range are found by the checks, with their place
+            return import_module(f".{FORMATS[suffix]}", __package__).read(path, options)
+    except (RadiosityError, Warning):
         raise
     except ModuleNotFoundError as error:
         raise SceneError(f"{path}: reading {suffix} files needs '{error.name}'; pip install 'radiosity[formats]'") from error
     except PermissionError as error:
         raise SceneError(f"{path}: cannot be read ({error.strerror})") from None
+    except MemoryError:
+        raise SceneError(f"{path}: too large for the memory of this machine, or its sizes are damaged") from None
+    except Exception as error:  # damage that no check knows: a file must never end the program with a foreign exception
+        raise SceneError(f"{path}: cannot be read as {suffix} ({type(error).__name__}: {error}); is it damaged?") from error
 
 
 def _builtin_names() -> str:

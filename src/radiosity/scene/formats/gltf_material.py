@@ -91,8 +91,8 @@ class Materials:
             self.file.numbers({"v": [metal.get(key, default)]}, "v", (0.0,), f"{key} of {what}")[0]
             for key, default in (("metallicFactor", 1.0 if textured else 0.0), ("roughnessFactor", 1.0))
         )
-        through = extensions.get("KHR_materials_transmission", {})
-        return metallic > 0 or (rough < GLOSSY_ROUGHNESS and not textured) or bool(through and through.get("transmissionFactor", 0))
+        clear = extensions.get("KHR_materials_transmission", {}).get("transmissionFactor", 0)
+        return metallic > 0 or (rough < GLOSSY_ROUGHNESS and not textured) or bool(clear)
 
     def _texture(self, use, what: str) -> Texture | None:
         if use is None:

@@ -4,6 +4,7 @@ PLY vertex and face colours are the reflectance: whole numbers (0 to 255) are sR
 point numbers linear. A texture named in a ``TextureFile`` comment is used where there are coordinates for it.
 """
 
+import re
 import warnings
 from pathlib import Path
 
@@ -37,7 +38,8 @@ def _stl(path: Path) -> list[Part]:
     data = path.read_bytes()
     count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
     binary = count >= 0 and len(data) == 84 + 50 * count
-    if not binary and not data[:512].lstrip().lower().startswith(b"solid"):
+    head = data[:4096].lower()
+    if not binary and not (head.lstrip().startswith(b"solid") and (b"facet" in head or b"endsolid" in head)):
         announced = f"its header announces {count} triangles ({84 + 50 * count} bytes), it has {len(data)} bytes"
         raise SceneError(f"{path}: {announced if count >= 0 else 'too short'}; the STL file is truncated or damaged")
     try:
@@ -46,21 +48,16 @@ def _stl(path: Path) -> list[Part]:
             found = stl.load_stl_binary(file) if binary else stl.load_stl_ascii(file)
     except Exception as error:  # trimesh lets its own parts' exceptions through
         raise SceneError(f"{path}: cannot be read as STL ({error}); the file is damaged") from None
-    solids = {path.stem: found} if "vertices" in found else found.get("geometry", {})
+    solids = {found["metadata"].get("name") or path.stem: found} if "vertices" in found else found.get("geometry", {})
     if not binary:
         expected, got = data.lower().count(b"endfacet"), sum(len(solid["faces"]) for solid in solids.values())
         if got < expected or data.lower().count(b"facet normal") > expected:
             raise SceneError(
                 f"{path}: {got} of {data.lower().count(b'facet normal')} facets are complete; the file is truncated or damaged"
             )
-    return [
-        Part(
-            str((solid.get("metadata", {}).get("name") if not binary else "") or name or path.stem),
-            solid["vertices"],
-            solid["faces"],
-        )
-        for name, solid in solids.items()
-    ]
+    # trimesh calls a solid without a name geometry_1, ...
+    names = [path.stem if binary or re.fullmatch(r"geometry_\d+", str(name)) else str(name) for name in solids]
+    return [Part(name, solid["vertices"], solid["faces"]) for name, solid in zip(names, solids.values(), strict=True)]
 
 
 def _ply(path: Path, options: ReadOptions) -> Part:

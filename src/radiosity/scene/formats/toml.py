@@ -32,11 +32,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
     looks = Looks(asked.surface)
     scenes, factors = [], []
     for entry in asked.geometry:
-        name = entry if isinstance(entry, str) else entry.file
-        own = None if isinstance(entry, str) else entry
-        unit, scale = (own and own.unit) or asked.unit, (own and own.scale) or asked.scale
-        factors.append(UNITS[unit] * scale)
-        scenes.append(_geometry(path.parent / name, factors[-1], own and own.name, looks, options, path))
+        factors.append(UNITS[entry.unit or asked.unit] * (entry.scale or asked.scale))
+        scenes.append(_geometry(path.parent / entry.file, factors[-1], entry.name, looks, options, path))
     names = [name for scene in scenes for name in scene.names]
     for surface in asked.surface:
         if not any(_matches(name, surface.name) for name in names):
@@ -66,7 +63,7 @@ class Looks:
             if not _matches(part.name, entry.name):
                 continue
             if entry.reflectance is not None:
-                material = replace(material, reflectance=_bands(entry.reflectance), back_reflectance=None, diffuse=True)
+                material = replace(material, reflectance=tuple(entry.reflectance), back_reflectance=None, diffuse=True)
                 part = replace(part, color=None, texture=None)
             exitance = _exitance(entry)
             if exitance is not None:
@@ -90,7 +87,7 @@ class Looks:
             faces = np.isin(scene.surface, surfaces)
             if not faces.any():
                 raise SceneError(f"{source}: surface {number + 1} ('{self.entries[number].name}') has a power but no area")
-            emission[faces] = back[faces] = np.asarray(_bands(self.entries[number].power)) / areas[faces].sum()
+            emission[faces] = back[faces] = np.asarray(self.entries[number].power) / areas[faces].sum()
         return replace(scene, emission=emission, back_emission=back)
 
 
@@ -128,17 +125,13 @@ def _matches(name: str, pattern: str) -> bool:
     return name == pattern or fnmatchcase(name, pattern)
 
 
-def _bands(value) -> tuple[float, ...]:
-    return tuple(value) if isinstance(value, list) else (value,)
-
-
 def _exitance(entry) -> tuple[float, ...] | None:
     """W/m²; zeros, as many as there are bands, where the entry gives a power."""
     if entry.radiance is not None:
-        return tuple(np.pi * v for v in _bands(entry.radiance))
+        return tuple(np.pi * v for v in entry.radiance)
     if entry.power is not None:
-        return tuple(0.0 for _ in _bands(entry.power))
-    return None if entry.emission is None else _bands(entry.emission)
+        return tuple(0.0 for _ in entry.power)
+    return None if entry.emission is None else tuple(entry.emission)
 
 
 def _photometric(asked: bool | None, scenes: list[Scene], path: Path) -> bool:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from ...errors import SceneError, shown
 
@@ -10,7 +10,20 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 Unit = Literal["m", "cm", "mm", "in", "ft"]
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
-Bands = NotNegative | Annotated[list[NotNegative], Field(min_length=3, max_length=3)]
+
+
+def _listed(value):
+    """One entry is a list of one."""
+    return [value] if isinstance(value, (int, float, str)) else value
+
+
+def _one_or_three(value: list[float]) -> list[float]:
+    if len(value) not in (1, 3):
+        raise ValueError(f"expected one number or [red, green, blue], not {len(value)} numbers")
+    return value
+
+
+Bands = Annotated[list[NotNegative], BeforeValidator(_listed), AfterValidator(_one_or_three)]
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 
 
@@ -25,6 +38,11 @@ class Geometry(_Table):
     unit: Unit | None = None
     scale: Positive | None = None
     name: str | None = None
+
+
+def _file(value):
+    """A path alone is a geometry without settings."""
+    return {"file": value} if isinstance(value, str) else value
 
 
 class Surface(_Table):
@@ -62,7 +80,7 @@ class View(_Table):
 class SceneFile(_Table):
     """The whole file."""
 
-    geometry: Annotated[list[str | Geometry], Field(min_length=1)]
+    geometry: Annotated[list[Annotated[Geometry, BeforeValidator(_file)]], Field(min_length=1), BeforeValidator(_listed)]
     unit: Unit = "m"
     scale: Positive = 1.0
     photometric: bool | None = None
@@ -87,20 +105,15 @@ def checked(values: dict, source: str) -> SceneFile:
 
 
 def _sentence(fault: dict, values: dict) -> str:
-    # pydantic adds the names of the alternatives of a union to the path
-    path = [
-        step
-        for step in fault["loc"]
-        if not (isinstance(step, str) and (step in ("str", "Geometry") or "[" in step or step == "float"))
-    ]
-    where = "".join(f" {step + 1}" if isinstance(step, int) else f"{' ' if i else ''}{step}" for i, step in enumerate(path))
-    if len(path) > 1 and path[0] == "surface" and isinstance(path[1], int):
-        name = values["surface"][path[1]].get("name") if isinstance(values["surface"][path[1]], dict) else None
-        where = f"surface {path[1] + 1}" + (f" ('{name}')" if name else "") + "".join(f", {step}" for step in path[2:])
+    path = fault["loc"]
+    where = ", ".join(f"{step} {path[i + 1] + 1}" if i + 1 < len(path) and isinstance(path[i + 1], int) else str(step)
+                      for i, step in enumerate(path) if isinstance(step, str))  # fmt: skip
+    if path[0] == "surface" and len(path) > 1 and isinstance(values["surface"][path[1]], dict):
+        where = where.replace(",", f" ('{values['surface'][path[1]].get('name', '')}'),", 1)
     if fault["type"] == "extra_forbidden":
         table = TABLES.get(str(path[0]), SceneFile) if len(path) > 1 else SceneFile
-        return f"{where}: unknown key '{path[-1]}'; known are {shown(table.model_fields, 20)}"
+        return f"{where}: unknown key; known are {shown(table.model_fields, 20)}"
     if fault["type"] == "missing":
         return f"{where} is missing"
-    text = fault["msg"].removeprefix("Value error, ")
+    text = fault["msg"].removeprefix("Value error, ").removesuffix(" or instance of Geometry")
     return f"{where}: {text}" + (f" (it is {fault['input']!r})" if not isinstance(fault["input"], dict) else "")

@@ -1,0 +1,117 @@
+"""How long to go on: rays, seconds, a target error or quanta, and the ladder of stages that leads there."""
+
+import math
+from dataclasses import dataclass
+
+from ..errors import MethodError
+from .quanta import LIMIT
+
+FIRST_STAGE = 1 << 18  # quanta of all replicates together in the first stage
+LEAST_QUANTA = 1024
+SLOPE = 0.55  # of error against lines, on the safe side of what low discrepancy lines reach
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Exactly one of the four is not None.
+
+    Attributes:
+        rays: lines in all, replicates together.
+        seconds: of wall time, compilation included.
+        error: relative, of the scene (see `Solution.error`).
+        quanta: N of each replicate.
+
+    Raises:
+        MethodError: none or several given, or a value that makes no sense.
+    """
+
+    rays: float | None = None
+    seconds: float | None = None
+    error: float | None = None
+    quanta: int | None = None
+
+    def __post_init__(self):
+        given = {name: value for name, value in vars(self).items() if value is not None}
+        if len(given) != 1:
+            raise MethodError(f"give exactly one of rays, seconds, error and quanta (given: {', '.join(given) or 'none'})")
+        name, value = next(iter(given.items()))
+        try:
+            good = not isinstance(value, bool) and math.isfinite(value) and value > 0
+        except TypeError:
+            good = False
+        if not good:
+            raise MethodError(f"{name} is {value!r}; it must be a positive number")
+        if name == "error" and value >= 1:
+            raise MethodError(f"error is {value:g}; give a relative error below 1 (0.01 or, on the command line, 1%)")
+        if name in ("rays", "quanta") and (value != int(value) or value < 1):
+            raise MethodError(f"{name} is {value!r}; it must be a whole number of 1 or more")
+
+    def check(self, replicates: int) -> None:
+        """Refuse what 32-bit counters could not hold, before anything is traced.
+
+        Raises:
+            MethodError: too many lines for a replicate.
+        """
+        lines = max((self.rays or 0) / replicates, self.quanta or 0)
+        if lines >= LIMIT:
+            raise MethodError(f"{lines:.3g} lines for each of {replicates} replicates overflow the 32-bit counters "
+                              f"(fewer than {LIMIT}); take more replicates or fewer lines")  # fmt: skip
+        if self.error is not None and replicates < 2:
+            raise MethodError("a target error needs 2 replicates or more: a single one has no error")
+
+
+def first_stage(replicates: int) -> int:
+    """N of the first rung: a power of two."""
+    return max(LEAST_QUANTA, 1 << round(math.log2(FIRST_STAGE / replicates)))
+
+
+def rung_after(quanta: int, replicates: int) -> int:
+    """The rung above N on the ladder of doubling powers of two."""
+    first = first_stage(replicates)
+    return first if quanta < first else 1 << int(math.floor(math.log2(quanta))) + 1
+
+
+@dataclass(frozen=True)
+class Progressed:
+    """What is known after a stage: quanta of each replicate, lines of all, seconds, and the error so far (or NaN)."""
+
+    quanta: int
+    lines: int
+    seconds: float
+    stage_seconds: float
+    error: float
+
+
+def next_quanta(budget: Budget, replicates: int, at: Progressed) -> int | None:
+    """N of the next stage, or None where the budget is used up.
+
+    The stages of any run are the powers of two on the ladder below its last N, then N: so N alone replays a run.
+    """
+    if at.lines / replicates >= LIMIT / 2 and budget.quanta is None:
+        ceiling = int(at.quanta * (LIMIT * 0.95) / (at.lines / replicates))
+    else:
+        ceiling = None
+    rung = rung_after(at.quanta, replicates)
+    wanted = _wanted(budget, replicates, at)
+    if wanted is None or wanted <= at.quanta * 1.01:
+        return None
+    target = min(rung, wanted)
+    if ceiling is not None:
+        target = min(target, ceiling)
+        if target <= at.quanta * 1.01:
+            return None
+    return target
+
+
+def _wanted(budget: Budget, replicates: int, at: Progressed) -> int | None:
+    if budget.quanta is not None:
+        return int(budget.quanta)
+    if budget.rays is not None:
+        return round(budget.rays * at.quanta / at.lines)
+    if budget.seconds is not None:
+        left = budget.seconds - at.seconds
+        rate = at.lines / max(at.stage_seconds, 1e-9)  # of the last stage, whose lines are about half of all
+        return round(at.quanta * (1 + 0.9 * left * rate / 2 / at.lines)) if left > 0 else None
+    if math.isnan(at.error) or at.error <= budget.error:
+        return None
+    return max(round(at.quanta * min(1.1 * (at.error / budget.error) ** (1 / SLOPE), 64.0)), at.quanta + 1 + at.quanta // 8)

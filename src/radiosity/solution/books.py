@@ -1,0 +1,52 @@
+"""The books of a run in whole numbers: emitted + rounding = absorbed + escaped + lost, exactly (contract 8)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Books:
+    """Sums over replicates, in units of 2^-32 of the unit that powers are counted in (a quantum, or its 2^-31).
+
+    Attributes:
+        emitted, absorbed, escaped, lost: whole numbers.
+        fired: power that left patches along lines, from the lines' side of the ledger.
+        reflected: power that patches owed for what arrived.
+        watts: of one unit, for the mean over replicates.
+    """
+
+    emitted: int
+    fired: int
+    reflected: int
+    absorbed: int
+    escaped: int
+    lost: int
+    watts: float
+
+    @property
+    def rounding(self) -> int:
+        """What rounding to whole lines added: fired less emitted less reflected."""
+        return self.fired - self.emitted - self.reflected
+
+    @property
+    def closes(self) -> bool:
+        return self.emitted + self.rounding == self.absorbed + self.escaped + self.lost
+
+
+def exact_dot(long: np.ndarray, short: np.ndarray) -> int:
+    """Sum of uint64 times uint32 without rounding or overflow, by 16-bit limbs."""
+    long, short = np.asarray(long, np.uint64).ravel(), np.asarray(short, np.uint64).ravel()
+    limb, total = np.uint64(0xFFFF), 0
+    for i in range(4):
+        a = (long >> np.uint64(16 * i)) & limb
+        if a.any():
+            for j in range(2):
+                total += int(np.dot(a, (short >> np.uint64(16 * j)) & limb)) << (16 * (i + j))
+    return total
+
+
+def exact_sum(values: np.ndarray) -> int:
+    """Sum of unsigned integers of up to 64 bits without overflow."""
+    values = np.asarray(values, np.uint64).ravel()
+    return int((values & np.uint64(0xFFFFFFFF)).sum()) + (int((values >> np.uint64(32)).sum()) << 32)

@@ -1,0 +1,105 @@
+"""A solution: radiosity, irradiance and their errors for every patch, the books, and where it comes from."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from ..patches.model import Patches
+from .errors import relative_error
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What `radiosity.solve` returns.
+
+    Attributes:
+        patches: the patches solved for.
+        irradiance: (n_patches, n_bands) float64, W/m² or lm/m².
+        irradiance_standard_error: the same shape; NaN (unknown) without replicates.
+        arrivals: (n_patches,) int64, lines that landed, all replicates together. 0: never visited, so zero is no measurement.
+        rays: lines traced in all.
+        seconds: wall time.
+        quanta: N of each replicate; ``solve(..., quanta=N)`` replays the run bit for bit.
+        replicates: number of randomised runs.
+        escaped: (n_bands,) float64, power that left the scene, W or lm.
+        books: one dict a band: emitted, rounding, absorbed, escaped, lost (W or lm), closes (bool), and the whole numbers.
+        status: "complete", "interrupted" or a reason for the early end.
+        provenance: scene hash, method, seed, versions.
+        state: integers of the run, to go on from.
+    """
+
+    patches: Patches
+    irradiance: np.ndarray
+    irradiance_standard_error: np.ndarray
+    arrivals: np.ndarray
+    rays: int
+    seconds: float
+    quanta: int
+    replicates: int
+    books: tuple[dict, ...]
+    status: str
+    provenance: dict
+    state: dict = field(default_factory=dict)
+
+    @cached_property
+    def radiosity(self) -> np.ndarray:
+        """(n_patches, n_bands) float64: emission plus reflectance times irradiance."""
+        return self.patches.emission + self.patches.reflectance * self.irradiance
+
+    @cached_property
+    def standard_error(self) -> np.ndarray:
+        """(n_patches, n_bands) float64, of the radiosity; zero on black patches, NaN where unknown."""
+        error = self.patches.reflectance * self.irradiance_standard_error
+        return np.where(self.patches.reflectance == 0, 0.0, error)
+
+    @property
+    def bands(self) -> tuple[str, ...]:
+        return self.patches.scene.bands
+
+    @property
+    def unit(self) -> str:
+        return self.patches.scene.unit
+
+    @property
+    def escaped(self) -> np.ndarray:
+        return np.array([book["escaped"] for book in self.books])
+
+    @cached_property
+    def error(self) -> float:
+        """Relative error of the scene: area-weighted RMS of the standard error of B - E over that of B - E, the largest
+        of the bands (of the irradiance, where nothing reflects); NaN without replicates."""
+        return self._relative(np.ones(len(self.patches), bool))
+
+    def _relative(self, rows: np.ndarray) -> float:
+        reflected = (self.patches.reflectance * self.irradiance)[rows]
+        fallback = (self.irradiance[rows], self.irradiance_standard_error[rows])
+        return relative_error(reflected, self.standard_error[rows], self.patches.area[rows], fallback)
+
+    def surface_table(self) -> list[dict]:
+        """A row for each surface: area, means, relative error, and its power balance in W or lm."""
+        from .table import surface_table
+
+        return surface_table(self)
+
+    def report(self) -> str:
+        """A summary in plain text."""
+        from .report import report
+
+        return report(self)
+
+    def save(self, path) -> None:
+        """Write an NPZ file that `radiosity.load_solution` reads."""
+        from .store import save
+
+        save(self, Path(path))
+
+    def export(self, path, **options) -> None:
+        """Write .glb, .ply, .vtp, .csv, .png, .exr or .npz by the path's suffix; see `radiosity.image.export`."""
+        if Path(path).suffix.lower() == ".npz":
+            return self.save(path)
+        from ..image import export
+
+        export(self, path, **options)
+        return None

@@ -1,0 +1,53 @@
+"""The summary of a solution as text."""
+
+import math
+
+import numpy as np
+
+MOST_ROWS = 24
+
+
+def report(solution) -> str:
+    """Lines, time, error, books and the surfaces with the largest radiant power."""
+    scene, unit = solution.patches.scene, solution.patches.scene.power_unit
+    rate = solution.rays / solution.seconds if solution.seconds > 0 else math.nan
+    error = "unknown (one replicate)" if solution.replicates < 2 else f"{solution.error:.2%} of the reflected light"
+    unvisited = int((solution.arrivals == 0).sum())
+    lines = [
+        f"scene     {scene.source}: {scene.n_faces} faces, {len(scene.names)} surfaces, {len(solution.patches)} patches",
+        f"method    {solution.provenance['method']}, seed {solution.provenance['seed']}",
+        f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({rate / 1e6:.1f} million a second), "
+        f"{solution.replicates} replicates of {solution.quanta:,} quanta",
+        f"error     {error}",
+        f"status    {solution.status}",
+    ]
+    if unvisited:
+        lines.append(f"unvisited {unvisited} patches that no line reached (their zero is no measurement)")
+    for name, book in zip(scene.bands, solution.books, strict=True):
+        label = f"power [{name}]" if len(scene.bands) > 1 else "power"
+        closed = "closes exactly" if book["closes"] else "DOES NOT CLOSE"
+        lines.append(
+            f"{label}: emitted {book['emitted']:.6g} {unit} + rounding {book['rounding']:.3g} = absorbed {book['absorbed']:.6g} "
+            f"+ escaped {book['escaped']:.4g} + lost on backs {book['lost']:.4g} ({closed})"
+        )
+    return "\n".join([*lines, "", *_surfaces(solution)])
+
+
+def _surfaces(solution) -> list[str]:
+    rows, scene = solution.surface_table(), solution.patches.scene
+    tails = [f" [{name}]" for name in scene.bands] if len(scene.bands) > 1 else [""]
+    rows.sort(key=lambda row: -sum(row[f"left{tail}"] for tail in tails))
+    width = max(len("surface"), *(min(len(row["surface"]), 32) for row in rows[:MOST_ROWS]))
+    short = [name[0].upper() if len(scene.bands) == 3 else name for name in scene.bands] if len(tails) > 1 else [""]
+    heads = [f"B {s}".strip() for s in short] + [f"H {s}".strip() for s in short]
+    title = f"{'surface':<{width}} {'patches':>8} {'area m²':>9} " + " ".join(f"{h:>9}" for h in heads) + f" {'error':>7}"
+    result = [f"radiosity B and irradiance H in {scene.unit}, area means", title]
+    for row in rows[:MOST_ROWS]:
+        values = [row[f"radiosity{t}"] for t in tails] + [row[f"irradiance{t}"] for t in tails]
+        error = "?" if np.isnan(row["error"]) else f"{row['error']:.2%}"
+        result.append(
+            f"{row['surface'][:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} " + " ".join(f"{v:>9.4g}" for v in values) + f" {error:>7}"
+        )
+    if len(rows) > MOST_ROWS:
+        result.append(f"... and {len(rows) - MOST_ROWS} more surfaces (export a .csv for all)")
+    return result

@@ -1,0 +1,115 @@
+"""Save and load solutions: one NPZ file that stands alone (scene, results, provenance, the run's integers)."""
+
+import json
+import os
+import tempfile
+import zipfile
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError, SceneError
+from ..patches.model import Patches
+from ..scene.model import Camera, Scene
+from ..scene.paint import Paint
+from .model import Solution
+
+FORMAT = 1
+SCENE_ARRAYS = ("vertices", "faces", "reflectance", "emission", "back", "back_reflectance", "back_emission", "surface", "patch_size")
+PAINT_ARRAYS = ("image", "uv", "color")
+SOLUTION_ARRAYS = ("irradiance", "irradiance_standard_error", "arrivals")
+SCALARS = ("rays", "seconds", "quanta", "replicates", "books", "status", "provenance")
+
+
+def save(solution: Solution, path: Path) -> None:
+    """Write ``path``; a failed write leaves the old file as it was.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    scene, patches = solution.patches.scene, solution.patches
+    arrays = {f"scene_{name}": getattr(scene, name) for name in SCENE_ARRAYS}
+    paints = {}
+    for which in ("reflectance_paint", "emission_paint"):
+        paint = getattr(scene, which)
+        if paint is not None:
+            arrays |= {f"{which}_{name}": getattr(paint, name) for name in PAINT_ARRAYS}
+            arrays |= {f"{which}_picture_{i}": picture for i, picture in enumerate(paint.images)}
+            paints[which] = {"images": len(paint.images), "limit": None if np.isinf(paint.limit) else paint.limit}
+    arrays |= {"patches_columns": patches.columns, "patches_rows": patches.rows}
+    arrays |= {name: getattr(solution, name) for name in SOLUTION_ARRAYS}
+    arrays |= {"radiosity": solution.radiosity, "standard_error": solution.standard_error}
+    arrays |= {f"state_{name}": value for name, value in solution.state.items()}
+    meta = {name: getattr(solution, name) for name in SCALARS}
+    meta |= {"format": FORMAT, "paints": paints, "scene": {
+        "names": scene.names, "bands": scene.bands, "photometric": scene.photometric, "scale": scene.scale,
+        "source": scene.source, "cameras": [asdict(c) for c in scene.cameras]}}  # fmt: skip
+    arrays["meta"] = np.array(json.dumps(meta))
+    folder = path.resolve().parent
+    try:
+        handle, temporary = tempfile.mkstemp(suffix=".part", dir=folder)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written ({error.strerror})") from None
+    try:
+        with os.fdopen(handle, "wb") as file:
+            np.savez(file, **arrays)
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written ({error.strerror})") from None
+    finally:
+        if os.path.exists(temporary):
+            os.unlink(temporary)
+
+
+def load_solution(path) -> Solution:
+    """Read a solution saved by `Solution.save`.
+
+    Raises:
+        SceneError: the file is missing, damaged, or no solution.
+    """
+    path = Path(path)
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        meta = json.loads(str(arrays["meta"]))
+        if meta["format"] != FORMAT:
+            raise SceneError(f"{path}: written in format {meta['format']}; this version reads {FORMAT}")
+        return _restore(arrays, meta)
+    except FileNotFoundError:
+        raise SceneError(f"{path}: no such file; solve a scene with -o {path.name} first") from None
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (KeyError, ValueError, TypeError, IndexError, EOFError, zipfile.BadZipFile) as error:
+        if isinstance(error, SceneError):
+            raise
+        raise SceneError(f"{path}: is no solution of this program, or damaged ({error})") from None
+
+
+def _restore(arrays: dict, meta: dict) -> Solution:
+    described = meta["scene"]
+    paints = {}
+    for which, facts in meta["paints"].items():
+        images = tuple(arrays[f"{which}_picture_{i}"] for i in range(facts["images"]))
+        limit = np.inf if facts["limit"] is None else facts["limit"]
+        paints[which] = Paint(images, *(arrays[f"{which}_{name}"] for name in PAINT_ARRAYS), limit)
+    cameras = tuple(Camera(**{k: tuple(v) if isinstance(v, list) else v for k, v in c.items()}) for c in described["cameras"])
+    scene = Scene(
+        **{name: arrays[f"scene_{name}"] for name in SCENE_ARRAYS}, **paints, cameras=cameras,
+        names=tuple(described["names"]), bands=tuple(described["bands"]), photometric=described["photometric"],
+        scale=described["scale"], source=described["source"],
+    )  # fmt: skip
+    patches = Patches(scene, arrays["patches_columns"], arrays["patches_rows"])
+    if len(arrays["irradiance"]) != len(patches):
+        raise SceneError(f"{len(arrays['irradiance'])} results for {len(patches)} patches")
+    state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
+    scalars = {name: meta[name] for name in SCALARS}
+    scalars["books"] = tuple(scalars["books"])
+    return Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars, state=state)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

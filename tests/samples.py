@@ -1,0 +1,168 @@
+"""Small valid files for the tests of the readers."""
+
+import io
+import json
+import struct
+
+import numpy as np
+
+SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+HALVES = [[0, 1, 2], [0, 2, 3]]
+CORNERS = [[0, 1], [1, 1], [1, 0], [0, 0]]  # texture coordinates as glTF counts them, from the upper left
+
+
+def png(pixels) -> bytes:
+    """An image of (height, width, 3) whole numbers, 0 to 255."""
+    from PIL import Image
+
+    file = io.BytesIO()
+    Image.fromarray(np.asarray(pixels, np.uint8)).save(file, "PNG")
+    return file.getvalue()
+
+
+class Gltf:
+    """Builds a glTF tree with one buffer."""
+
+    KINDS = {"f4": 5126, "u4": 5125, "u2": 5123, "u1": 5121, "i2": 5122}
+
+    def __init__(self, **tree):
+        self.tree = {"asset": {"version": "2.0"}, "accessors": [], "bufferViews": [], "meshes": [], "nodes": [], **tree}
+        self.data = b""
+
+    def view(self, data: bytes) -> int:
+        self.data += b"\0" * (-len(self.data) % 4)
+        self.tree["bufferViews"].append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data)})
+        self.data += data
+        return len(self.tree["bufferViews"]) - 1
+
+    def accessor(self, values, dtype="f4", **more) -> int:
+        values = np.asarray(values, "<" + dtype)
+        width = values.shape[1] if values.ndim > 1 else 1
+        info = {"bufferView": self.view(values.tobytes()), "componentType": self.KINDS[dtype], "count": len(values)}
+        kind = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}[width]
+        self.tree["accessors"].append({**info, "type": kind, **more})
+        return len(self.tree["accessors"]) - 1
+
+    def image(self, pixels) -> int:
+        """A texture of the pixels."""
+        self.tree.setdefault("images", []).append({"bufferView": self.view(png(pixels)), "mimeType": "image/png"})
+        self.tree.setdefault("textures", []).append({"source": len(self.tree["images"]) - 1})
+        return len(self.tree["textures"]) - 1
+
+    def mesh(self, vertices=SQUARE, faces=HALVES, material=None, attributes=None, name=None, **more) -> int:
+        """A mesh of one primitive; ``attributes`` are accessor numbers."""
+        primitive = {"attributes": {"POSITION": self.accessor(vertices), **(attributes or {})}, **more}
+        if faces is not None:
+            primitive["indices"] = self.accessor(np.ravel(faces), "u2")
+        if material is not None:
+            self.tree.setdefault("materials", []).append(material)
+            primitive["material"] = len(self.tree["materials"]) - 1
+        self.tree["meshes"].append({"primitives": [primitive], **({"name": name} if name else {})})
+        return len(self.tree["meshes"]) - 1
+
+    def node(self, **info) -> int:
+        self.tree["nodes"].append(info)
+        return len(self.tree["nodes"]) - 1
+
+    def glb(self) -> bytes:
+        buffer = {"buffers": [{"byteLength": len(self.data)}]} if self.data else {}
+        text = json.dumps({**self.tree, **buffer}).encode()
+        text += b" " * (-len(text) % 4)
+        data = self.data + b"\0" * (-len(self.data) % 4)
+        chunks = struct.pack("<I", len(text)) + b"JSON" + text + struct.pack("<I", len(data)) + b"BIN\0" + data
+        return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
+
+    def write(self, path):
+        path.write_bytes(self.glb())
+        return path
+
+
+def box_gltf() -> Gltf:
+    """A textured, coloured, emitting box whose faces are six squares."""
+    import trimesh
+
+    gltf = Gltf()
+    box = trimesh.creation.box((2, 3, 4))
+    vertices = box.vertices[box.faces].reshape(-1, 3)
+    attributes = {
+        "TEXCOORD_0": gltf.accessor(vertices[:, :2] / 4 + 0.5),
+        "COLOR_0": gltf.accessor(np.full((len(vertices), 3), 0.5)),
+    }
+    texture = {"index": gltf.image(np.full((4, 4, 3), 188))}
+    material = {
+        "name": "paper",
+        "doubleSided": True,
+        "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.4, 1.0], "baseColorTexture": texture, "metallicFactor": 0.0},
+        "emissiveFactor": [1.0, 0.5, 0.25],
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 10.0}},
+    }
+    gltf.node(mesh=gltf.mesh(vertices, np.arange(36), material, attributes), name="box")
+    return gltf
+
+
+def ply_text(vertices=SQUARE, faces=([0, 1, 2, 3],), colors=None, comment="") -> str:
+    """An ASCII PLY file."""
+    properties = "property float x\nproperty float y\nproperty float z\n"
+    if colors is not None:
+        properties += "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+    rows = [[*v, *(colors[i] if colors is not None else ())] for i, v in enumerate(vertices)]
+    return (
+        f"ply\nformat ascii 1.0\n{comment}element vertex {len(vertices)}\n{properties}element face {len(faces)}\n"
+        "property list uchar int vertex_indices\nend_header\n"
+        + "".join(" ".join(map(str, row)) + "\n" for row in [*rows, *([len(f), *f] for f in faces)])
+    )
+
+
+def ply_bytes(vertices=SQUARE, faces=([0, 1, 2, 3],), order="<", counts=None) -> bytes:
+    """A binary PLY file; ``counts`` replaces the numbers of rows that the header announces."""
+    n_vertices, n_faces = counts or (len(vertices), len(faces))
+    head = (
+        f"ply\nformat binary_{'little' if order == '<' else 'big'}_endian 1.0\nelement vertex {n_vertices}\n"
+        f"property float x\nproperty float y\nproperty float z\nelement face {n_faces}\n"
+        "property list uchar int vertex_indices\nend_header\n"
+    )
+    rows = b"".join(struct.pack(f"{order}B{len(face)}i", len(face), *face) for face in faces)
+    return head.encode() + np.asarray(vertices, order + "f4").tobytes() + rows
+
+
+def stl_bytes(triangles, count=None) -> bytes:
+    """A binary STL file of (n, 3, 3) corners."""
+    triangles = np.asarray(triangles, "<f4")
+    rows = b"".join(b"\0" * 12 + corners.tobytes() + b"\0\0" for corners in triangles)
+    return b"\0" * 80 + struct.pack("<I", len(triangles) if count is None else count) + rows
+
+
+def stl_text(solids: dict) -> str:
+    """An ASCII STL file of named solids, (n, 3, 3) corners each."""
+    text = ""
+    for name, triangles in solids.items():
+        text += f"solid {name}\n"
+        for corners in triangles:
+            rows = "".join(f"vertex {x} {y} {z}\n" for x, y, z in corners)
+            text += f"facet normal 0 0 1\nouter loop\n{rows}endloop\nendfacet\n"
+        text += f"endsolid {name}\n"
+    return text
+
+
+OBJ = """mtllib box.mtl
+o room
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+g floor
+usemtl white
+f 1/1 2/2 3/3 4/4
+g lamp
+usemtl light
+v 0 0 2
+v 0 1 2
+v 1 1 2
+v 1 0 2
+f -4 -3 -2 -1
+"""
+MTL = "newmtl white\nKd 0.5 0.5 0.5\nnewmtl light\nKd 0 0 0\nKe 3 2 1\n"
