@@ -1,5 +1,6 @@
 """Small valid files for the tests of the readers."""
 
+import copy
 import io
 import json
 import struct
@@ -55,7 +56,7 @@ class Gltf:
         if faces is not None:
             primitive["indices"] = self.accessor(np.ravel(faces), "u2")
         if material is not None:
-            self.tree.setdefault("materials", []).append(material)
+            self.tree.setdefault("materials", []).append(copy.deepcopy(material))
             primitive["material"] = len(self.tree["materials"]) - 1
         self.tree["meshes"].append({"primitives": [primitive], **({"name": name} if name else {})})
         return len(self.tree["meshes"]) - 1

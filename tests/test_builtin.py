@@ -64,7 +64,9 @@ def test_cornell_box():
     for name, height in (("short block", 0.165), ("tall block", 0.330)):
         block = only(scene, name)
         assert len(open_edges(block).face) == 4
-        assert enclosed_volume(block) == pytest.approx(only(block, name).area[np.abs(block.normal[:, 1]) > 0.9].sum() * height, rel=0.01)
+        assert enclosed_volume(block) == pytest.approx(
+            only(block, name).area[np.abs(block.normal[:, 1]) > 0.9].sum() * height, rel=0.01
+        )
 
 
 @pytest.mark.parametrize("mean", [0.1, 0.5, 0.9])
@@ -94,7 +96,9 @@ def test_labyrinth_is_closed_and_looks_inwards(cells):
     assert len(np.unique(middle, axis=0)) == 11
 
 
-@pytest.mark.parametrize(("arguments", "named"), [((1.0,), "mean_reflectance"), ((0.0,), "mean_reflectance"), ((0.5, 3), "cells")])
+@pytest.mark.parametrize(
+    ("arguments", "named"), [((1.0,), "mean_reflectance"), ((0.0,), "mean_reflectance"), ((0.5, 3), "cells")]
+)
 def test_labyrinth_refuses_nonsense(arguments, named):
     with pytest.raises(ValueError, match=named):
         labyrinth(*arguments)

@@ -34,10 +34,12 @@ def fails(path, *words):
 def test_box_with_texture_colours_strength_and_two_sides(tmp_path):
     scene = rd.load_scene(box_gltf().write(tmp_path / "box.glb"))
     assert scene.names == ("box/paper",)
-    assert scene.n_faces == 6 and scene.is_quad.all()
+    assert scene.n_faces == 6
+    assert scene.is_quad.all()
     assert scene.area.sum() == pytest.approx(2 * (6 + 8 + 12))
     assert (scene.back == Back.RADIATES).all()
-    assert scene.bands == ("red", "green", "blue") and not scene.photometric
+    assert scene.bands == ("red", "green", "blue")
+    assert not scene.photometric
     patches = rd.subdivide(scene, cells=2)
     assert len(patches) == 48
     np.testing.assert_allclose(patches.reflectance, np.tile(np.array([0.8, 0.6, 0.4]) * 0.5 * srgb(188), (48, 1)), rtol=1e-6)
@@ -56,10 +58,10 @@ def test_texture_is_sampled_per_patch_the_right_way_up(tmp_path):
     for (x, y, _), value in zip(patches.centroid, patches.reflectance, strict=True):
         if abs(abs(x - 0.5) - 0.375) < 1e-9 and abs(abs(y - 0.5) - 0.375) < 1e-9:  # away from where colours blend
             found[x > 0.5, y > 0.5] = value
-    mixed = 0.75 * np.eye(3) + 0.0
-    del mixed
     top_left, top_right, low_left, low_right = found[0, 1], found[1, 1], found[0, 0], found[1, 0]
-    assert top_left.argmax() == 0 and top_right.argmax() == 1 and low_left.argmax() == 2
+    assert top_left.argmax() == 0
+    assert top_right.argmax() == 1
+    assert low_left.argmax() == 2
     assert low_right.min() > 0.6
 
 
@@ -97,7 +99,7 @@ def test_normalised_and_sparse_accessors(tmp_path):
     assert scene.bounds[1].tolist() == [2, 2, 0]
     np.testing.assert_allclose(rd.subdivide(scene, cells=1).reflectance, 0.5 * 0.2, rtol=1e-6)
     position["sparse"] = {**sparse, "count": 3}
-    fails(gltf.write(tmp_path / "s.glb"), "sparse" if False else "accessor", "needs 3 elements")
+    fails(gltf.write(tmp_path / "s.glb"), "accessor", "needs 3 elements")
 
 
 def test_transforms_names_and_instances(tmp_path):
@@ -114,7 +116,8 @@ def test_transforms_names_and_instances(tmp_path):
     # x to y by the quarter turn, then times 2: from (1..2, 0..1) to (-2..0, 2..4)
     np.testing.assert_allclose(corners[0].min(axis=0), [-2, 2, 0], atol=1e-12)
     np.testing.assert_allclose(corners[0].max(axis=0), [0, 4, 0], atol=1e-12)
-    assert corners[1, 0, 2] == 5 and corners[2, 0, 2] == 7
+    assert corners[1, 0, 2] == 5
+    assert corners[2, 0, 2] == 7
 
 
 def test_a_mirrored_instance_keeps_its_front(tmp_path):
@@ -141,14 +144,15 @@ def test_emission_texture_with_its_own_coordinates(tmp_path):
     patches = rd.subdivide(rd.load_scene(gltf.write(tmp_path / "e.glb")), cells=1)
     np.testing.assert_allclose(patches.emission, np.pi * srgb(188), rtol=1e-6)
     np.testing.assert_allclose(patches.reflectance, srgb(100), rtol=1e-6)
-    assert patches.scene.emission_paint.uv.max() == pytest.approx(3) or patches.scene.emission_paint.uv.min() == pytest.approx(-2)
+    assert np.ptp(patches.scene.emission_paint.uv) == pytest.approx(5)
+    assert np.ptp(patches.scene.reflectance_paint.uv) == pytest.approx(1)
 
 
 def test_texture_without_coordinates_is_taken_by_its_mean(tmp_path):
     gltf = Gltf()
     material = {"pbrMetallicRoughness": {"baseColorTexture": {"index": gltf.image([[[0, 0, 0], [255, 255, 255]]])}}}
     gltf.node(mesh=gltf.mesh(material=material), name="wall")
-    with pytest.warns(RadiosityWarning, match="no texture coordinates.*'wall'"):
+    with pytest.warns(RadiosityWarning, match="no texture coordinates.*'wall/material 0'"):
         scene = rd.load_scene(gltf.write(tmp_path / "m.glb"))
     np.testing.assert_allclose(rd.subdivide(scene, cells=1).reflectance, 0.5, rtol=1e-6)
 
@@ -156,7 +160,9 @@ def test_texture_without_coordinates_is_taken_by_its_mean(tmp_path):
 @pytest.mark.parametrize(("mode", "index"), [(5, [0, 1, 3, 2]), (6, [0, 1, 2, 3])])
 def test_strips_and_fans(tmp_path, mode, index):
     scene = one(tmp_path, faces=index, mode=mode)
-    assert scene.n_faces == 1 and scene.area[0] == pytest.approx(1) and scene.normal[0].tolist() == [0, 0, 1]
+    assert scene.n_faces == 1
+    assert scene.area[0] == pytest.approx(1)
+    assert scene.normal[0].tolist() == [0, 0, 1]
 
 
 def test_without_indices(tmp_path):
@@ -169,8 +175,11 @@ def test_camera(tmp_path):
     gltf.node(camera=0, translation=[0, 0, 5], children=[gltf.node(mesh=0, name="below a camera")])
     scene = rd.load_scene(gltf.write(tmp_path / "c.glb"))
     (camera,) = scene.cameras
-    assert camera.origin == (0, 0, 5) and camera.target == (0, 0, 4) and camera.up == (0, 1, 0)
-    assert camera.fov == pytest.approx(np.rad2deg(0.5)) and (camera.width, camera.height) == (900, 600)
+    assert camera.origin == (0, 0, 5)
+    assert camera.target == (0, 0, 4)
+    assert camera.up == (0, 1, 0)
+    assert camera.fov == pytest.approx(np.rad2deg(0.5))
+    assert (camera.width, camera.height) == (900, 600)
     assert scene.bounds[1, 2] == 5  # the child of the camera is there
 
 
@@ -183,13 +192,17 @@ def test_habits_are_named_once(tmp_path):
     (text,) = warnings_of(None)
     assert "no material for 'square'" in text
     (text,) = warnings_of({"name": "m", "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 1}})
-    assert "not diffuse" in text and "'square/m'" in text
+    assert "not diffuse" in text
+    assert "'square/m'" in text
     (text,) = warnings_of({**GREY, "alphaMode": "BLEND"})
-    assert "transparency" in text and "'grey'" in text
+    assert "transparency" in text
+    assert "'grey'" in text
     (text,) = warnings_of({"name": "white"})  # glTF's default is metallic: nothing said, nothing warned
-    assert "0.95" in text and "'square/white'" in text
+    assert "0.95" in text
+    assert "'square/white'" in text
     (text,) = warnings_of(GREY, node={"extensions": {"KHR_lights_punctual": {"light": 0}}})
-    assert "point lights" in text and "'square'" in text
+    assert "point lights" in text
+    assert "'square'" in text
 
 
 def test_vertex_colours_without_a_material(tmp_path):
@@ -250,14 +263,14 @@ def test_inner_faults(tmp_path):
     check(lambda t: t.update(extensionsRequired=["EXT_meshopt_compression"]), "EXT_meshopt_compression")
     check(lambda t: t["accessors"].__setitem__(0, accessor), "accessor 0", "1000000000")
     check(lambda t: t["accessors"].__setitem__(0, {**accessor, "bufferView": 9}), "bufferViews 9")
-    check(lambda t: t["accessors"][0].pop("bufferView") and t["accessors"][0].update(count=10**12), "without bytes")
+    check(lambda t: t["accessors"].__setitem__(0, {"componentType": 5126, "count": 10**12, "type": "VEC3"}), "without bytes")
     check(lambda t: t["accessors"][0].update(componentType=7), "componentType")
     check(lambda t: t["accessors"][0].update(type="MAT4"), "'MAT4'")
     check(lambda t: t["accessors"][0].update(count=-1), "count of accessor 0 is -1")
     check(lambda t: t["accessors"][0].update(count=2), "names vertex 2", "there are 2")
     check(lambda t: t["bufferViews"][0].update(byteLength=10**6), "buffer view 0")
     check(lambda t: t["nodes"][0].update(mesh=4), "meshes 4")
-    check(lambda t: t["nodes"][0].update(children=[0]), "node 0")
+    check(lambda t: t["nodes"][0].update(children=[0]), "no faces")  # its own child: there is no root
     check(lambda t: t["nodes"][0].update(children=[0]) or t.update(scenes=[{"nodes": [0]}]), "own ancestor")
     check(lambda t: t["nodes"][0].update(scale=[1, 2]), "scale of node 0")
     check(lambda t: t["nodes"][0].update(translation=[float("nan"), 0, 0]), "translation of node 0")
@@ -266,7 +279,8 @@ def test_inner_faults(tmp_path):
     check(lambda t: t["materials"][0].update(emissiveFactor=[-1, 0, 0]), "emission of surface 'square/grey'", "-3.14")
     check(lambda t: t["materials"][0].update(emissiveFactor="x"), "emissiveFactor")
     check(lambda t: t["meshes"][0]["primitives"][0]["attributes"].pop("POSITION"), "POSITION")
-    check(lambda t: t["meshes"][0]["primitives"][0].update(mode=1), "no faces")
+    with pytest.warns(RadiosityWarning, match="points and lines are left out: 'square'"):
+        check(lambda t: t["meshes"][0]["primitives"][0].update(mode=1), "no faces")
     check(lambda t: t.update(nodes=[]), "no faces")
     check(lambda t: t.update(scenes=[{"nodes": [3]}]), "nodes 3")
     check(lambda t: t.update(meshes={}), "meshes")
@@ -281,4 +295,5 @@ def test_vertices_that_are_no_numbers(tmp_path):
 def test_faces_without_area_are_counted(tmp_path):
     with pytest.warns(RadiosityWarning, match="1 face without area left out.*'square/grey'"):
         scene = one(tmp_path, faces=[[0, 1, 2], [0, 2, 3], [0, 1, 1]])
-    assert scene.n_faces == 1 and scene.area.tolist() == [1]
+    assert scene.n_faces == 1
+    assert scene.area.tolist() == [1]

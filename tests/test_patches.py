@@ -15,8 +15,9 @@ from radiosity.scene.model import Back
 TRIANGLE = rd.Scene.from_arrays([(0, 0, 0), (3, 0, 1), (1, 2, 0)], [(0, 1, 2)], 0.5, 1.0)
 PARALLELOGRAM = rd.Scene.from_arrays([(0, 0, 0), (3, 0, 1), (4, 2, 1), (1, 2, 0)], [(0, 1, 2, 3)], 0.5, 1.0)
 MIXED = rd.Scene.from_arrays(
-    [(0, 0, 0), (3, 0, 1), (4, 2, 1), (1, 2, 0), (0, 0, 9)], [(0, 1, 2, 3), (0, 1, 4, -1), (1, 2, 4, -1), (3, 2, 1, 0)], [0.1, 0.2, 0.3, 0.4],
-    [1, 2, 3, 4], two_sided=[False, True, False, True], back_reflectance=[0.5, 0.6, 0.7, 0.8], back_emission=[5, 6, 7, 8],
+    [(0, 0, 0), (3, 0, 1), (4, 2, 1), (1, 2, 0), (0, 0, 9)],
+    [(0, 1, 2, 3), (0, 1, 4, -1), (1, 2, 4, -1), (3, 2, 1, 0)], [0.1, 0.2, 0.3, 0.4], [1, 2, 3, 4],
+    two_sided=[False, True, False, True], back_reflectance=[0.5, 0.6, 0.7, 0.8], back_emission=[5, 6, 7, 8],
     surface=[0, 1, 1, 2], names=["a", "b", "c"],
 )  # fmt: skip
 

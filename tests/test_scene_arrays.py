@@ -17,7 +17,9 @@ TWO = [(0, 1, 2), (0, 2, 3)]
 
 def build(**changes):
     values = {"vertices": SQUARE, "faces": TWO, "reflectance": 0.5, "emission": 1.0} | changes
-    return rd.Scene.from_arrays(values.pop("vertices"), values.pop("faces"), values.pop("reflectance"), values.pop("emission"), **values)
+    return rd.Scene.from_arrays(
+        values.pop("vertices"), values.pop("faces"), values.pop("reflectance"), values.pop("emission"), **values
+    )
 
 
 def with_vertex(value):
@@ -42,7 +44,7 @@ BAD = {
     "a NaN index": ({"faces": [(0, 1, np.nan)]}, "whole vertex numbers"),
     "no vertices": ({"vertices": np.zeros((0, 3))}, "face 0 names vertex 0"),
     "only degenerate faces": ({"faces": [(0, 1, 1), (2, 2, 2)]}, "no face is left: all 2 have no area"),
-    "reflectance of one": ({"reflectance": 1.0}, r"reflectance of face 0 \(surface 'surface', band 0\) is 1; it must lie in \[0, 1\)"),
+    "reflectance of one": ({"reflectance": 1.0}, r"of face 0 \(surface 'surface', band 0\) is 1; it must lie in \[0, 1\)"),
     "reflectance above one on one face": ({"reflectance": [0.5, 1.5]}, "reflectance of face 1 .* is 1.5"),
     "negative reflectance": ({"reflectance": -0.1}, "is -0.1"),
     "NaN reflectance": ({"reflectance": [0.5, np.nan]}, "face 1 .* is nan"),
@@ -167,7 +169,8 @@ plausible = st.fixed_dictionaries(
         "emission": st.one_of(number, matrix(number, st.integers(0, 3), st.integers(0, 3))),
     },
     optional={
-        "surface": st.lists(st.integers(-1, 3), max_size=5), "two_sided": st.one_of(st.booleans(), st.lists(st.booleans(), max_size=5)),
+        "surface": st.lists(st.integers(-1, 3), max_size=5),
+        "two_sided": st.one_of(st.booleans(), st.lists(st.booleans(), max_size=5)),
         "back": st.lists(st.integers(-1, 3), max_size=5), "names": st.lists(st.text(max_size=3), max_size=4),
         "back_reflectance": number, "back_emission": number, "bands": st.lists(st.text(max_size=3), max_size=4),
     },

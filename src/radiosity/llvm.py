@@ -53,7 +53,8 @@ def prepare() -> Library:
     import drjit as dr
 
     loaded = dr.detail.llvm_version()
-    major = int(re.match(r"\d+", str(loaded) if not isinstance(loaded, tuple) else str(loaded[0])).group()) if loaded else 0
+    number = re.match(r"\d+", str(loaded[0] if isinstance(loaded, tuple) else loaded))
+    major = int(number.group()) if number else 0
     if major < OLDEST:
         find()  # says what to install where there is none
         raise DeviceError(

@@ -67,6 +67,7 @@ def _point(values) -> str:
 
 def _table(report):
     from rich.table import Table
+    from rich.text import Text
 
     unit, power = report.scene.unit, report.scene.power_unit
     table = Table(box=None, pad_edge=False, header_style="bold")
@@ -77,7 +78,7 @@ def _table(report):
     rows = sorted(report.surfaces, key=lambda s: (not any(s.power), -s.area))  # emitters first, then by area
     for s in rows[:MOST_ROWS]:
         lit = any(s.power)
-        table.add_row(s.name, str(s.faces), f"{s.area:.4g}", _bands(s.reflectance), _bands(s.emission) if lit else "-",
+        table.add_row(Text(s.name), str(s.faces), f"{s.area:.4g}", _bands(s.reflectance), _bands(s.emission) if lit else "-",
                       _bands(s.power) if lit else "-", s.sides)  # fmt: skip
     return table
 

@@ -1,7 +1,7 @@
 """``radiosity render``"""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -76,7 +76,8 @@ def render(
             raise OutputError(f"{path}: pictures are .png or .exr; meshes and tables come from `radiosity solve`")
     if not output:
         raise OutputError("no output; name a picture with -o, such as -o view.png")
-    interval = None if limits is None else amounts.numbers(limits, 2)
+    low_high = None if limits is None else amounts.numbers(limits, 2)
+    interval = None if low_high is None else (low_high[0], low_high[1])
 
     import radiosity as rd
 
@@ -103,12 +104,15 @@ def _view(scene, number: int | None, origin: str | None, target: str | None, up:
         raise SceneError("--origin and --target go together: where the camera stands and what it looks at")
     if number is not None and origin is not None:
         raise SceneError("give --camera, or --origin and --target, not both")
-    changes = {name: amounts.numbers(text, 3) for name, text in (("origin", origin), ("target", target), ("up", up)) if text}
-    changes |= {} if fov is None else {"fov": fov}
+    changes: dict[str, Any] = {
+        name: amounts.numbers(text, 3) for name, text in (("origin", origin), ("target", target), ("up", up)) if text
+    }
+    if fov is not None:
+        changes["fov"] = fov
     if origin is not None:
         usual = (0.0, 1.0, 0.0) if up_axis(scene) == "y" else (0.0, 0.0, 1.0)
-        return Camera(**{"up": usual} | changes)
-    if not changes or number is not None and not 0 <= number < len(scene.cameras):
+        return Camera(**changes) if up else Camera(up=usual, **changes)
+    if not changes or (number is not None and not 0 <= number < len(scene.cameras)):
         return number
     if not scene.cameras:
         raise SceneError("the scene has no camera for --up or --fov to change; give --origin and --target too")

@@ -77,9 +77,10 @@ def solve(
     exposure
         Of pictures and meshes: stops brighter than the automatic scale; +1 is twice.
     """
-    budget = {name: value for name, value in (("rays", rays), ("seconds", seconds), ("error", error), ("quanta", quanta)) if value}
-    if len(budget) > 1:
-        raise MethodError(f"give one of --rays, --seconds, --error and --quanta, not {' and '.join('--' + b for b in budget)}")
+    asked = {"rays": rays, "seconds": seconds, "error": error, "quanta": quanta}
+    given = [f"--{name}" for name, value in asked.items() if value is not None]
+    if len(given) > 1:
+        raise MethodError(f"give one of --rays, --seconds, --error and --quanta, not {' and '.join(given)}")
     outputs.check(output)
 
     import radiosity as rd
@@ -90,8 +91,9 @@ def solve(
     patches = rd.subdivide(loaded, size=patch_size, cells=cells)
     with bar() as progress:
         solution = rd.solve(
-            patches, method, **(budget or {"rays": DEFAULT_RAYS}), equation=equation, lines=lines, order=order, numbers=numbers,
-            replicates=replicates, seed=seed, device=device, coherent=coherent or None, progress=progress,
+            patches, method, rays=rays if given else DEFAULT_RAYS, seconds=seconds, error=error, quanta=quanta,
+            equation=equation, lines=lines, order=order, numbers=numbers, replicates=replicates, seed=seed, device=device,
+            coherent=coherent or None, progress=progress,
         )  # fmt: skip
     print(solution.report())
     outputs.write(solution, output, exposure=exposure)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import MethodError
 from ..method.model import Method
-from ..method.numbers import make
+from ..method.numbers import make, strata
 from . import quanta as contract
 from .bands import BandGroups, BandTally
 from .device import upload
@@ -30,6 +30,7 @@ class Lanes:
     patches: Any
     begins: Any
     fired: Any
+    deficits: Any
     start: int
     count: int
 
@@ -91,7 +92,7 @@ class Engine:
         low = wide(rho) * wide(dr.gather(types.UInt32, self.arrivals, number)) + wide(fraction) + wide(self.phase)
         return dr.gather(types.UInt32, self.whole, patch) + types.UInt32(low >> 32)
 
-    def trace(self, number, index, bits: int):
+    def trace(self, number, index, bits: int, *, coherent: bool = False):
         """Fire the ``index``-th line (from 1) of each patch number: the slot of ``arrivals`` where it lands."""
         types = self.types
         replicate = self.replicate(number)
@@ -99,16 +100,16 @@ class Engine:
         randomisation = dr.gather(types.Array4u, self.randomisation, replicate)
         numbers = self.numbers.points(index, patch, randomisation, bits)
         origin, direction = local_line(self.geometry, patch, numbers)
-        hit = land(self.geometry, origin, direction, coherent=self.method.coherent)
+        hit = land(self.geometry, origin, direction, coherent=coherent)
         none = 0xFFFFFFFD
         landed = patch_of(self.geometry, hit, none - 1, none)
         missed = dr.select(landed == none, types.UInt32(self.total), types.UInt32(self.total + self.replicates)) + replicate
         return dr.select(landed >= none - 1, missed, landed + replicate * self.n_opaque)
 
-    def fire(self, lanes: Lanes, bits: int) -> None:
-        """Trace lanes and count where they land."""
-        number, index = self.read(lanes)
-        landed = self.trace(number, index, bits)
+    def fire(self, lanes: Lanes, bits: int, boxes: tuple[int, int] | None = None) -> None:
+        """Trace lanes and count where they land; with ``boxes``, in packets of like directions."""
+        number, index = self.read(lanes, boxes)
+        landed = self.trace(number, index, bits, coherent=boxes is not None)
         dr.scatter_add(self.arrivals, self.types.UInt32(1), landed)
         if self.bands is not None:
             self.bands.deposit(number, landed)
@@ -134,12 +135,37 @@ class Engine:
             at = types.UInt32(dr.maximum(begin, first) - first)
             dr.scatter(rank, dr.arange(types.UInt32, dr.width(numbers)), at, active=here)
             rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, width, exclusive=False)
-            yield Lanes(rank, numbers, begin, fired, start, width)
+            yield Lanes(rank, numbers, begin, fired, count, start, width)
 
-    def read(self, lanes: Lanes):
+    def read(self, lanes: Lanes, boxes: tuple[int, int] | None = None):
         """In a kernel of width ``lanes.count``: patch number and index (from 1) of each line."""
         types = self.types
         lane = types.UInt64(dr.arange(types.UInt32, lanes.count)) + dr.opaque(types.UInt64, lanes.start)
         number = dr.gather(types.UInt32, lanes.patches, lanes.rank)
         within = types.UInt32(lane - dr.gather(types.UInt64, lanes.begins, lanes.rank))
-        return number, dr.gather(types.UInt32, lanes.fired, lanes.rank) + within + 1
+        base = dr.gather(types.UInt32, lanes.fired, lanes.rank) + 1
+        if boxes is None:
+            return number, base + within
+        return number, base + self._by_boxes(base, within, dr.gather(types.UInt32, lanes.deficits, lanes.rank), boxes)
+
+    def _by_boxes(self, base, within, count, boxes: tuple[int, int]):
+        """Which of a patch's ``count`` lines from ``base`` on is fired as the ``within``-th, when they go box by box.
+
+        As many whole cycles of the boxes as fit are permuted; the rest, less than a cycle, keeps its order.
+        """
+        types = self.types
+        n = strata.boxes(*boxes)
+        walk = upload(types.UInt32, strata.walk(*boxes))
+        cycles = count // n
+        box = types.UInt32(types.Float64(within) / types.Float64(cycles))  # exact for 32-bit numbers
+        whole = within < cycles * n
+        offset = dr.gather(types.UInt32, walk, box, whole) + n - base % n
+        offset = dr.select(offset >= n, offset - n, offset)
+        return dr.select(whole, offset + (within - box * cycles) * n, within)
+
+    def boxes_for(self, deficit) -> tuple[int, int] | None:
+        """For coherent firing: boxes that fit the lines of a typical line's patch; None where it would not pay."""
+        squares = dr.sum(self.types.Float64(deficit) * self.types.Float64(deficit))
+        total = dr.sum(self.types.Float64(deficit))
+        dr.eval(squares, total)
+        return strata.largest(1.0 * float(squares[0]) / float(total[0]))

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from .look import Look
 from .output import check_writable as _check
+from .output import require
 from .render import render
 
 FORMATS = {
@@ -24,13 +25,16 @@ def check_writable(path) -> Path:
     """Find out before a run whether a result can be written to ``path``.
 
     Raises:
-        OutputError: unknown suffix, missing or read-only folder, a folder or a read-only file of that name.
+        OutputError: unknown suffix, missing or read-only folder, a folder or a read-only file of that name, or a
+            library that is not installed.
     """
     path = _check(path, SUFFIXES)
     if path.suffix.lower() == ".csv":
         from .tables import surfaces_path
 
         _check(surfaces_path(path), SUFFIXES)
+    if path.suffix.lower() == ".png":
+        require("PIL", f"{path}: writing PNG")
     return path
 
 

@@ -88,7 +88,8 @@ def _legend(norm, shades, label: str, extend: str, height: int) -> np.ndarray:
     bar.tick_params(labelsize=8)
     if isinstance(norm, LogNorm):
         # 1, 2, 5, 10 rather than powers in small print; more of them where the range is short
-        steps = (1, 2, 5) if norm.vmax > 3 * norm.vmin else np.arange(1, 10, 0.5)
+        low, high = bar.get_ylim()
+        steps = (1, 2, 5) if high > 6 * low else tuple(np.arange(1, 10, 0.5))
         bar.yaxis.set_major_locator(LogLocator(10, steps))
         bar.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         bar.yaxis.set_minor_formatter(NullFormatter())

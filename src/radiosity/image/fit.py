@@ -6,14 +6,17 @@ import numpy as np
 
 from ..patches import Patches
 from ..scene import Camera, Scene
+from . import tone
 from .lookup import Lookup
 from .view import directions, up_axis
 
 TRIAL = (40, 30)  # pixels of a trial picture
 INSIDE_FOV, OUTSIDE_FOV = 65.0, 40.0  # degrees, vertical
-INSETS = (0.04, 0.15)  # from the corners of the bounding box, as a part of its sides
-HEIGHTS = (0.5, 0.75)  # of the eye, as a part of the box's height
-NEAR = 0.15  # of the box's mean side: a view whose typical distance is below this is blocked
+CORNERS, EYES = (0.04, 0.15), (0.5, 0.75)  # distance from the bounding box's corners, and height, as a part of its sides
+GRID, EYE = (0.1, 0.3, 0.5, 0.7, 0.9), 0.6  # places all over the box, for buildings of several rooms, and their height
+FALL = 0.15  # how much the views from there look down, as a part of their length
+FAR = 0.6  # of the box's mean side: typical distances below this make a view worse
+DIM = 0.02  # of a well-lit patch's radiosity: less counts as dark
 
 
 def fitted(patches: Patches, light: np.ndarray, hits, *, width: int = 800, height: int = 600) -> Camera:
@@ -25,15 +28,22 @@ def fitted(patches: Patches, light: np.ndarray, hits, *, width: int = 800, heigh
         hits: ``hits(scene, origins, directions)``, see `radiosity.image.render`.
         width, height: of the picture, pixels.
     """
-    look = Lookup(patches, np.nan_to_num(light)[:, None], smooth=False)
-    cameras = [*candidates(patches.scene, width / height)]
-    scores = [_score(look, camera, hits) for camera in cameras]
+    scene, level = patches.scene, np.nan_to_num(light)
+    well_lit = tone.LEVEL / tone.automatic_scale(level[:, None], patches.area)
+    cameras = candidates(scene, width / height)
+    x, y = (points.ravel() + 0.5 for points in np.meshgrid(np.arange(TRIAL[0]), np.arange(TRIAL[1])))
+    rays = np.concatenate([directions(camera, x, y) for camera in cameras])
+    seen = hits(scene, np.repeat([camera.origin for camera in cameras], len(x), axis=0), rays)
+    patch = Lookup(patches, level[:, None], smooth=False).patch(seen).reshape(len(cameras), -1)
+    lit = (patch >= 0) & (level[patch] > DIM * well_lit)
+    distance = np.asarray(seen.distance).reshape(patch.shape) / np.mean(np.ptp(scene.bounds, axis=0))
+    scores = [_score(patches.surface[p[on]], d[on], on.mean()) for p, d, on in zip(patch, distance, lit, strict=True)]
     best = cameras[int(np.argmax(scores))]
     return Camera(best.origin, best.target, best.up, best.fov, width, height)
 
 
 def candidates(scene: Scene, aspect: float) -> list[Camera]:
-    """Cameras inside, near the corners of the bounding box, and outside, before its corners."""
+    """Cameras inside, near the corners of the bounding box, all over it, and outside, before its corners."""
     low, high = scene.bounds
     size = np.maximum(high - low, 1e-6 * np.max(high - low))
     axis = "xyz".index(up_axis(scene))
@@ -44,11 +54,20 @@ def candidates(scene: Scene, aspect: float) -> list[Camera]:
     for one, two in product((0, 1), repeat=2):
         corner = np.zeros(3)
         corner[level] = one, two
-        for inset, eye in product(INSETS, HEIGHTS):
-            part = np.where(corner > 0, 1 - inset, inset)
-            target = np.where(corner > 0, 0.35, 0.65)
-            part[axis], target[axis] = eye, 0.4
-            result.append(_camera(low + part * size, low + target * size, up, INSIDE_FOV))
+        away = np.where(corner > 0, 0.35, 0.65)
+        away[axis] = 0.4
+        places = []
+        for inset, eye in product(CORNERS, EYES):
+            place = np.where(corner > 0, 1 - inset, inset)
+            place[axis] = eye
+            places.append((place, away))
+        result += [_camera(low + place * size, low + target * size, up, INSIDE_FOV) for place, target in places]
+        along = np.where(corner > 0, -1, 1) * size * (1 - up)
+        along -= FALL * np.linalg.norm(along) * up
+        for place in product(GRID, repeat=2):
+            middle = np.full(3, EYE)
+            middle[level] = place
+            result.append(_camera(low + middle * size, low + middle * size + along, up, INSIDE_FOV))
     radius = np.linalg.norm(size) / 2
     narrow = np.arctan(np.tan(np.deg2rad(OUTSIDE_FOV) / 2) * min(1.0, aspect))
     for one, two, rise in product((-1, 1), (-1, 1), (0.6, -0.6)):
@@ -64,17 +83,11 @@ def _camera(origin, target, up, fov) -> Camera:
     return Camera((x, y, z), (a, b, c), (i, j, k), fov, *TRIAL)
 
 
-def _score(look: Lookup, camera: Camera, hits) -> float:
-    x, y = np.meshgrid(np.arange(TRIAL[0]) + 0.5, np.arange(TRIAL[1]) + 0.5)
-    rays = directions(camera, x.ravel(), y.ravel())
-    seen = hits(look.patches.scene, np.broadcast_to(camera.origin, rays.shape).copy(), rays)
-    values, patch = look(seen)
-    lit = (patch >= 0) & (values[:, 0] > 0)
-    if not lit.any():
+def _score(surface: np.ndarray, distance: np.ndarray, lit: float) -> float:
+    """Of a view whose lit pixels show these surfaces at these distances (in mean sides of the box)."""
+    if lit == 0:
         return 0.0
-    counts = np.bincount(look.patches.surface[patch[lit]])
-    share = counts[counts > 0] / lit.sum()
+    counts = np.bincount(surface)
+    share = counts[counts > 0] / len(surface)
     variety = np.exp(-(share * np.log(share)).sum())  # the number of surfaces, were they seen equally well
-    side = float(np.mean(np.ptp(look.patches.scene.bounds, axis=0)))
-    room = min(1.0, float(np.median(np.asarray(seen.distance)[lit])) / (NEAR * side))
-    return float(lit.mean() * np.sqrt(variety) * room)
+    return float(lit * np.sqrt(variety * min(1.0, float(np.median(distance)) / FAR)))

@@ -29,7 +29,6 @@ class ColouredMesh:
     Attributes:
         vertices: (n, 3) float64, metres.
         triangles: (m, 3) int32.
-        patch: (m,) int32, patch of each triangle.
         surface: (m,) int32, surface of each triangle.
         names: of the surfaces.
         values: (n, n_bands) float64, the quantity, in ``unit``; NaN where unknown.
@@ -42,7 +41,6 @@ class ColouredMesh:
 
     vertices: np.ndarray
     triangles: np.ndarray
-    patch: np.ndarray
     surface: np.ndarray
     names: tuple[str, ...]
     values: np.ndarray
@@ -89,6 +87,6 @@ def coloured(solution, look: Look) -> ColouredMesh:
         values = shown.values[owner]
     triangles, patch = mesh.triangles()
     return ColouredMesh(
-        mesh.vertices, triangles, patch, mesh.surface[patch], patches.scene.names, values, tone.colours(values) * scale,
+        mesh.vertices, triangles, mesh.surface[patch], patches.scene.names, values, tone.colours(values) * scale,
         look.quantity, shown.unit, shown.bands, scale, up_axis(patches.scene), look.smooth,
     )  # fmt: skip

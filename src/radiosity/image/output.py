@@ -2,6 +2,7 @@
 
 import os
 from contextlib import contextmanager, suppress
+from importlib.util import find_spec
 from pathlib import Path
 
 from ..errors import OutputError, RadiosityError
@@ -40,6 +41,16 @@ def check_writable(path, suffixes) -> Path:
     except (OSError, ValueError) as error:
         raise OutputError(f"{path}: cannot write there ({_reason(error)}); choose another place") from None
     return path
+
+
+def require(module: str, purpose: str) -> None:
+    """Refuse in time where a library of the ``plots`` extra is missing.
+
+    Raises:
+        OutputError: it is not installed.
+    """
+    if find_spec(module) is None:
+        raise OutputError(f"{purpose} needs '{module}', which is not installed; pip install 'radiosity[plots]'")
 
 
 @contextmanager

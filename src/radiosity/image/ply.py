@@ -1,7 +1,7 @@
 """PLY: triangles with vertex colours (8 bits, sRGB) and the values themselves (32-bit floats, one property a band).
 
-Vertices keep the scene's axes and metres. Faces carry the numbers of their patch and surface; the surfaces' names,
-the unit and the scale stand in comments of the header. Unknown values are NaN.
+Vertices keep the scene's axes and metres, and carry the number of their surface; the surfaces' names, the unit and
+the scale stand in comments of the header. Unknown values are NaN. Faces carry nothing else: some readers stumble over it.
 """
 
 import re
@@ -20,8 +20,10 @@ def write(solution, path, look: Look) -> None:
     """Write a binary PLY file."""
     mesh = coloured(solution, look)
     bands = [mesh.key] if len(mesh.bands) == 1 else [f"{mesh.key}_{_word(band)}" for band in mesh.bands]
-    vertex = np.dtype([("xyz", "<f4", 3), ("rgb", "u1", 3), ("values", "<f4", mesh.values.shape[1])])
-    face = np.dtype([("n", "u1"), ("corners", "<i4", 3), ("patch", "<i4"), ("surface", "<i4")])
+    vertex = np.dtype([("xyz", "<f4", 3), ("rgb", "u1", 3), ("values", "<f4", mesh.values.shape[1]), ("surface", "<i4")])
+    face = np.dtype([("n", "u1"), ("corners", "<i4", 3)])
+    surface = np.zeros(len(mesh.vertices), np.int32)
+    surface[mesh.triangles] = mesh.surface[:, None]
     header = [
         "ply", "format binary_little_endian 1.0", "comment made by radiosity; coordinates in metres",
         f"comment quantity {mesh.key} unit {mesh.unit} scale {mesh.scale!r}",
@@ -29,22 +31,21 @@ def write(solution, path, look: Look) -> None:
         *(f"comment surface {i} {_line(name)}" for i, name in enumerate(mesh.names)),
         f"element vertex {len(mesh.vertices)}", *(f"property float {axis}" for axis in "xyz"),
         *(f"property uchar {colour}" for colour in ("red", "green", "blue")), *(f"property float {band}" for band in bands),
-        f"element face {len(mesh.triangles)}", "property list uchar int vertex_indices", "property int patch",
-        "property int surface", "end_header",
+        "property int surface",
+        f"element face {len(mesh.triangles)}", "property list uchar int vertex_indices", "end_header",
     ]  # fmt: skip
     with replacing(path) as temporary, temporary.open("wb") as file:
-        file.write(("\n".join(header) + "\n").encode("ascii", "replace"))
+        file.write(("\n".join(header) + "\n").replace("²", "2").encode("ascii", "replace"))
         for begin in range(0, len(mesh.vertices), CHUNK):
             part = slice(begin, begin + CHUNK)
             rows = np.zeros(len(mesh.vertices[part]), vertex)
             rows["xyz"], rows["rgb"] = mesh.vertices[part], tone.eight_bits(tone.srgb(mesh.linear[part]))
-            rows["values"] = mesh.values[part]
+            rows["values"], rows["surface"] = mesh.values[part], surface[part]
             file.write(rows.tobytes())
         for begin in range(0, len(mesh.triangles), CHUNK):
             part = slice(begin, begin + CHUNK)
             rows = np.zeros(len(mesh.triangles[part]), face)
             rows["n"], rows["corners"] = 3, mesh.triangles[part]
-            rows["patch"], rows["surface"] = mesh.patch[part], mesh.surface[part]
             file.write(rows.tobytes())
 
 

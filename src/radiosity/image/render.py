@@ -10,7 +10,7 @@ from ..scene import Camera
 from . import bitmap, tone
 from . import false_color as maps
 from .look import Look
-from .output import check_writable
+from .output import check_writable, require
 from .picture import choose_camera, first_hits, take
 from .quantity import choose
 
@@ -63,6 +63,10 @@ def render(
     linear = path is not None and path.suffix.lower() == ".exr"
     if linear and false_color:
         raise OutputError(f"{path}: EXR holds physical values; write false colours to a .png file")
+    if path is not None and not linear:
+        require("PIL", f"{path}: writing PNG")
+    if false_color:
+        require("matplotlib", "the legend of false colours")
     hits = hits or first_hits
     shown = choose(solution, quantity, band, single=false_color)
     view = choose_camera(solution, camera, width, height, hits)

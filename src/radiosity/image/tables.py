@@ -14,6 +14,7 @@ from .look import Look
 from .output import replacing
 
 CHUNK = 1 << 16
+POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net")
 
 
 def write(solution, path, look: Look | None = None) -> None:
@@ -58,23 +59,19 @@ def _patches(solution, path: Path) -> None:
 
 
 def _surfaces(solution, path: Path) -> None:
-    rows = [_flattened(row, [str(band) for band in solution.bands]) for row in solution.surface_table()]
+    rows, scene = solution.surface_table(), solution.patches.scene
+    units = {"area": "m²", "radiosity": solution.unit, "irradiance": solution.unit, **dict.fromkeys(POWERS, scene.power_unit)}
     with replacing(path) as temporary, _text(temporary) as file:
-        writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(_titled(key, units) for key in rows[0])
+        writer.writerows(row.values() for row in rows)
 
 
-def _flattened(row: dict, bands: list[str]) -> dict:
-    """A column for each band where a value has several."""
-    result = {}
-    for key, value in row.items():
-        several = isinstance(value, (list, tuple, np.ndarray)) and np.ndim(value) == 1
-        if several and len(value) == len(bands) > 1:
-            result |= {f"{key} {band}": item for band, item in zip(bands, value, strict=True)}
-        else:
-            result[key] = value[0] if several and len(value) == 1 else value
-    return result
+def _titled(key: str, units: dict[str, str]) -> str:
+    """``radiosity red [W/m²]`` for ``radiosity [red]``."""
+    quantity, _, band = key.removesuffix("]").partition(" [")
+    title = f"{quantity} {band}" if band else key
+    return f"{title} [{units[quantity]}]" if quantity in units else title
 
 
 def _text(path: Path) -> TextIO:

@@ -42,7 +42,7 @@ def write(solution, path, look: Look) -> None:
             )
         file.write(f'</FieldData>\n<Piece NumberOfPoints="{len(mesh.vertices)}" NumberOfPolys="{len(mesh.polygons)}">\n'.encode())
         file.write(b"<Points>\n")
-        _array(file, "Points", mesh.vertices.astype("<f4"))
+        _array(file, "Points", mesh.vertices.astype("<f8"))
         file.write(b"</Points>\n<Polys>\n")
         _array(file, "connectivity", mesh.polygons[used].astype("<i8"))
         _array(file, "offsets", np.cumsum(used.sum(axis=1)).astype("<i8"))

@@ -110,12 +110,17 @@ class Patches:
         face = self.face
         quad = self.scene.is_quad[face]
         total = np.zeros((len(self), paint.color.shape[2]))
-        steps = (np.arange(SAMPLES) + 0.5) / SAMPLES
-        for a in steps:
-            for b in steps:
-                # the square's points beyond the diagonal fold back into the triangle
-                over = ~quad & (a + b > 1)
-                s, t = np.where(over, 1 - a, a), np.where(over, 1 - b, b)
-                s, t = np.where(inverted, 1 - s, s), np.where(inverted, 1 - t, t)
-                total += paint.factor(face, (column + s) / self.columns[face], (row + t) / self.rows[face], quad)
+        for (a, b), (c, d) in zip(*_samples(), strict=True):
+            s, t = np.where(quad, a, c), np.where(quad, b, d)
+            s, t = np.where(inverted, 1 - s, s), np.where(inverted, 1 - t, t)
+            total += paint.factor(face, (column + s) / self.columns[face], (row + t) / self.rows[face], quad)
         return total / SAMPLES**2
+
+
+def _samples() -> tuple[np.ndarray, np.ndarray]:
+    """Points of a square and of a triangle, (SAMPLES², 2) each: the centroids of congruent cells, exact for linear paints."""
+    cell = np.arange(SAMPLES**2)
+    column, row, inverted = cells.place(cell, np.full(len(cell), SAMPLES), np.zeros(len(cell), bool))
+    middle = np.where(inverted, 2 / 3, 1 / 3)
+    square = np.column_stack([cell % SAMPLES + 0.5, cell // SAMPLES + 0.5])
+    return square / SAMPLES, np.column_stack([column + middle, row + middle]) / SAMPLES

@@ -42,6 +42,8 @@ def cornell_box() -> Scene:
         np.arange(4 * len(quads)).reshape(-1, 4),
         np.array([color for _, color, _ in quads]),
         np.array(emission),
+        two_sided=[name == "light" for name, _, _ in quads],
+        back_emission=np.zeros((1, 3)),
         surface=[names.index(name) for name, _, _ in quads],
         names=names,
         cameras=(Camera((0.278, 0.273, -0.8), (0.278, 0.273, -0.799), (0, 1, 0), 39.3077, 600, 600),),
@@ -60,7 +62,7 @@ def room() -> Scene:
     parts.append(("tall box", 0.6, 0.0, box((3.6, 2.0, 0), (4.6, 3.0, 1.8), turn=-15)[:-2] + box((3.6, 2.0, 0), (4.6, 3.0, 1.8), turn=-15)[-1:]))
     parts.append(("light", 0.0, CEILING_LIGHT, [quad((2.6, 1.6, 2.99), (0, 0.8, 0), (0.8, 0, 0))]))
     camera = Camera((0.25, 0.25, 1.9), (4.0, 2.6, 0.8), (0, 0, 1), 62.0, 800, 600)
-    return join(parts, source="room", cameras=(camera,))
+    return join(parts, source="room", cameras=(camera,), backs={"light": 0.7})
 
 
 def labyrinth(mean_reflectance: float = 0.5, cells: int = 4) -> Scene:

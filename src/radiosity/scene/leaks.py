@@ -23,7 +23,7 @@ class Fates:
         face: (n_lines,) int64, where each began.
         fate: (n_lines,) int, SEEN (a radiating side), ESCAPED or LOST (an absorbing back).
         hit: (n_lines,) int64, the face met, or -1.
-        exit: (n_lines,) int64, for a line that escaped the side of the scene's box that it left through: x low, x high, y low, ...
+        exit: (n_lines,) int64, the side of the scene's box that a line which meets nothing leaves through: x low, x high, ...
         distance: (n_lines,) float64, metres; infinite for a line that escaped.
     """
 
@@ -75,14 +75,13 @@ def flipped_emitters(scene: Scene, emits: np.ndarray, *, seed: int = 0, device: 
     """Emitting surfaces whose front sees next to nothing while their back, which emits nothing, sees the scene.
 
     Args:
-        emits: (n_faces,) bool, faces whose front emits.
+        emits: (n_faces,) bool, faces whose front emits and whose back does not.
 
     Returns:
         Surface, and the shares of lines from its front and from its back that meet another surface's radiating side
         farther away than what the source is mounted on.
     """
     generator = np.random.Generator(np.random.Philox(seed))
-    emits = emits & (scene.back != Back.RADIATES)
     surfaces = np.unique(scene.surface[emits])
     if len(surfaces) == 0:
         return []

@@ -33,8 +33,9 @@ def box(low, high, *, inward: bool = False, turn: float = 0.0) -> list[np.ndarra
     return faces
 
 
-def join(parts, *, source: str, cameras=()) -> Scene:
-    """A grey scene from (name, reflectance, emission, [corners, ...])."""
+def join(parts, *, source: str, cameras=(), backs: dict[str, float] | None = None) -> Scene:
+    """A grey scene from (name, reflectance, emission, [corners, ...]); backs of named surfaces reflect but do not emit."""
+    backs = backs or {}
     rows = [(i, reflectance, emission, corners) for i, (_, reflectance, emission, quads) in enumerate(parts) for corners in quads]
     return Scene.from_arrays(
         np.concatenate([corners for *_, corners in rows]),
@@ -42,6 +43,9 @@ def join(parts, *, source: str, cameras=()) -> Scene:
         np.array([r for _, r, _, _ in rows], np.float64),
         np.array([e for _, _, e, _ in rows], np.float64),
         surface=[i for i, *_ in rows],
+        two_sided=np.array([parts[i][0] in backs for i, *_ in rows]),
+        back_reflectance=np.array([backs.get(parts[i][0], 0.0) for i, *_ in rows]),
+        back_emission=np.zeros(len(rows)),
         names=[name for name, *_ in parts],
         source=source,
         cameras=cameras,

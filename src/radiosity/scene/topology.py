@@ -74,9 +74,7 @@ def open_edges(scene: Scene) -> OpenEdges:
     face = np.repeat(np.arange(scene.n_faces), 4)
     real = (start >= 0) & (start != end)
     face, low, high = face[real], np.minimum(start, end)[real], np.maximum(start, end)[real]
-    _, first, number, many = np.unique(
-        np.column_stack([low, high]), axis=0, return_index=True, return_inverse=True, return_counts=True
-    )
+    _, first, many = np.unique(np.column_stack([low, high]), axis=0, return_index=True, return_counts=True)
     alone = first[many == 1]
     corner = np.flatnonzero(real)[alone]
     points = scene.vertices[scene.faces.ravel()]

@@ -27,7 +27,8 @@ def sweep(engine) -> int:
     if engine.bands is not None:
         engine.bands.weigh(deficit)
     bits = engine.numbers.bits_for(int(largest[0]))
+    boxes = engine.boxes_for(deficit) if engine.method.coherent else None
     for lanes in engine.lanes(deficit):
-        engine.fire(lanes, bits)
+        engine.fire(lanes, bits, boxes)
     engine.fired = owed
     return count

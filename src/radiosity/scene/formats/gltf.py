@@ -17,6 +17,7 @@ from .gltf_accessor import accessor
 from .gltf_file import GltfFile, load
 from .gltf_material import Finish, Materials, Texture
 from .gltf_nodes import cameras, walk
+from .textures import warn_of_means, with_means
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
 
@@ -56,7 +57,9 @@ def read(path: Path, options: ReadOptions) -> Scene:
     if clamped:
         warn(f"{path}: textures that end at their rim or are mirrored are repeated instead: {shown(clamped)}")
     materials.report()
-    return assemble(parts, str(path), options, cameras=cameras(file, nodes))
+    placed = [with_means(part, part.uv is None, part.emission_uv is None) for part in parts]
+    warn_of_means(parts, placed, str(path))
+    return assemble(placed, str(path), options, cameras=cameras(file, nodes))
 
 
 def _part(file: GltfFile, name: str, primitive: dict, matrix: np.ndarray, materials: Materials, clamped: dict) -> Part:
@@ -94,9 +97,10 @@ def _attribute(file: GltfFile, attributes: dict, key: str, widths: tuple, what: 
 
 
 def _uv(file: GltfFile, attributes: dict, texture: Texture | None, what: str, count: int, clamped: dict) -> np.ndarray | None:
-    if texture is None:
+    key = f"TEXCOORD_{texture.coordinates}" if texture else ""
+    if texture is None or key not in attributes:
         return None
-    uv = texture.uv(_attribute(file, attributes, f"TEXCOORD_{texture.coordinates}", (2,), what, count))
+    uv = texture.uv(_attribute(file, attributes, key, (2,), what, count))
     if not texture.repeats and (np.abs(uv - 0.5) > 0.501).any():
         clamped[what.strip("'")] = True
     return uv

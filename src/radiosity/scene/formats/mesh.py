@@ -15,7 +15,7 @@ from ..assemble import Material, Part, ReadOptions, assemble, warn
 from ..model import Scene
 from .faces import cut
 from .ply import Lists, Ply, read_ply
-from .textures import decode_srgb, linear_image, without_coordinates
+from .textures import decode_srgb, linear_image, warn_of_means, with_means
 
 INDICES = ("vertex_indices", "vertex_index")
 COORDINATES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
@@ -28,7 +28,9 @@ def read(path: Path, options: ReadOptions) -> Scene:
         SceneError: damaged, truncated, or without faces.
     """
     parts = _stl(path) if path.suffix.lower() == ".stl" else [_ply(path, options)]
-    return assemble(parts, str(path), options)
+    placed = [with_means(part, part.uv is None, False) for part in parts]
+    warn_of_means(parts, placed, str(path))
+    return assemble(placed, str(path), options)
 
 
 def _stl(path: Path) -> list[Part]:
@@ -95,7 +97,7 @@ def _ply(path: Path, options: ReadOptions) -> Part:
     texture = _texture(path, ply, options)
     material = Material() if color is None and texture is None else Material((1.0,))
     part = Part(path.stem, points, faces, material, uv, color, texture)
-    return without_coordinates(part) if uv is None else part
+    return part
 
 
 def _color(path: Path, columns: dict) -> np.ndarray | None:

@@ -105,7 +105,7 @@ class FaceReader:
             return
         if self.contexts.changed:
             self.contexts.changed = False
-            name = ":".join([*([".".join(self._path)] if self._path else []), self.contexts.material_name])
+            name = "/".join([*([".".join(self._path)] if self._path else []), self.contexts.material_name])
             self._current = self.polygons.setdefault((name, self.contexts.material), Polygons())
         self._current.corners.extend(corners)
         self._current.sizes.append(len(corners))

@@ -72,6 +72,7 @@ def _run(data: bytes, source: str) -> tuple[bytes, bytes, int]:
         given.write(data)
         given.seek(0)
         process = subprocess.Popen([program("mgfilt"), UNDERSTOOD], stdin=given, stdout=subprocess.PIPE, stderr=errors)
+        assert process.stdout is not None
         late = threading.Event()
         timer = threading.Timer(SECONDS, lambda: (late.set(), process.kill()))
         timer.start()

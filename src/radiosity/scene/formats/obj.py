@@ -14,7 +14,7 @@ from ..assemble import Material, Part, ReadOptions, assemble, warn
 from ..model import Scene
 from .faces import cut
 from .mtl import Finish, read_library, read_text
-from .textures import decode_srgb, without_coordinates
+from .textures import decode_srgb, warn_of_means, with_means
 
 NO_NAME = ("", "default", "off", "(null)")
 FREE_FORM = ("curv", "curv2", "surf")
@@ -42,7 +42,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
     """
     tables = _parse(path)
     if tables.faults:
-        text = f"{path}: {len(tables.faults)} faces of fewer than three corners left out ({'; '.join(tables.faults[:3])})"
+        n = len(tables.faults)
+        text = f"{path}: {n} face{'s'[: n > 1]} of fewer than three corners left out ({', '.join(tables.faults[:3])})"
         if options.strict:
             raise SceneError(text)
         warn(text)
@@ -57,7 +58,9 @@ def read(path: Path, options: ReadOptions) -> Scene:
     uv = np.array(tables.uv, np.float64).reshape(-1, 2)
     parts = [_part(name or path.stem, material, rows, (vertices, colors, uv), finishes.get(material))
              for (name, material), rows in tables.groups.items() if rows]  # fmt: skip
-    return assemble(parts, str(path), options)
+    placed = [with_means(part, part.uv is None, part.emission_uv is None) for part in parts]
+    warn_of_means(parts, placed, str(path))
+    return assemble(placed, str(path), options)
 
 
 def _parse(path: Path) -> _Tables:
@@ -159,4 +162,4 @@ def _part(name: str, material: str, rows, tables, finish: Finish | None) -> Part
     if (corners[:, 1] >= 0).all():
         own = uv[corners[:, 1]]
         return replace(part, uv=base and base.uv(own), emission_uv=emissive and emissive.uv(own))
-    return without_coordinates(part)
+    return part

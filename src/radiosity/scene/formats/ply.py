@@ -10,9 +10,11 @@ import numpy as np
 
 from ...errors import SceneError
 
-TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2", "uint16": "u2",
-         "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4", "double": "f8", "float64": "f8",
-         "int64": "i8", "uint64": "u8"}  # fmt: skip
+TYPES = {
+    "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",
+    "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "int64": "i8", "uint64": "u8",
+    "float32": "f4", "float64": "f8",
+}  # fmt: skip
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
@@ -77,17 +79,21 @@ def read_ply(path: Path) -> Ply:
 
 
 def _header(path: Path, text: str):
-    order, elements, comments = None, [], []
+    elements, comments = [], []
+    kinds = [line.split()[1] for line in text.splitlines() if line.startswith("format ") and len(line.split()) > 1]
+    if not kinds or kinds[0] not in ORDERS:
+        raise SceneError(
+            f"{path}: the header's format is {kinds[0] if kinds else 'missing'}; expected one of {', '.join(ORDERS)}"
+        )
+    order = ORDERS[kinds[0]]
     for line in text.splitlines()[1:]:
         words = line.split()
         try:
             match words:
-                case [] | ["obj_info", *_]:
+                case [] | ["obj_info" | "format", *_]:
                     pass
                 case ["comment", *_]:
                     comments.append(line.split(None, 1)[1] if len(words) > 1 else "")
-                case ["format", kind, _]:
-                    order = ORDERS[kind]
                 case ["element", name, count] if int(count) >= 0:
                     elements.append((name, int(count), []))
                 case ["property", "list", count, kind, name] if TYPES[count][0] != "f":
@@ -98,8 +104,6 @@ def _header(path: Path, text: str):
                     raise ValueError
         except (ValueError, KeyError, IndexError, TypeError):
             raise SceneError(f"{path}: header line '{line.strip()[:80]}' is not understood; the file is damaged") from None
-    if order is None:
-        raise SceneError(f"{path}: the header has no format line; the file is damaged")
     return order, elements, comments
 
 

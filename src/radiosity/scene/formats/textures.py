@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...errors import SceneError
-from ..assemble import Part
+from ...errors import SceneError, shown
+from ..assemble import Part, warn
 
 LARGEST = 1024  # pixels along an edge: larger images are averaged, patches are larger than their texels
 
@@ -64,18 +64,21 @@ def _reduced(pixels: np.ndarray, decode) -> np.ndarray:
     return result
 
 
-def without_coordinates(part: Part) -> Part:
-    """A part whose textures cannot be placed takes their mean."""
-    if part.texture is not None:
+def with_means(part: Part, base: bool, emissive: bool) -> Part:
+    """A part whose base or emission texture cannot be placed (no texture coordinates) takes the texture's mean."""
+    if base and part.texture is not None:
         mean = part.texture.mean(axis=(0, 1), dtype=np.float64)
-        part = replace(
-            part,
-            texture=None,
-            color=np.broadcast_to(mean, (len(part.vertices), len(mean))) * (1.0 if part.color is None else part.color),
-        )
-    if part.emission_texture is not None:
-        glow = tuple(
-            float(v) for v in np.asarray(part.material.emission) * part.emission_texture.mean(axis=(0, 1), dtype=np.float64)
-        )
+        color = np.ones((len(part.vertices), 1)) if part.color is None else part.color
+        part = replace(part, texture=None, color=color * mean)
+    if emissive and part.emission_texture is not None:
+        mean = part.emission_texture.mean(axis=(0, 1), dtype=np.float64)
+        glow = tuple(float(v) for v in np.asarray(part.material.emission) * mean)
         part = replace(part, emission_texture=None, material=replace(part.material, emission=glow))
     return part
+
+
+def warn_of_means(before: list[Part], after: list[Part], source: str) -> None:
+    """Tell once which surfaces `with_means` has changed."""
+    names = [one.name for one, two in zip(before, after, strict=True) if one is not two]
+    if names:
+        warn(f"{source}: no texture coordinates, the texture's mean is taken: {shown(dict.fromkeys(names))}")

@@ -1,0 +1,113 @@
+"""Reflectances, radiances and textures of Mitsuba's plugins as linear RGB, or one number where they are grey."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import SceneError
+from .mitsuba_image import find_file, read_image
+from .mitsuba_parse import Node, Spectrum, message
+
+CHECKER = 64  # pixels along an edge of the image that stands for a checkerboard
+
+Color = tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """A texture: linear (height, width, 1 or 3), row 0 at Mitsuba's v = 0; ``to_uv`` (3, 3) acts on (u, v, 1)."""
+
+    pixels: np.ndarray
+    to_uv: np.ndarray
+
+    def coordinates(self, uv: np.ndarray) -> np.ndarray:
+        """Mitsuba's texture coordinates (n, 2) to those of a paint, whose v grows from the last row to the first."""
+        u, v = (np.column_stack([uv, np.ones(len(uv))]) @ self.to_uv.T).T[:2]
+        return np.column_stack([u, 1 - v])
+
+    @property
+    def mean(self) -> Color:
+        return collapse(self.pixels.mean(axis=(0, 1), dtype=np.float64))
+
+
+@dataclass(frozen=True)
+class VertexColors:
+    """Colours that the mesh brings along."""
+
+
+def collapse(color) -> Color:
+    """One number where all are equal."""
+    values = tuple(float(v) for v in color)
+    return values[:1] if len(set(values)) == 1 else values
+
+
+class Colors:
+    """Reads the colours of the file ``path``; images are found beside it and read once."""
+
+    def __init__(self, path: Path):
+        self.path = path
+        self._images: dict[tuple[Path, bool], np.ndarray] = {}
+
+    def get(self, node: Node, key: str, default: float, *, emission: bool = False) -> "Color | Image | VertexColors":
+        """The argument ``key`` of a plugin.
+
+        Raises:
+            SceneError: an image that cannot be read, or what Mitsuba cannot evaluate in RGB.
+        """
+        nested = node.child(key)
+        if nested is not None:
+            return self._texture(nested)
+        value = node.values.get(key, default)
+        if isinstance(value, Spectrum):
+            flat = not value.wavelengths
+            return value.values[:1] if flat else collapse(_srgb(value.wavelengths, value.values, emission))
+        color = np.atleast_1d(np.asarray(value)) if not isinstance(value, str) else np.zeros(0)
+        if color.shape not in ((1,), (3,)):
+            raise SceneError(f"{node.place}: '{key}' of this '{node.plugin}' is {value!r}; expected a colour")
+        return collapse(color)
+
+    def _texture(self, node: Node) -> "Color | Image | VertexColors":
+        to_uv = node.values.get("to_uv", np.eye(4))
+        to_uv = to_uv[np.ix_((0, 1, 3), (0, 1, 3))] if to_uv.shape == (4, 4) else to_uv
+        if node.plugin == "bitmap":
+            return Image(self._bitmap(node), to_uv)
+        if node.plugin == "checkerboard":
+            return Image(self._checkerboard(node), to_uv)
+        if node.plugin == "mesh_attribute":
+            return VertexColors()
+        try:
+            return collapse(node.evaluate())
+        except Exception as error:  # of many classes
+            text = message(error, self.path)
+            raise SceneError(f"{node.place}: '{node.plugin}' has no RGB value ({text}); give an rgb or a bitmap") from None
+
+    def _bitmap(self, node: Node) -> np.ndarray:
+        name = node.values.get("filename")
+        if not isinstance(name, str):
+            raise SceneError(f"{node.place}: a bitmap without a filename")
+        file = find_file(self.path, name, node)
+        raw = bool(node.values.get("raw", False))
+        if (file, raw) not in self._images:
+            self._images[file, raw] = read_image(file, raw)
+        return self._images[file, raw]
+
+    def _checkerboard(self, node: Node) -> np.ndarray:
+        colors = [self.get(node, key, value) for key, value in (("color0", 0.4), ("color1", 0.2))]
+        colors = [np.broadcast_to(c.mean if isinstance(c, Image) else c, 3) for c in colors if not isinstance(c, VertexColors)]
+        half = np.arange(CHECKER) < CHECKER // 2
+        return np.where((half[:, None] == half)[..., None], colors[0], colors[-1]).astype(np.float32)
+
+
+def equal_energy_rgb() -> np.ndarray:
+    """(3,) linear sRGB of a radiance that is 1 at all wavelengths, as Mitsuba converts it."""
+    return np.array(_srgb((360.0, 830.0), (1.0, 1.0), True))
+
+
+def _srgb(wavelengths, values, emission: bool):
+    import mitsuba.scalar_rgb as rgb
+
+    try:
+        return [float(v) for v in rgb.spectrum_list_to_srgb(list(wavelengths), list(values), not emission, not emission)]
+    except (RuntimeError, TypeError) as error:
+        raise SceneError(f"a spectrum of {len(values)} values cannot be converted to RGB ({error})") from None

@@ -1,0 +1,154 @@
+"""A Mitsuba XML file as a tree of plain values, read by Mitsuba's own parser.
+
+Parameters, includes, references, file versions and transformations are Mitsuba's work. Its plugins are left alone: meshes
+and scenes are not built by it, since damaged ones end the process.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import SceneError
+from .mitsuba_depth import check_depth
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Values at wavelengths (nm), or one value for all."""
+
+    wavelengths: tuple[float, ...]
+    values: tuple[float, ...]
+
+
+@dataclass(eq=False)
+class Node:
+    """A plugin in the file.
+
+    Attributes:
+        kind: Scene, Shape, BSDF, Emitter, Sensor, Film, Texture, ...
+        plugin: its type, such as ``diffuse``.
+        name: the id, or the name it has in its parent, or "".
+        place: file, line and column.
+        values: numbers, strings, booleans, colours as (3,) arrays, `Spectrum`, transformations as (4, 4) arrays.
+        children: nested and referenced plugins, with the names of the arguments.
+        evaluate: RGB of a texture that does not vary, as Mitsuba evaluates it.
+    """
+
+    kind: str
+    plugin: str
+    name: str
+    place: str
+    values: dict[str, Any] = field(default_factory=dict)
+    children: list[tuple[str, "Node"]] = field(default_factory=list)
+    evaluate: Callable[[], tuple[float, ...]] = tuple
+
+    def of(self, kind: str) -> list["Node"]:
+        """The children of a kind."""
+        return [child for _, child in self.children if child.kind == kind]
+
+    def number(self, name: str, default: float) -> float:
+        """A numeric argument.
+
+        Raises:
+            SceneError: it is something else.
+        """
+        value = self.values.get(name, default)
+        if not isinstance(value, int | float):
+            raise SceneError(f"{self.place}: '{name}' of this '{self.plugin}' is {value!r}; expected a number")
+        return value
+
+    def vector(self, name: str, default: tuple[float, float, float]) -> np.ndarray:
+        """(3,) an argument that is a point or vector.
+
+        Raises:
+            SceneError: it is something else.
+        """
+        value = self.values.get(name, default)
+        if np.shape(value) != (3,):
+            raise SceneError(f"{self.place}: '{name}' of this '{self.plugin}' is {value!r}; expected three numbers")
+        return np.asarray(value, np.float64)
+
+    def child(self, name: str) -> "Node | None":
+        """The child that is the argument ``name``."""
+        return next((child for key, child in self.children if key == name), None)
+
+
+def parse(path: Path) -> Node:
+    """The scene node of a file.
+
+    Raises:
+        SceneError: malformed XML, or what Mitsuba refuses: its message, with line and column.
+    """
+    check_depth(path)
+    import mitsuba
+    import mitsuba.scalar_rgb as rgb  # its own module: the variant that a user has set stays as it is
+
+    parser: Any = mitsuba.parser
+    config = parser.ParserConfig("scalar_rgb")
+    config.merge_equivalent = config.merge_meshes = config.parallel = False
+    before = mitsuba.file_resolver()
+    resolver: Any = mitsuba.FileResolver(before)
+    resolver.prepend(str(path.parent.resolve()))
+    mitsuba.set_file_resolver(resolver)
+    try:
+        state = parser.parse_file(config, str(path))
+        parser.transform_all(config, state)
+        nodes = [_node(mitsuba, state, index) for index in range(len(state.nodes))]
+        for index, node in enumerate(nodes):
+            node.evaluate = lambda index=index: _evaluate(mitsuba, rgb, config, state, index)
+            _link(mitsuba, node, state.nodes[index].props, nodes)
+    except Exception as error:  # of many classes
+        raise SceneError(message(error, path)) from None
+    finally:
+        mitsuba.set_file_resolver(before)
+    if nodes[0].kind != "Scene":
+        raise SceneError(f"{path}: the file describes a '{nodes[0].plugin}'; the outermost element must be <scene>")
+    return nodes[0]
+
+
+def message(error: Exception, path: Path) -> str:
+    """Mitsuba's message on one line, without the places in its source."""
+    lines = [line.split("] ", 1)[-1] if line.startswith("[") else line for line in str(error).splitlines()]
+    text = " ".join(" ".join(line.split()) for line in lines)[:500]
+    return text if str(path) in text else f"{path}: {text}"
+
+
+def _node(mitsuba, state, index: int) -> Node:
+    node = state.nodes[index]
+    place = mitsuba.parser.file_location(state, node)
+    result = Node(str(node.type).rsplit(".", 1)[-1], node.props.plugin_name(), node.props.id(), place)
+    for key in list(node.props.keys()):
+        value = node.props.get(key)
+        if not isinstance(value, mitsuba.Properties.ResolvedReference):
+            result.values[key] = _plain(mitsuba, value)
+    return result
+
+
+def _link(mitsuba, node: Node, props, nodes: list[Node]) -> None:
+    for key in list(props.keys()):
+        value = props.get(key)
+        if isinstance(value, mitsuba.Properties.ResolvedReference):
+            child = nodes[value.index()]
+            node.children.append((key, child))
+            if not child.name and not key.startswith("_arg_"):
+                child.name = key
+
+
+def _plain(mitsuba, value):
+    if isinstance(value, (bool, int, float, str)):
+        return value
+    if isinstance(value, mitsuba.Spectrum):
+        return Spectrum(() if value.is_uniform() else tuple(value.wavelengths), tuple(value.values))
+    # a colour has any attribute that its letters spell, "matrix" too: ask for the type
+    return np.array(value.matrix if "Transform" in type(value).__name__ else value, np.float64)
+
+
+def _evaluate(mitsuba, rgb, config, state, index: int) -> tuple[float, ...]:
+    alone = mitsuba.parser.ParserState(state)
+    alone.nodes[0] = state.nodes[index]  # the root is what is built
+    interaction = rgb.SurfaceInteraction3f()
+    interaction.uv = [0.5, 0.5]
+    return tuple(float(v) for v in mitsuba.parser.instantiate(config, alone).eval(interaction))

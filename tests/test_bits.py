@@ -1,0 +1,105 @@
+"""Contract 2: order, threads and stages do not change a single integer; the seed does."""
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+from radiosity.engine.budget import first_stage
+from radiosity.engine.quanta import Source, owed, phases
+
+QUANTA = 40_000
+
+
+@pytest.fixture(scope="module")
+def patches():
+    """A scene with every kind of side: absorbing, radiating with its own back, and an opening."""
+    scene = rd.load_scene("room")
+    keep = scene.surface != scene.names.index("north wall")
+    return rd.subdivide(scene.take(keep), cells=6)
+
+
+def counters(patches, **choices):
+    state = rd.solve(patches, **({"quanta": QUANTA, "replicates": 3, "seed": 5} | choices)).state
+    return state["arrivals"], state["fired"], state["missed"]
+
+
+def equal(one, two):
+    return all(np.array_equal(a, b) for a, b in zip(one, two, strict=True))
+
+
+@pytest.mark.parametrize("numbers", ["halton", "random"])
+def test_orders_end_in_equal_integers(patches, numbers):
+    assert equal(counters(patches, numbers=numbers), counters(patches, numbers=numbers, order="depth-first"))
+
+
+def test_threads_do_not_matter(patches):
+    import drjit as dr
+
+    before = dr.thread_count()
+    results = []
+    try:
+        for threads in (1, 2):
+            dr.set_thread_count(threads)
+            results += [counters(patches), counters(patches, order="depth-first")]
+    finally:
+        dr.set_thread_count(before)
+    assert all(equal(results[0], other) for other in results[1:])
+
+
+@pytest.mark.parametrize("order", ["breadth-first", "depth-first"])
+def test_any_sequence_of_stages_equals_one_shot(patches, order):
+    from radiosity.engine.device import choose
+    from radiosity.engine.firing import Engine
+    from radiosity.engine.geometry import Geometry
+    from radiosity.method.order import run
+
+    geometry = Geometry(patches, choose("cpu"))
+    source = Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0])
+
+    def staged(stages):
+        engine = Engine(geometry, source, rd.Method(order=order), 5, 3)
+        for quanta in stages:
+            engine.set_quanta(quanta)
+            run(order, engine, lambda count: None)
+        return engine.counters()
+
+    one = staged([QUANTA])
+    assert equal(one, counters(patches))
+    assert equal(one, staged([1, 7, 1_000, 1_001, 20_000, QUANTA]))
+    assert equal(one, staged([QUANTA // 2, QUANTA // 2, QUANTA]))
+
+
+def test_seed_matters_and_replicates_do_not(patches):
+    three, one = counters(patches), counters(patches, replicates=1)
+    assert np.array_equal(three[0][0], one[0][0])
+    assert np.array_equal(three[1][0], one[1][0])
+    assert not np.array_equal(three[0][0], three[0][1])
+    assert not np.array_equal(three[0], counters(patches, seed=6)[0])
+
+
+def test_patches_owe_what_the_contract_says(patches):
+    arrivals, fired, missed = counters(patches)
+    source = Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0])
+    assert np.array_equal(fired, owed(source, QUANTA, arrivals, phases(5, 3, len(patches))))
+    assert np.array_equal(fired.sum(axis=1), arrivals.sum(axis=1) + missed.sum(axis=0))
+    assert missed[0].min() > 0  # through the opening
+
+
+def test_quanta_replay_a_run_bit_for_bit():
+    for scene in ("room", "cornell-box"):
+        patches = rd.subdivide(rd.load_scene(scene), cells=5)
+        for budget in ({"rays": 3_000_000}, {"error": 0.02}, {"seconds": 0.5}):
+            first = rd.solve(patches, replicates=2, **budget)
+            again = rd.solve(patches, replicates=2, quanta=first.quanta)
+            assert np.array_equal(first.irradiance, again.irradiance)
+            assert np.array_equal(first.irradiance_standard_error, again.irradiance_standard_error)
+    assert first.quanta > first_stage(2)  # several stages were replayed
+
+
+def test_coherent_firing_traces_the_same_lines():
+    patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
+    plain = rd.solve(patches, quanta=8_000_000, replicates=1)
+    coherent = rd.solve(patches, quanta=8_000_000, replicates=1, coherent=True)
+    difference = np.abs(plain.state["arrivals"].astype(np.int64) - coherent.state["arrivals"].astype(np.int64)).sum()
+    assert difference < 1e-5 * plain.rays  # ties alone
+    assert coherent.provenance["choices"]["coherent"]

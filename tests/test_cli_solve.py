@@ -1,0 +1,239 @@
+"""The commands, run on small scenes."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+from radiosity.cli import main, progress
+from radiosity.engine.progress import Progress
+from radiosity.image import tables
+
+SMALL = ("--cells", "2", "--rays", "20k", "--replicates", "2")
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+def run(capsys, *arguments):
+    status = main([str(argument) for argument in arguments])
+    out, err = capsys.readouterr()
+    return status, out, err
+
+
+@pytest.fixture(scope="module")
+def solved(tmp_path_factory):
+    path = tmp_path_factory.mktemp("solved") / "box.npz"
+    assert main(["solve", "cornell-box", *SMALL, "-o", str(path)]) == 0
+    return path
+
+
+def test_solve_writes_everything_at_once(capsys, tmp_path):
+    paths = [tmp_path / f"box{suffix}" for suffix in (".npz", ".glb", ".ply", ".vtp", ".csv", ".png", ".exr")]
+    status, out, err = run(capsys, "solve", "cornell-box", *SMALL, "-o", *paths[:3], "-o", *paths[3:])
+    assert status == 0
+    assert err == ""
+    assert out.splitlines()[-7:] == [f"wrote {path}" for path in paths]
+    assert all(path.stat().st_size > 100 for path in paths)
+    patches = rd.subdivide(rd.load_scene("cornell-box"), cells=2)
+    assert f"cornell-box: {patches.scene.n_faces} faces, {len(patches.scene.names)} surfaces, {len(patches)} patches" in out
+    assert "status    complete" in out
+
+
+def test_solve_is_the_library(solved):
+    patches = rd.subdivide(rd.load_scene("cornell-box"), cells=2)
+    expected = rd.solve(patches, rays=20_000, replicates=2)
+    found = rd.load_solution(solved)
+    assert (found.arrivals == expected.arrivals).all()
+    assert (found.radiosity == expected.radiosity).all()
+    assert found.quanta == expected.quanta
+
+
+def test_options_reach_the_library(capsys, tmp_path):
+    path = tmp_path / "room.npz"
+    sizes = ("--patch-size", "1m", "--quanta", "3k", "--replicates", "3", "--seed", "7")
+    run(capsys, "solve", "room", *sizes, "--order", "depth-first", "--numbers", "random", "-o", path)
+    found = rd.load_solution(path)
+    expected = rd.solve(
+        rd.subdivide(rd.load_scene("room"), size=1.0), quanta=3000, replicates=3, seed=7, order="depth-first", numbers="random"
+    )
+    assert (found.quanta, found.replicates) == (3000, 3)
+    assert (found.radiosity == expected.radiosity).all()
+    assert found.provenance["choices"]["numbers"] == "random"
+    assert found.provenance["choices"]["order"] == "depth-first"
+
+
+def test_one_colour_bound_reaches_the_reader(capsys, tmp_path):
+    (tmp_path / "white.mtl").write_text("newmtl white\nKd 1 1 1\nKe 1 1 1\n")
+    (tmp_path / "white.obj").write_text("mtllib white.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl white\nf 1 2 3\n")
+    status, _, err = run(
+        capsys, "solve", tmp_path / "white.obj", *SMALL, "--max-reflectance", "0.8", "-o", tmp_path / "white.npz"
+    )
+    assert status == 0
+    assert re.search(r"^radiosity: warning: .*reflectance above 0\.8 brought down", err)
+    assert rd.load_solution(tmp_path / "white.npz").patches.reflectance.max() == 0.8
+
+
+def test_no_light_is_wrong_input(capsys, tmp_path):
+    (tmp_path / "dark.obj").write_text(TRIANGLE)
+    status, _, err = run(capsys, "solve", tmp_path / "dark.obj", *SMALL)
+    assert status == 2
+    errors = [line for line in err.splitlines() if line.startswith("radiosity: error: ")]
+    assert len(errors) == 1
+    assert "emi" in errors[0]
+
+
+def test_interrupted_runs_write_what_is_there(capsys, monkeypatch, tmp_path):
+    @contextmanager
+    def impatient():
+        def listen(state):
+            if state.stage >= 1:
+                os.kill(os.getpid(), signal.SIGINT)
+
+        yield listen
+
+    monkeypatch.setattr(progress, "bar", impatient)
+    status, out, _ = run(
+        capsys, "solve", "room", "--cells", "1", "--rays", "1G", "-o", tmp_path / "room.npz", tmp_path / "room.csv"
+    )
+    assert status == 130
+    assert "status    interrupted" in out
+    found = rd.load_solution(tmp_path / "room.npz")
+    assert found.status == "interrupted"
+    assert 0 < found.rays < 10**9
+    assert (tmp_path / "room.csv").exists()
+
+
+def test_one_failing_output_does_not_take_the_others_along(capsys, monkeypatch, tmp_path):
+    def fail(*_):
+        raise OSError("the disk is full")
+
+    monkeypatch.setattr(tables, "write", fail)
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    status, out, err = run(capsys, "solve", "room", *SMALL, "-o", tmp_path / "a.csv", tmp_path / "a.ply")
+    assert status == 2
+    assert f"wrote {tmp_path / 'a.ply'}" in out
+    assert err.startswith("radiosity: error: ")
+    assert "the disk is full" in err
+    kept = Path(re.search(r"kept in (\S+)", err).group(1))
+    assert rd.load_solution(kept).rays > 0
+    kept.unlink()
+    status, _, err = run(capsys, "solve", "room", *SMALL, "-o", tmp_path / "a.csv", tmp_path / "a.npz")
+    assert status == 2
+    assert "kept in" not in err
+
+
+def test_render(capsys, solved, tmp_path):
+    from PIL import Image
+
+    status, out, err = run(
+        capsys, "render", solved, "-o", tmp_path / "view.png", tmp_path / "view.exr", "--width", "64", "--height", "48"
+    )
+    assert (status, err) == (0, "")
+    assert out == f"wrote {tmp_path / 'view.png'}\nwrote {tmp_path / 'view.exr'}\n"
+    picture = np.asarray(Image.open(tmp_path / "view.png"))
+    assert picture.shape == (48, 64, 3)
+    assert picture.std() > 10
+    own = (
+        "--origin",
+        "0.27,0.27,-0.5",
+        "--target",
+        "0.27,0.27,0.3",
+        "--fov",
+        "60",
+        "--width",
+        "64",
+        "--no-smooth",
+        "--exposure",
+        "1",
+    )
+    assert run(capsys, "render", solved, "-o", tmp_path / "own.png", *own)[0] == 0
+    assert np.asarray(Image.open(tmp_path / "own.png")).shape == (48, 64, 3)
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (("--camera", "3"), "camera 3"),
+        (("--camera", "0", "--origin", "0,0,0", "--target", "1,1,1"), "not both"),
+        (("--origin", "0,0,0"), "go together"),
+        (("--fov", "200"), "between 0 and 180"),
+        (("--quantity", "sound"), "quantity 'sound' does not exist"),
+        (("--band", "violet"), "violet"),
+    ],
+)
+def test_render_refuses(capsys, solved, tmp_path, options, text):
+    status, _, err = run(capsys, "render", solved, "-o", tmp_path / "view.png", *options)
+    assert status == 2
+    assert text in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "view.png").exists()
+
+
+def test_check_prints_what_there_is(capsys):
+    status, out, err = run(capsys, "check", "cornell-box")
+    assert (status, err) == (0, "")
+    assert "extent    0.556 x 0.5488 x 0.5592 m" in out
+    assert "faces     21: 10 triangles, 11 parallelograms" in out
+    assert "emitters  1, 0.729 / 0.5146 / 0.1715 W in all" in out
+    assert re.search(r"^left wall +2 +0\.3069 +0\.63 / 0\.065 / 0\.05 +- +- +one", out, re.MULTILINE)
+    assert re.search(r"^warning leaks: .* through 'z low' 100 %", out, re.MULTILINE)
+
+
+def test_check_of_a_file_that_cannot_be_read(capsys, tmp_path):
+    (tmp_path / "empty.obj").write_text("")
+    status, out, err = run(capsys, "check", tmp_path / "empty.obj")
+    assert (status, err) == (1, "")
+    assert out == f"error file: {tmp_path / 'empty.obj'}: the file is empty\n"
+
+
+def test_check_of_a_dark_scene_with_an_odd_name(capsys, tmp_path):
+    (tmp_path / "dark.obj").write_text("o [red]brick[/red]\n" + TRIANGLE)
+    status, out, _ = run(capsys, "check", tmp_path / "dark.obj")
+    assert status == 1
+    assert "error no light: " in out
+    assert "[red]brick[/red]" in out
+
+
+def test_doctor_finds_this_machine_well(capsys):
+    status, out, err = run(capsys, "doctor")
+    assert (status, err) == (0, "")
+    states = {line.split()[1]: line.split()[0] for line in out.splitlines()}
+    assert states["solver"] == "ok"
+    assert states["LLVM"] == "ok"
+    assert "problem" not in states.values()
+
+
+def test_doctor_names_a_bad_llvm(tmp_path):
+    environment = {**os.environ, "DRJIT_LIBLLVM_PATH": str(tmp_path / "libLLVM.so")}
+    found = subprocess.run(
+        [sys.executable, "-m", "radiosity", "doctor"], env=environment, capture_output=True, text=True, check=False
+    )
+    assert found.returncode == 1
+    (problem,) = [line for line in found.stdout.splitlines() if line.startswith("problem")]
+    assert str(tmp_path / "libLLVM.so") in problem
+    assert "DRJIT_LIBLLVM_PATH" in problem
+    solve = [sys.executable, "-m", "radiosity", "solve", "room", "--rays", "1k"]
+    found = subprocess.run(solve, env=environment, capture_output=True, text=True, check=False)
+    assert found.returncode == 1
+    assert "Traceback" not in found.stderr  # Dr.Jit itself says a line or two before ours
+    assert found.stderr.splitlines()[-1].startswith(f"radiosity: error: DRJIT_LIBLLVM_PATH names {tmp_path / 'libLLVM.so'}")
+
+
+def test_progress_line():
+    state = Progress(2, 12_300_000, 21.4e6, 0.0123, 0.5, 185.0, "tracing")
+    assert progress.facts(state) == "stage 3, 12.3M rays, 21.4M/s, error 1.2 %, 3 min 05 s left"
+    state = Progress(0, 0, 0.0, float("nan"), None, None, "compiling")
+    assert progress.facts(state) == "stage 1, 0 rays, 0/s"
+
+
+def test_no_progress_where_nobody_looks(capsys):
+    with progress.bar() as advance:
+        assert advance is None
+    assert capsys.readouterr() == ("", "")

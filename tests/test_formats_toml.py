@@ -1,0 +1,191 @@
+"""The TOML scene: looks by surface name, units, powers, and one clear error for each fault."""
+
+import numpy as np
+import pytest
+from samples import MTL, OBJ, box_gltf, ply_text, stl_bytes
+
+import radiosity as rd
+from radiosity.errors import RadiosityWarning, SceneError
+from radiosity.scene import Back, Camera
+from radiosity.scene.assemble import ReadOptions
+from radiosity.scene.formats import read
+
+TRIANGLES = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]])
+
+
+@pytest.fixture
+def load(tmp_path):
+    (tmp_path / "room.obj").write_text(OBJ)
+    (tmp_path / "box.mtl").write_text(MTL)
+    (tmp_path / "lamp.stl").write_bytes(stl_bytes(TRIANGLES * 100))
+    box_gltf().write(tmp_path / "box.glb")
+
+    def write(text):
+        (tmp_path / "scene.toml").write_text(text)
+        return rd.load_scene(tmp_path / "scene.toml")
+
+    return write
+
+
+def test_units_scales_and_names(load):
+    scene = load("""
+        geometry = ["room.obj", {file = "lamp.stl", unit = "mm", scale = 2, name = "ceiling lamp"}]
+        unit = "ft"
+        [[surface]]
+        name = "*lamp"
+        reflectance = 0.2
+    """)
+    assert scene.names == ("room/floor/white", "room/lamp/light", "ceiling lamp")
+    np.testing.assert_allclose(scene.area, [0.3048**2, 0.3048**2, 0.2**2])
+    assert scene.reflectance[2].tolist() == [0.2] * 3
+    assert scene.source.endswith("scene.toml")
+
+
+def test_later_entries_win_value_by_value(load):
+    scene = load("""
+        geometry = "room.obj"
+        [[surface]]
+        name = "*"
+        reflectance = 0.3
+        patch_size = 0.5
+        emission = 7
+        [[surface]]
+        name = "*/white"
+        reflectance = [0.1, 0.2, 0.3]
+        sides = 1
+        [[surface]]
+        name = "room/lamp/light"
+        radiance = 2
+        back = "passes"
+    """)
+    assert scene.reflectance.tolist() == [[0.1, 0.2, 0.3], [0.3, 0.3, 0.3]]
+    np.testing.assert_allclose(scene.emission, [[7] * 3, [2 * np.pi] * 3])
+    assert scene.back.tolist() == [Back.ABSORBS, Back.PASSES]
+    assert scene.patch_size.tolist() == [0.5, 0.5]
+    assert len(rd.subdivide(scene)) == 8
+
+
+def test_power_is_spread_over_all_radiating_area(load):
+    scene = load("""
+        geometry = ["room.obj", {file = "lamp.stl", unit = "cm", name = "lamp"}]
+        [[surface]]
+        name = "*lamp*"
+        reflectance = 0
+        power = 60
+        [[surface]]
+        name = "lamp"
+        sides = 1
+    """)
+    patches = rd.subdivide(scene, cells=3)
+    power = (patches.emission * patches.area[:, None]).sum(axis=0)
+    np.testing.assert_allclose(power, 60)
+    np.testing.assert_allclose(scene.emission[1:], 20)  # three sides of 1 m²
+
+
+def test_reflectance_replaces_texture_and_colours_but_not_light(load):
+    scene = load('geometry = ["box.glb"]\n[[surface]]\nname = "box/*"\nreflectance = 0.25\n')
+    patches = rd.subdivide(scene, cells=1)
+    assert (patches.reflectance == 0.25).all()
+    assert patches.emission[0, 0] == pytest.approx(10 * np.pi)
+    dark = load('geometry = ["box.glb"]\n[[surface]]\nname = "box/*"\nemission = 0\n')
+    assert (rd.subdivide(dark, cells=1).emission == 0).all()
+    assert rd.subdivide(dark, cells=1).reflectance[0, 0] == pytest.approx(0.8 * 0.5 * 0.5, rel=0.01)
+
+
+def test_textured_and_plain_files_together(load):
+    scene = load("""
+        geometry = [{file = "lamp.stl", name = "lamp"}, {file = "box.glb", scale = 2, name = "big"}, "box.glb"]
+        [[surface]]
+        name = "lamp"
+        reflectance = 0.5
+    """)
+    patches = rd.subdivide(scene, cells=1)
+    textured = np.array([0.8, 0.6, 0.4]) * 0.5 * ((188 / 255 + 0.055) / 1.055) ** 2.4
+    np.testing.assert_allclose(patches.reflectance[patches.surface == 0], 0.5)
+    assert scene.names == ("lamp", "big/box/paper", "box/paper")
+    np.testing.assert_allclose(patches.reflectance[patches.surface == 1], np.tile(textured, (12, 1)), rtol=1e-6)
+    np.testing.assert_allclose(patches.reflectance[patches.surface == 2], np.tile(textured, (12, 1)), rtol=1e-6)
+    assert scene.area[scene.surface == 1].sum() == pytest.approx(4 * scene.area[scene.surface == 2].sum())
+
+
+def test_reflectances_follow_the_bound_for_files(load, tmp_path):
+    text = 'geometry = ["lamp.stl"]\n[[surface]]\nname = "lamp"\nreflectance = 1\n'
+    with pytest.warns(RadiosityWarning, match="reflectance above 0.95.*'lamp'"):
+        assert load(text).reflectance.tolist() == [[0.95]]
+    with pytest.warns(RadiosityWarning, match="above 0.5"):
+        assert read(tmp_path / "scene.toml", ReadOptions(max_reflectance=0.5)).reflectance.tolist() == [[0.5]]
+
+
+def test_a_name_that_matches_nothing(load):
+    with pytest.warns(RadiosityWarning, match="no surface is called 'wall.*'; there are 'room/floor/white', 'room/lamp/light'"):
+        load('geometry = ["room.obj"]\n[[surface]]\nname = "wall*"\nreflectance = 0.5\n')
+
+
+def test_names_with_brackets_match_themselves(load, tmp_path):
+    (tmp_path / "a[1].ply").write_text(ply_text())
+    scene = load('geometry = ["a[1].ply"]\n[[surface]]\nname = "a[1]"\nreflectance = 0.1\n')
+    assert scene.reflectance.tolist() == [[0.1]]
+
+
+def test_cameras_and_photometric(load):
+    scene = load("""
+        geometry = ["room.obj"]
+        photometric = true
+        [[camera]]
+        origin = [0, 1, 2]
+        target = [1, 1, 2]
+        fov = 60
+    """)
+    assert scene.photometric
+    assert scene.cameras == (Camera((0, 1, 2), (1, 1, 2), (0, 0, 1), 60.0, 800, 600),)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", ["empty"]),
+        ("[[surface", ["no TOML", "array declaration"]),
+        ('geometri = ["room.obj"]', ["geometry is missing", "geometri: unknown key", "'geometry'"]),
+        ("geometry = []", ["geometry"]),
+        ('geometry = ["gone.stl"]', ["gone.stl", "no such file"]),
+        ('geometry = ["scene.toml"]', ["scene.toml", ".toml file"]),
+        ('geometry = ["room.xyz"]', ["room.xyz"]),
+        ('geometry = ["room.obj", 3]', ["geometry 2", "it is 3"]),
+        ('geometry = [{file = "room.obj", unit = "km"}]', ["geometry 1, unit", "'mm'", "'km'"]),
+        ('geometry = ["room.obj"]\nscale = 0', ["scale", "greater than 0"]),
+        (
+            'geometry = ["room.obj"]\n[[surface]]\nname = "x"\nreflectence = 1',
+            ["surface 1 ('x')", "reflectence", "'reflectance'"],
+        ),
+        ('geometry = ["room.obj"]\n[[surface]]\nname = "x"\nreflectance = -0.1', ["surface 1 ('x')", "reflectance", "-0.1"]),
+        ('geometry = ["room.obj"]\n[[surface]]\nname = "x"\nemission = nan', ["emission", "finite"]),
+        ('geometry = ["room.obj"]\n[[surface]]\nname = "x"\nreflectance = [1, 2]', ["reflectance", "one number or"]),
+        ('geometry = ["room.obj"]\n[[surface]]\nname = "x"\nemission = 1\npower = 2', ["surface 1", "emission and power"]),
+        ('geometry = ["room.obj"]\n[[surface]]\nname = "x"\nsides = 1\nback = "passes"', ["sides and back"]),
+        ('geometry = ["room.obj"]\n[[surface]]\nsides = 3', ["name is missing", "sides"]),
+        ('geometry = ["room.obj"]\n[[camera]]\norigin = [0, 0, 0]\ntarget = [0, 0, 1]', ["camera 1", "up"]),
+        ('geometry = ["room.obj"]\n[[camera]]\norigin = [0, 0]\ntarget = [0, 0, 1]', ["camera 1, origin"]),
+    ],
+)
+def test_faults(load, text, words):
+    with pytest.raises(SceneError) as caught:
+        load(text)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_power_without_area(load, tmp_path):
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\ng good\nf 1 2 3\ng flat\nf 1 2 2\n")
+    text = 'geometry = ["flat.obj"]\n[[surface]]\nname = "*"\nreflectance = 0\n[[surface]]\nname = "flat"\npower = 1\n'
+    with (
+        pytest.raises(SceneError, match=r"surface 2 \('flat'\) has a power but no area"),
+        pytest.warns(RadiosityWarning, match="1 face without area"),
+    ):
+        load(text)
+
+
+def test_not_text(load, tmp_path):
+    path = tmp_path / "bytes.toml"
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(SceneError, match="no TOML"):
+        rd.load_scene(path)

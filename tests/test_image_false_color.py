@@ -1,0 +1,73 @@
+"""False colours and their legend."""
+
+import numpy as np
+import pytest
+from image_samples import plain_hits, quad_scene, solution
+
+import radiosity as rd
+from radiosity.image import render
+from radiosity.image.false_color import automatic_limits
+
+matplotlib = pytest.importorskip("matplotlib")
+
+ABOVE = rd.Camera((1, 1, 5), (1, 1, 0), (0, 1, 0), 40.0, 400, 300)
+RESULT = solution(rd.subdivide(quad_scene(), cells=2), [1.0, 2.0, 4.0, np.nan])
+
+
+def picture(**options):
+    return render(RESULT, **{"camera": ABOVE, "hits": plain_hits, "samples": 1, "smooth": False, "false_color": True, **options})
+
+
+def shades(values):
+    return matplotlib.colormaps["viridis"](values)[:, :3] * 255
+
+
+def test_colours_are_those_of_the_map_and_the_legend_stands_beside():
+    result = picture(range=(0, 4))
+    assert result.shape[0] == 300
+    assert 460 < result.shape[1] < 560
+    np.testing.assert_allclose(result[[160, 160, 140], [190, 210, 190]], shades([0.25, 0.5, 1.0]), atol=0.51)
+    assert result[140, 210].tolist() == [128, 128, 128]  # unknown
+    assert not result[5, 5].any()  # nothing there
+    assert (result[:, 400:].reshape(-1, 3).max(axis=0) == 255).all()
+
+
+def test_logarithmic_scale():
+    result = picture(range=(1, 16), log=True)
+    np.testing.assert_allclose(result[[160, 160, 140], [190, 210, 190]], shades([0.0, 0.25, 0.5]), atol=0.51)
+
+
+@pytest.mark.parametrize("quantity", ["irradiance", "standard_error", "irradiance_standard_error"])
+def test_quantities(quantity):
+    factor = {"irradiance": 2, "standard_error": 0.1, "irradiance_standard_error": 0.2}[quantity]
+    np.testing.assert_array_equal(picture(quantity=quantity, range=(0, 4 * factor))[:, :400], picture(range=(0, 4))[:, :400])
+
+
+def test_the_relative_error_is_in_percent():
+    result = picture(quantity="relative_error", range=(0, 20))
+    np.testing.assert_allclose(result[[160, 160, 140], [190, 210, 190]], shades([0.5, 0.5, 0.5]), atol=0.51)
+
+
+def test_automatic_limits():
+    values = np.append(np.arange(1, 101.0), np.nan)
+    assert automatic_limits(values, False) == (0, pytest.approx(99.01))
+    assert automatic_limits(values, True) == (1, pytest.approx(99.01))
+    assert automatic_limits(np.append(values, 1e-9), True)[0] == pytest.approx(99 / 1e4, rel=0.01)
+    assert automatic_limits(np.full(3, 5.0), True) == (0.5, 5.0)
+    assert automatic_limits(np.zeros(3), False) == (0, 1)
+
+
+def test_file(tmp_path):
+    from PIL import Image
+
+    result = picture(path=tmp_path / "a.png", quantity="irradiance")
+    with Image.open(tmp_path / "a.png") as file:
+        np.testing.assert_array_equal(np.asarray(file), result)
+        assert file.text["quantity"] == "irradiance"
+    assert (tmp_path / "a.png").stat().st_size > 3000
+
+
+def test_false_colours_are_no_exr(tmp_path):
+    with pytest.raises(rd.OutputError, match=r"write false colours to a \.png"):
+        picture(path=tmp_path / "a.exr")
+    assert not list(tmp_path.iterdir())
