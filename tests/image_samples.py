@@ -49,5 +49,5 @@ def plain_hits(scene, origins, directions):
         nearer = inside & (t > 1e-9) & (t < best.distance) & (front | (scene.back[face] != rd.Back.PASSES))
         for name, value in (("face", face), ("u", u), ("v", v), ("front", front), ("distance", t)):
             array = getattr(best, name)
-            array[nearer] = value if np.ndim(value) == 0 else value[nearer]
+            array[nearer] = np.broadcast_to(value, len(origins))[nearer]
     return best

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from samples import MTL, OBJ, SQUARE, box_gltf, ply_bytes, ply_text, png, stl_bytes, stl_text
 
 import radiosity as rd
-from radiosity.errors import RadiosityError
+from radiosity.errors import RadiosityError, RadiosityWarning
 
 TRIANGLES = np.array(SQUARE)[[[0, 1, 2], [0, 2, 3]]]
 MIXED = ([0, 1, 2, 3], [0, 1, 4], [4, 3, 2, 1, 0])
@@ -94,12 +94,10 @@ def damaged(data: bytes, cuts) -> bytes:
 def takes(path) -> None:
     """Load; what comes out must make sense."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rd.errors.RadiosityWarning)
+        warnings.simplefilter("ignore", RadiosityWarning)
         try:
-            scene = rd.load_scene(path)
-            patches = rd.subdivide(scene, cells=1)
-        except RadiosityError as error:
-            assert str(error)
+            patches = rd.subdivide(rd.load_scene(path), cells=1)
+        except RadiosityError:
             return
     assert ((patches.reflectance >= 0) & (patches.reflectance < 1)).all()
     assert np.isfinite(patches.emission).all()
@@ -127,9 +125,10 @@ def test_damaged_files(folder, name, cuts):
 def test_random_bytes(folder, suffix, data, head):
     path = folder / f"random{suffix}"
     path.write_bytes(head + data)
-    with pytest.raises(RadiosityError), warnings.catch_warnings():
-        warnings.simplefilter("ignore", rd.errors.RadiosityWarning)
-        rd.load_scene(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RadiosityWarning)
+        with pytest.raises(RadiosityError):
+            rd.load_scene(path)
 
 
 JSON = st.recursive(

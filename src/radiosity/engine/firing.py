@@ -130,8 +130,8 @@ class Engine:
             width = min(CHUNK, total - start)
             # each entry writes its rank where its lines begin; the running maximum carries it to all of them
             rank = dr.zeros(types.UInt32, width)
-            first = types.UInt64(start)
-            here = (begin < first + width) & (begin + types.UInt64(count) > first)
+            first, end = dr.opaque(types.UInt64, start), dr.opaque(types.UInt64, start + width)  # no literals: one kernel for all
+            here = (begin < end) & (begin + types.UInt64(count) > first)
             at = types.UInt32(dr.maximum(begin, first) - first)
             dr.scatter(rank, dr.arange(types.UInt32, dr.width(numbers)), at, active=here)
             rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, width, exclusive=False)

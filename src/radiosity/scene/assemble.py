@@ -41,7 +41,7 @@ def assemble(parts: list[Part], source: str, options: ReadOptions, *, photometri
     sizes = [len(part.faces) for part in parts]
     material = [part.material for part in parts]
 
-    def each(values, dtype=np.float64):
+    def each(values, dtype: type = np.float64):
         return np.repeat(np.array(values, dtype), sizes, axis=0)
 
     def spread(value):

@@ -60,13 +60,14 @@ def _peak(part: Part) -> np.ndarray:
 
 def _lower(part: Part, limit: float) -> Part:
     m = part.material
+    front = m.reflectance or ()
     if part.color is None and part.texture is None:
         back = m.back_reflectance and tuple(min(v, limit) for v in m.back_reflectance)
-        return replace(part, material=replace(m, reflectance=tuple(min(v, limit) for v in m.reflectance), back_reflectance=back))
-    if max(m.reflectance) >= 1.0:
+        return replace(part, material=replace(m, reflectance=tuple(min(v, limit) for v in front), back_reflectance=back))
+    if max(front) >= 1.0:
         # a base of 1 and more moves into the corner colours, so that the product stays what the file says
         color = np.ones((len(part.vertices), 1)) if part.color is None else part.color
-        part = replace(part, color=color * np.asarray(m.reflectance))
+        part = replace(part, color=color * np.asarray(front))
         m = replace(m, reflectance=(BELOW_ONE,))
     back = m.back_reflectance and tuple(min(v, BELOW_ONE) for v in m.back_reflectance)
     return replace(part, material=replace(m, back_reflectance=back))
@@ -95,7 +96,7 @@ def _check_arrays(part: Part, source: str) -> None:
     ):
         if values is None:
             continue
-        good = (np.isfinite(values) & (values >= low)).all(axis=1)
+        good = np.all(np.isfinite(values) & (values >= low), axis=1)
         if not good[used].all():
             vertex = int(np.flatnonzero(used & ~good)[0])
             face = int(np.flatnonzero((faces == vertex).any(axis=1))[0])

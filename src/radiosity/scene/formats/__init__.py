@@ -34,7 +34,9 @@ def read(path: Path, options: ReadOptions) -> Scene:
         if path.is_dir():
             raise SceneError(f"{path}: is a folder; name a file")
         if suffix == ".rad":
-            raise SceneError(f"{path}: Radiance scenes are not read yet (they come with daylight); convert it to MGF with rad2mgf")
+            raise SceneError(
+                f"{path}: Radiance scenes are not read yet (they come with daylight); convert it to MGF with rad2mgf"
+            )
         if suffix not in FORMATS:
             raise SceneError(f"{path}: unknown format '{suffix}'; known are {', '.join(FORMATS)}")
         if path.stat().st_size == 0:

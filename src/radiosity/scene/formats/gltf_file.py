@@ -11,6 +11,7 @@ from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes
 
 from ...errors import SceneError, shown
+from .glb import chunks
 
 KNOWN_EXTENSIONS = ("KHR_texture_transform", "KHR_mesh_quantization", "KHR_lights_punctual", "EXT_texture_webp")
 
@@ -87,7 +88,7 @@ class GltfFile:
             what = f"buffer {index}"
             if "uri" not in info and (index != 0 or self.chunk is None):
                 raise self.fail(f"{what} has no uri and the file has no binary chunk for it")
-            data = self.resource(info["uri"], what) if "uri" in info else self.chunk
+            data = self.resource(info["uri"], what) if "uri" in info else self.chunk or b""
             size = self.whole(info, "byteLength", what)
             if len(data) < size:
                 raise self.fail(f"{what} has {len(data)} bytes where {size} are announced; the file is truncated")
@@ -111,7 +112,7 @@ def load(path: Path) -> GltfFile:
         SceneError: truncated, not glTF 2.0, or in need of an extension that is not read.
     """
     data = path.read_bytes()
-    text, chunk = _chunks(path, data) if path.suffix.lower() == ".glb" or data[:4] == b"glTF" else (data, None)
+    text, chunk = chunks(path, data) if path.suffix.lower() == ".glb" or data[:4] == b"glTF" else (data, None)
     try:
         tree = json.loads(text.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
@@ -127,30 +128,3 @@ def load(path: Path) -> GltfFile:
     if unknown:
         raise file.fail(f"needs the extension {shown(unknown)}, which is not read; export without compression or this extension")
     return file
-
-
-def _chunks(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
-    if data[:4] != b"glTF":
-        raise SceneError(f"{path}: does not begin like a .glb file; it is damaged or of another format")
-    if len(data) < 20:
-        raise SceneError(f"{path}: {len(data)} bytes are too few for a .glb file; it is truncated")
-    version, length = (int.from_bytes(data[i : i + 4], "little") for i in (4, 8))
-    if version != 2:
-        raise SceneError(f"{path}: glTF version {version}; only 2.0 is read")
-    if length > len(data):
-        raise SceneError(f"{path}: the file is truncated: its header announces {length} bytes, it has {len(data)}")
-    found: dict[bytes, bytes] = {}
-    at = 12
-    while at + 8 <= length:
-        size, kind = int.from_bytes(data[at : at + 4], "little"), data[at + 4 : at + 8]
-        if at + 8 + size > length:
-            raise SceneError(
-                f"{path}: the chunk at byte {at} announces {size} bytes, {length - at - 8} are left; the file is damaged"
-            )
-        if not found and kind != b"JSON":
-            raise SceneError(f"{path}: the first chunk is {kind!r}, not JSON; the file is damaged")
-        found.setdefault(kind, data[at + 8 : at + 8 + size])
-        at += 8 + size
-    if b"JSON" not in found:
-        raise SceneError(f"{path}: the file has no JSON chunk; it is truncated")
-    return found[b"JSON"], found.get(b"BIN\0")

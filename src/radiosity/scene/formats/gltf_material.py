@@ -106,7 +106,7 @@ class Materials:
             raise file.fail(
                 f"a texture of {what} has no image that is read (extensions {shown(info.get('extensions', {}))}); use PNG or JPEG"
             )
-        wraps = {}
+        wraps: set[int] = set()
         if "sampler" in info:
             sampler = file.item("samplers", info["sampler"])
             wraps = {sampler.get(key, REPEAT) for key in ("wrapS", "wrapT")}
@@ -119,7 +119,7 @@ class Materials:
             file.numbers(move, "offset", (0.0, 0.0), what),
             file.numbers({"rotation": [move.get("rotation", 0.0)]}, "rotation", (0.0,), what)[0],
             file.numbers(move, "scale", (1.0, 1.0), what),
-            not wraps - {REPEAT} if wraps else True,
+            wraps <= {REPEAT},
         )
 
     def _image(self, index) -> np.ndarray:

@@ -4,6 +4,7 @@ PLY vertex and face colours are the reflectance: whole numbers (0 to 255) are sR
 point numbers linear. A texture named in a ``TextureFile`` comment is used where there are coordinates for it.
 """
 
+import logging
 import re
 import warnings
 from pathlib import Path
@@ -14,7 +15,8 @@ from ...errors import SceneError
 from ..assemble import Material, Part, ReadOptions, assemble, warn
 from ..model import Scene
 from .faces import cut
-from .ply import Lists, Ply, read_ply
+from .ply import Ply, read_ply
+from .ply_rows import Columns
 from .textures import decode_srgb, linear_image, warn_of_means, with_means
 
 INDICES = ("vertex_indices", "vertex_index")
@@ -44,12 +46,16 @@ def _stl(path: Path) -> list[Part]:
     if not binary and not (head.lstrip().startswith(b"solid") and (b"facet" in head or b"endsolid" in head)):
         announced = f"its header announces {count} triangles ({84 + 50 * count} bytes), it has {len(data)} bytes"
         raise SceneError(f"{path}: {announced if count >= 0 else 'too short'}; the STL file is truncated or damaged")
+    log, level = logging.getLogger("trimesh"), logging.getLogger("trimesh").level
+    log.setLevel(logging.CRITICAL)  # it prints the traces of what it survives
     try:
         with path.open("rb") as file, warnings.catch_warnings():
             warnings.simplefilter("error", DeprecationWarning)  # numpy's, where text is no number
             found = stl.load_stl_binary(file) if binary else stl.load_stl_ascii(file)
     except Exception as error:  # trimesh lets its own parts' exceptions through
         raise SceneError(f"{path}: cannot be read as STL ({error}); the file is damaged") from None
+    finally:
+        log.setLevel(level)
     solids = {found["metadata"].get("name") or path.stem: found} if "vertices" in found else found.get("geometry", {})
     if not binary:
         expected, got = data.lower().count(b"endfacet"), sum(len(solid["faces"]) for solid in solids.values())
@@ -64,11 +70,11 @@ def _stl(path: Path) -> list[Part]:
 
 def _ply(path: Path, options: ReadOptions) -> Part:
     ply = read_ply(path)
-    vertex, face = ply.columns.get("vertex", {}), ply.columns.get("face", {})
-    if any(not isinstance(vertex.get(axis), np.ndarray) for axis in "xyz"):
+    vertex, face = ply.columns.get("vertex", Columns({}, {})), ply.columns.get("face", Columns({}, {}))
+    if not set("xyz") <= set(vertex.numbers):
         raise SceneError(f"{path}: the vertices have no x, y, z; the file is damaged")
-    points = np.column_stack([vertex[axis] for axis in "xyz"]).astype(np.float64)
-    polygons = next((face[name] for name in INDICES if isinstance(face.get(name), Lists)), None)
+    points = np.column_stack([vertex.numbers[axis] for axis in "xyz"]).astype(np.float64)
+    polygons = next((face.lists[name] for name in INDICES if name in face.lists), None)
     if polygons is None or not len(polygons.sizes):
         raise SceneError(f"{path}: the file holds {len(points)} points but no faces; export a surface, not a point cloud")
     index = polygons.values.astype(np.int64)
@@ -83,9 +89,10 @@ def _ply(path: Path, options: ReadOptions) -> Part:
             raise SceneError(text)
         warn(text)
     faces = cut(points[index], polygons.sizes)
-    color, face_color, wedges = _color(path, vertex), _color(path, face), face.get("texcoord")
-    uv = next((np.column_stack([vertex[u], vertex[v]]) for u, v in COORDINATES if u in vertex and v in vertex), None)
-    if isinstance(wedges, Lists) and (wedges.sizes == 2 * polygons.sizes).all():
+    color, face_color, wedges = _color(path, vertex), _color(path, face), face.lists.get("texcoord")
+    held = vertex.numbers
+    uv = next((np.column_stack([held[u], held[v]]) for u, v in COORDINATES if u in held and v in held), None)
+    if wedges is not None and (wedges.sizes == 2 * polygons.sizes).all():
         uv = wedges.values.reshape(-1, 2)
         points, color = points[index], None if color is None else color[index]
     elif face_color is not None and color is None:
@@ -100,15 +107,15 @@ def _ply(path: Path, options: ReadOptions) -> Part:
     return part
 
 
-def _color(path: Path, columns: dict) -> np.ndarray | None:
+def _color(path: Path, columns: Columns) -> np.ndarray | None:
     """(n, 3) linear colours of an element."""
-    found = [columns.get(name) for name in ("red", "green", "blue")]
-    if not all(isinstance(column, np.ndarray) for column in found):
+    found = [columns.numbers[name] for name in ("red", "green", "blue") if name in columns.numbers]
+    if len(found) < 3:
         return None
     color = np.column_stack(found)
     if color.dtype.kind == "f":
         return color.astype(np.float64)
-    largest = max(np.iinfo(column.dtype).max for column in found if isinstance(column, np.ndarray))
+    largest = max(np.iinfo(column.dtype).max for column in found)
     if largest > 65535:
         largest = 255
     if color.min(initial=0) < 0 or color.max(initial=0) > largest:

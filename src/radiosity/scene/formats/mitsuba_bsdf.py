@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ...errors import SceneError
 from .mitsuba_color import Color, Colors, Image, VertexColors
-from .mitsuba_parse import Node
+from .mitsuba_node import Node
 
 ALBEDO = {
     "diffuse": ("reflectance", 0.5),

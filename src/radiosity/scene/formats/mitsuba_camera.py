@@ -6,7 +6,7 @@ import numpy as np
 
 from ...errors import SceneError
 from ..model import Camera
-from .mitsuba_parse import Node
+from .mitsuba_node import Node
 
 FILM = (36.0, 24.0)  # millimetres, of a focal length
 

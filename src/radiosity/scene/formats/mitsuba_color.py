@@ -7,7 +7,8 @@ import numpy as np
 
 from ...errors import SceneError
 from .mitsuba_image import find_file, read_image
-from .mitsuba_parse import Node, Spectrum, message
+from .mitsuba_node import Node, Spectrum
+from .mitsuba_parse import message
 
 CHECKER = 64  # pixels along an edge of the image that stands for a checkerboard
 

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import SceneError
-from .mitsuba_parse import Node, message
+from .mitsuba_node import Node
+from .mitsuba_parse import message
 from .textures import decode_srgb, linear_image
 
 FLOAT_IMAGES = (".exr", ".hdr", ".pfm", ".rgbe")

@@ -9,10 +9,11 @@ import numpy as np
 
 from ...errors import SceneError
 from .faces import cut
-from .mitsuba_parse import Node
+from .mitsuba_node import Node
 from .mitsuba_shapes import Geometry
-from .obj import _parse
-from .ply import Lists, read_ply
+from .obj_tables import parse
+from .ply import read_ply
+from .ply_rows import Lists
 
 NORMALS, COORDINATES, COLORS, DOUBLE = 0x1, 0x2, 0x8, 0x2000  # flags of serialized files
 MAGIC = 0x041C
@@ -36,7 +37,7 @@ def read_mesh(node: Node, file: Path) -> Geometry:
 
 
 def _obj(node: Node, file: Path) -> Geometry:
-    tables = _parse(file)
+    tables = parse(file)
     rows = [row for group in tables.groups.values() for row in group]
     if not rows:
         return Geometry(np.zeros((0, 3)), np.zeros((0, 3), np.int64))

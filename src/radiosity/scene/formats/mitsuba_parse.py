@@ -4,8 +4,6 @@ Parameters, includes, references, file versions and transformations are Mitsuba'
 and scenes are not built by it, since damaged ones end the process.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -13,67 +11,7 @@ import numpy as np
 
 from ...errors import SceneError
 from .mitsuba_depth import check_depth
-
-
-@dataclass(frozen=True)
-class Spectrum:
-    """Values at wavelengths (nm), or one value for all."""
-
-    wavelengths: tuple[float, ...]
-    values: tuple[float, ...]
-
-
-@dataclass(eq=False)
-class Node:
-    """A plugin in the file.
-
-    Attributes:
-        kind: Scene, Shape, BSDF, Emitter, Sensor, Film, Texture, ...
-        plugin: its type, such as ``diffuse``.
-        name: the id, or the name it has in its parent, or "".
-        place: file, line and column.
-        values: numbers, strings, booleans, colours as (3,) arrays, `Spectrum`, transformations as (4, 4) arrays.
-        children: nested and referenced plugins, with the names of the arguments.
-        evaluate: RGB of a texture that does not vary, as Mitsuba evaluates it.
-    """
-
-    kind: str
-    plugin: str
-    name: str
-    place: str
-    values: dict[str, Any] = field(default_factory=dict)
-    children: list[tuple[str, "Node"]] = field(default_factory=list)
-    evaluate: Callable[[], tuple[float, ...]] = tuple
-
-    def of(self, kind: str) -> list["Node"]:
-        """The children of a kind."""
-        return [child for _, child in self.children if child.kind == kind]
-
-    def number(self, name: str, default: float) -> float:
-        """A numeric argument.
-
-        Raises:
-            SceneError: it is something else.
-        """
-        value = self.values.get(name, default)
-        if not isinstance(value, int | float):
-            raise SceneError(f"{self.place}: '{name}' of this '{self.plugin}' is {value!r}; expected a number")
-        return value
-
-    def vector(self, name: str, default: tuple[float, float, float]) -> np.ndarray:
-        """(3,) an argument that is a point or vector.
-
-        Raises:
-            SceneError: it is something else.
-        """
-        value = self.values.get(name, default)
-        if np.shape(value) != (3,):
-            raise SceneError(f"{self.place}: '{name}' of this '{self.plugin}' is {value!r}; expected three numbers")
-        return np.asarray(value, np.float64)
-
-    def child(self, name: str) -> "Node | None":
-        """The child that is the argument ``name``."""
-        return next((child for key, child in self.children if key == name), None)
+from .mitsuba_node import Node, Spectrum
 
 
 def parse(path: Path) -> Node:
@@ -83,14 +21,15 @@ def parse(path: Path) -> Node:
         SceneError: malformed XML, or what Mitsuba refuses: its message, with line and column.
     """
     check_depth(path)
-    import mitsuba
+    import mitsuba as package
     import mitsuba.scalar_rgb as rgb  # its own module: the variant that a user has set stays as it is
 
-    parser: Any = mitsuba.parser
+    mitsuba: Any = package  # its stubs do not know all that it takes
+    parser = mitsuba.parser
     config = parser.ParserConfig("scalar_rgb")
     config.merge_equivalent = config.merge_meshes = config.parallel = False
     before = mitsuba.file_resolver()
-    resolver: Any = mitsuba.FileResolver(before)
+    resolver = mitsuba.FileResolver(before)
     resolver.prepend(str(path.parent.resolve()))
     mitsuba.set_file_resolver(resolver)
     try:

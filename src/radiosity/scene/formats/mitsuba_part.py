@@ -9,7 +9,7 @@ from ..model import Back
 from ..parts import Material, Part
 from .mitsuba_bsdf import Side, Sides
 from .mitsuba_color import Color, Colors, Image, VertexColors, equal_energy_rgb
-from .mitsuba_parse import Node, Spectrum
+from .mitsuba_node import Node, Spectrum
 from .mitsuba_shapes import Geometry
 
 

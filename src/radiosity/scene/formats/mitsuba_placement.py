@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import SceneError
-from .mitsuba_parse import Node
+from .mitsuba_node import Node
 from .mitsuba_shapes import Geometry
 
 

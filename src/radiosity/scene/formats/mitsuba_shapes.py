@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .mitsuba_parse import Node
+from .mitsuba_node import Node
 
 AROUND = 32  # faces around a disk, a cylinder or a sphere's equator
 ROWS = 16  # of a sphere

@@ -18,7 +18,8 @@ from .mitsuba_camera import read_camera
 from .mitsuba_color import Colors
 from .mitsuba_image import find_file
 from .mitsuba_mesh import read_mesh
-from .mitsuba_parse import Node, parse
+from .mitsuba_node import Node
+from .mitsuba_parse import parse
 from .mitsuba_part import as_srgb, is_equal_energy, make_part
 from .mitsuba_placement import placed, transformation
 from .mitsuba_shapes import ANALYTIC, Geometry
@@ -27,7 +28,7 @@ from .textures import warn_of_means, with_means
 MESHES = ("obj", "ply", "serialized")
 GROUPS = ("instance", "shapegroup", "merge")
 OTHERS = ("bsplinecurve", "ellipsoids", "ellipsoidsmesh", "linearcurve", "sdfgrid")
-MOST_SHAPES = 1_000_000  # after instancing
+MOST_SHAPES = 200_000  # after instancing
 MOST_FACES = 50_000_000
 
 
@@ -64,7 +65,7 @@ class Reader:
         self._geometries: dict[int, Geometry] = {}
         self._equal_energy: list[int] = []  # parts by number
         self._averaged: list[str] = []
-        self._faces = 0
+        self._shapes = self._faces = 0
 
     def add(self, node: Node, outer: np.ndarray, prefix: str) -> None:
         """Add a shape, or the shapes of a group, under the transformation ``outer`` of an instance.
@@ -74,6 +75,9 @@ class Reader:
         """
         label = prefix + (node.name or Path(str(node.values.get("filename", ""))).stem or node.plugin)
         inner = transformation(node, label)
+        self._shapes += 1
+        if self._shapes > MOST_SHAPES or self._faces > MOST_FACES:
+            raise SceneError(f"{self._path}: more than {MOST_SHAPES} shapes or {MOST_FACES} faces; split the scene")
         if node.plugin in GROUPS:
             if node.plugin == "instance":
                 prefix = f"{self._unique(label)}/"
@@ -95,8 +99,6 @@ class Reader:
         self._parts.append(part)
         self._averaged += [part.name] * averaged
         self._faces += len(part.faces)
-        if len(self._parts) > MOST_SHAPES or self._faces > MOST_FACES:
-            raise SceneError(f"{self._path}: more than {MOST_SHAPES} shapes or {MOST_FACES} faces; split the scene")
 
     def finished(self, options: ReadOptions) -> list[Part]:
         """All parts, with a warning for each kind of thing that was taken differently.

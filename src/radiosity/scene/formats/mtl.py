@@ -1,6 +1,5 @@
 """Materials of Wavefront MTL files."""
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,23 +8,8 @@ import numpy as np
 from ...errors import SceneError, shown
 from ..assemble import Material, ReadOptions, warn
 from ..model import Back
-from .textures import linear_image
-
-# options of map_Kd and map_Ke, and how many values follow (-o, -s, -t: one to three numbers)
-OPTIONS = {"-blendu": 1, "-blendv": 1, "-boost": 1, "-mm": 2, "-texres": 1, "-clamp": 1, "-bm": 1, "-imfchan": 1, "-type": 1,
-           "-cc": 1, "-colorspace": 1, "-o": 3, "-s": 3, "-t": 3}  # fmt: skip
-
-
-@dataclass(frozen=True, eq=False)
-class Map:
-    """An image with scale and offset of the texture coordinates."""
-
-    image: np.ndarray
-    scale: tuple[float, float] = (1.0, 1.0)
-    offset: tuple[float, float] = (0.0, 0.0)
-
-    def uv(self, given: np.ndarray) -> np.ndarray:
-        return given * self.scale + self.offset
+from .mtl_map import Map, Maps
+from .obj_text import lines
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,20 +31,15 @@ def read_library(path: Path, options: ReadOptions) -> dict[str, Finish]:
     """
     entries: dict[str, dict[str, tuple[int, str]]] = {}
     current: dict[str, tuple[int, str]] = {}
-    for number, line in enumerate(read_text(path).splitlines(), 1):
-        words = line.split("#", 1)[0].split(None, 1)
-        if not words:
-            continue
-        rest = words[1].strip() if len(words) > 1 else ""
+    for number, words in lines(path):
         if words[0].lower() == "newmtl":
-            current = entries.setdefault(rest, {})
+            current = entries.setdefault(" ".join(words[1:]), {})
         else:
-            current[words[0].lower()] = (number, rest)
-    lost: list[str] = []
-    images: dict[Path, np.ndarray] = {}
-    result = {name: _finish(path, entry, images, lost, options) for name, entry in entries.items()}
-    if lost:
-        warn(f"{path}: textures that cannot be read are left out: {'; '.join(dict.fromkeys(lost))}")
+            current[words[0].lower()] = (number, " ".join(words[1:]))
+    maps = Maps(path, options.strict)
+    result = {name: _finish(path, entry, maps) for name, entry in entries.items()}
+    if maps.lost:
+        warn(f"{path}: textures that cannot be read are left out: {'; '.join(dict.fromkeys(maps.lost))}")
     see_through = [
         name for name, entry in entries.items() if _number(path, entry, "d", 1.0) < 1 or _number(path, entry, "tr", 0.0) > 0
     ]
@@ -69,18 +48,8 @@ def read_library(path: Path, options: ReadOptions) -> dict[str, Finish]:
     return result
 
 
-def read_text(path: Path) -> str:
-    """UTF-8, or Latin-1 where it is not; lines that end in a backslash are joined."""
-    data = path.read_bytes()
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
-    return re.sub(r"\\\r?\n", " ", text)
-
-
-def _finish(path: Path, entry: dict, images: dict, lost: list[str], options: ReadOptions) -> Finish:
-    base, emissive = (_map(path, entry, key, images, lost, options) for key in ("map_kd", "map_ke"))
+def _finish(path: Path, entry: dict, maps: Maps) -> Finish:
+    base, emissive = (maps.read(*entry[key]) if key in entry else None for key in ("map_kd", "map_ke"))
     diffuse = _color(path, entry, "kd")
     radiance = _color(path, entry, "ke") or (0.0,)
     if diffuse is None and base is not None:
@@ -123,42 +92,3 @@ def _color(path: Path, entry: dict, key: str) -> tuple[float, ...] | None:
     if not all(0 <= v < np.inf for v in values):
         raise SceneError(f"{path}, line {entry[key][0]}: {key} is {shown(values)}; values must be finite and not negative")
     return tuple(values[:1] if len(set(values)) == 1 else values)
-
-
-def _map(path: Path, entry: dict, key: str, images: dict, lost: list[str], options: ReadOptions) -> Map | None:
-    if key not in entry:
-        return None
-    words = re.split(r"\s+", entry[key][1])
-    moves = {"-o": [0.0, 0.0], "-s": [1.0, 1.0]}
-    while words and words[0].lower() in OPTIONS:
-        option = words.pop(0).lower()
-        for place in range(OPTIONS[option]):
-            if len(words) < 2 or (option in ("-o", "-s", "-t") and not _is_number(words[0])):
-                break
-            value = words.pop(0)
-            if option in moves and place < 2:
-                moves[option][place] = float(value)
-    name = " ".join(words)
-    try:
-        file = _find(path, name)
-        if file not in images:
-            images[file] = linear_image(file.read_bytes(), str(file))
-    except (SceneError, OSError, ValueError) as error:
-        if options.strict:
-            raise SceneError(f"{path}, line {entry[key][0]}: texture '{name}': {error}") from None
-        lost.append(str(error))
-        return None
-    return Map(images[file], tuple(moves["-s"]), tuple(moves["-o"]))
-
-
-def _is_number(word: str) -> bool:
-    return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", word) is not None
-
-
-def _find(path: Path, name: str) -> Path:
-    """A texture file: as named, or of that name beside the library (names of other machines are common)."""
-    plain = name.strip('"').replace("\\", "/")
-    for file in (path.parent / plain, path.parent / Path(plain).name):
-        if plain and file.is_file():
-            return file
-    raise SceneError(f"'{name}' does not exist beside {path.name}")

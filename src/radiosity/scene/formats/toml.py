@@ -41,7 +41,9 @@ def read(path: Path, options: ReadOptions) -> Scene:
     same = len(set(factors)) == 1 and len({scene.scale for scene in scenes}) == 1
     photometric = _photometric(asked.photometric, scenes, path)
     scene = combine(scenes, source=str(path), photometric=photometric, scale=factors[0] * scenes[0].scale if same else 1.0)
-    cameras = tuple(Camera(tuple(c.origin), tuple(c.target), tuple(c.up), c.fov, c.width, c.height) for c in asked.camera)
+    cameras = tuple(
+        Camera(_times(c.origin, 1), _times(c.target, 1), _times(c.up, 1), c.fov, c.width, c.height) for c in asked.camera
+    )
     for number, camera in enumerate(cameras, 1):
         gaze = np.subtract(camera.target, camera.origin)
         if not np.linalg.norm(np.cross(gaze, camera.up)) > 1e-9 * np.linalg.norm(gaze) * np.linalg.norm(camera.up):
@@ -72,8 +74,10 @@ class Looks:
                 self.powers.pop(part.name, None)
                 if entry.power is not None:
                     self.powers[part.name] = number
-            if entry.sides is not None or entry.back is not None:
-                material = replace(material, back=BACKS[entry.back] if entry.back else SIDES[entry.sides])
+            if entry.sides is not None:
+                material = replace(material, back=SIDES[entry.sides])
+            if entry.back is not None:
+                material = replace(material, back=BACKS[entry.back])
             if entry.patch_size is not None:
                 part = replace(part, patch_size=entry.patch_size)
         return replace(part, material=material)

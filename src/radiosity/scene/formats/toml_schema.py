@@ -104,7 +104,7 @@ def checked(values: dict, source: str) -> SceneFile:
         raise SceneError(f"{source}: {'; '.join(list(faults)[:3])}") from None
 
 
-def _sentence(fault: dict, values: dict) -> str:
+def _sentence(fault, values: dict) -> str:
     path = fault["loc"]
     where = ", ".join(f"{step} {path[i + 1] + 1}" if i + 1 < len(path) and isinstance(path[i + 1], int) else str(step)
                       for i, step in enumerate(path) if isinstance(step, str))  # fmt: skip

@@ -1,0 +1,102 @@
+"""Rows of a PLY element as columns; lists may differ in length from row to row."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Property:
+    """``dtype`` of the values; ``count`` of their number where they are a list, else None."""
+
+    name: str
+    dtype: np.dtype
+    count: np.dtype | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Lists:
+    """Rows of different length: ``values`` of all rows, one after another, and each row's ``sizes``."""
+
+    values: np.ndarray
+    sizes: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """The properties of an element by name: one number a row, or lists."""
+
+    numbers: dict[str, np.ndarray]
+    lists: dict[str, Lists]
+
+
+def read_ascii(words: np.ndarray, at: int, count: int, properties: list[Property]) -> tuple[Columns, int]:
+    """Columns of ``count`` rows from a file's numbers, and where they end. ValueError or IndexError: they do not fit."""
+    if all(p.count is None for p in properties):
+        table = words[at : at + count * len(properties)].reshape(count, len(properties))
+        return Columns({p.name: table[:, i].astype(p.dtype) for i, p in enumerate(properties)}, {}), at + table.size
+    found = [([], []) for _ in properties]
+    for _ in range(count):
+        for p, (values, sizes) in zip(properties, found, strict=True):
+            size = 1 if p.count is None else _size(words[at])
+            at += p.count is not None
+            if at + size > len(words):
+                raise IndexError
+            values.append(words[at : at + size])
+            sizes.append(size)
+            at += size
+    return _columns(properties, found), at
+
+
+def _size(value) -> int:
+    if not 0 <= value < 2**31 or value != int(value):
+        raise ValueError
+    return int(value)
+
+
+def read_binary(body: bytes, at: int, count: int, properties: list[Property]) -> tuple[Columns, int]:
+    """Columns of ``count`` rows from bytes, and where they end. ValueError or IndexError: they do not fit."""
+    sizes = _first_sizes(body, at, properties) if count else [1] * len(properties)
+    row = np.dtype([(f"{kind}{i}", t, n) for i, (p, size) in enumerate(zip(properties, sizes, strict=True))
+                    for kind, t, n in ([("n", p.count, ())] if p.count else []) + [("v", p.dtype, (size,))]])  # fmt: skip
+    if at + count * row.itemsize <= len(body):
+        table = np.frombuffer(body, row, count, at)
+        if all((table[f"n{i}"] == size).all() for i, (p, size) in enumerate(zip(properties, sizes, strict=True)) if p.count):
+            found = [([table[f"v{i}"].ravel()], np.full(count, size)) for i, size in enumerate(sizes)]
+            return _columns(properties, found), at + count * row.itemsize
+    found = [([], []) for _ in properties]
+    for _ in range(count):
+        for p, (values, sizes) in zip(properties, found, strict=True):
+            size = 1
+            if p.count is not None:
+                size = int(np.frombuffer(body, p.count, 1, at)[0])
+                at += p.count.itemsize
+            values.append(np.frombuffer(body, p.dtype, size, at) if size else np.zeros(0, p.dtype))
+            sizes.append(size)
+            at += size * p.dtype.itemsize
+    return _columns(properties, found), at
+
+
+def _first_sizes(body: bytes, at: int, properties) -> list[int]:
+    sizes = []
+    for p in properties:
+        size = 1
+        if p.count is not None:
+            size = int(np.frombuffer(body, p.count, 1, at)[0])
+            at += p.count.itemsize
+            if size < 0 or size * p.dtype.itemsize > len(body) - at:
+                raise IndexError
+        sizes.append(size)
+        at += size * p.dtype.itemsize
+    return sizes
+
+
+def _columns(properties, found) -> Columns:
+    result = Columns({}, {})
+    for p, (values, sizes) in zip(properties, found, strict=True):
+        flat = (np.concatenate(values) if len(values) else np.zeros(0)).astype(p.dtype.newbyteorder("="))
+        if p.count is None:
+            result.numbers[p.name] = flat
+        else:
+            result.lists[p.name] = Lists(flat, np.asarray(sizes, np.int64))
+    return result

@@ -1,0 +1,82 @@
+"""LLVM is found or refused with a sentence, uploads do not borrow memory, and a user's Mitsuba variant stays."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+from radiosity import llvm
+from radiosity.engine.device import PACKET, choose, upload
+
+
+def python(code: str, **environment) -> subprocess.CompletedProcess:
+    import os
+
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=os.environ | environment, timeout=300)
+
+
+def test_old_or_broken_libraries_are_refused(tmp_path, monkeypatch):
+    broken = tmp_path / "libLLVM.so"
+    broken.write_bytes(b"not a library")
+    monkeypatch.setenv(llvm.VARIABLE, str(broken))
+    with pytest.raises(rd.DeviceError, match=r"no loadable libLLVM; install"):
+        llvm.find()
+    monkeypatch.setattr(llvm, "version", lambda path: 15)
+    with pytest.raises(rd.DeviceError, match=rf"libLLVM 15 .* is too old; install .* set {llvm.VARIABLE}"):
+        llvm.find()
+    monkeypatch.delenv(llvm.VARIABLE)
+    monkeypatch.setattr(llvm, "_folders", list)
+    with pytest.raises(rd.DeviceError, match="no usable libLLVM found"):
+        llvm.find()
+
+
+def test_a_broken_setting_is_one_sentence_not_a_crash(tmp_path):
+    code = "import radiosity as rd\ntry:\n rd.solve(rd.load_scene('room'), rays=10**5)\nexcept rd.DeviceError as e: print('refused', e)"
+    done = python(code, **{llvm.VARIABLE: str(tmp_path / "libLLVM.so")})
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("refused")
+
+
+def test_the_users_own_library_wins():
+    chosen = llvm.find()
+    assert llvm.version(Path(chosen.path)) >= llvm.OLDEST
+
+
+def test_uploads_are_copies_and_padded():
+    types = choose("cpu").types
+    for length in (1, PACKET - 1, PACKET, PACKET + 1, 4096):
+        values = np.arange(length, dtype=np.uint32)
+        array = upload(types.UInt32, values)
+        values[:] = 7
+        assert np.array_equal(np.array(array), np.arange(length))
+
+
+def test_a_users_variant_is_left_as_it_was():
+    code = (
+        "import radiosity as rd, mitsuba as mi\n"
+        "mi.set_variant('scalar_rgb')\n"
+        "scene = rd.load_scene('room')\n"
+        "solution = rd.solve(rd.subdivide(scene, cells=2), rays=10**5)\n"
+        "from radiosity.engine.caster import first_hits\n"
+        "first_hits(scene, [[3, 2, 1]], [[0, 0, 1]])\n"
+        "print(mi.variant(), solution.status)"
+    )
+    done = python(code)
+    assert done.stdout.split() == ["scalar_rgb", "complete"], done.stderr
+
+
+def test_other_seeds_and_scenes_compile_no_new_kernel():
+    import drjit as dr
+
+    def kernels(scene, seed):
+        with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
+            dr.kernel_history_clear()
+            rd.solve(rd.subdivide(rd.load_scene(scene), cells=3), quanta=3000, replicates=2, seed=seed)
+            return {entry["hash"] for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT}
+
+    first = kernels("room", 1)
+    assert kernels("room", 2) == first
+    assert len(kernels("labyrinth-0.9", 3) - first) <= 2  # sequences of another length, at most

@@ -1,0 +1,212 @@
+"""Budgets, errors, progress, interruption, and what a solution holds."""
+
+import os
+import signal
+import threading
+
+import numpy as np
+import pytest
+from enclosures import cube
+
+import radiosity as rd
+
+
+@pytest.fixture(scope="module")
+def patches():
+    return rd.subdivide(rd.load_scene("room"), cells=5)
+
+
+@pytest.fixture(scope="module")
+def solution(patches):
+    return rd.solve(patches, rays=1_000_000)
+
+
+@pytest.mark.parametrize("rays", [100_000, 1_000_000, 7_654_321])
+@pytest.mark.parametrize("replicates", [1, 8])
+def test_rays_are_met_within_five_percent(patches, rays, replicates):
+    assert abs(rd.solve(patches, rays=rays, replicates=replicates).rays / rays - 1) < 0.05
+
+
+def test_few_rays_warn(patches):
+    with pytest.warns(rd.RadiosityWarning, match="replicates .* quanta"):
+        rd.solve(patches, rays=500)
+
+
+def test_error_target_is_reached(patches):
+    solution = rd.solve(patches, error=0.05)
+    assert 0.02 < solution.error <= 0.05
+    assert solution.status == "complete"
+
+
+def test_seconds_are_kept_roughly(patches):
+    solution = rd.solve(patches, seconds=1.0)
+    assert solution.seconds < 10  # a slow machine may compile for long; the loop itself stops in time
+    assert solution.rays > 0
+
+
+def test_error_is_the_area_weighted_rms(patches, solution):
+    area, reflected = patches.area, solution.radiosity - patches.emission
+    expected = np.sqrt((area @ solution.standard_error[:, 0] ** 2) / (area @ reflected[:, 0] ** 2))
+    assert solution.error == pytest.approx(expected)
+    spread = solution.state["arrivals"].astype(float).std(axis=0, ddof=1) / np.sqrt(8)
+    unit = 25.6 / solution.quanta / area
+    assert np.allclose(solution.irradiance_standard_error[:, 0], spread * unit, rtol=1e-6)
+
+
+def test_error_bars_cover_the_truth():
+    """Nominal 90 and 99 % Student intervals over the patches of the furnace and 30 seeds."""
+    from scipy import stats
+
+    labyrinth = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
+    inside = {0.90: 0, 0.99: 0}
+    for seed in range(30):
+        solved = rd.solve(labyrinth, quanta=8_000, seed=seed)
+        t = np.abs((solved.radiosity - 1) / solved.standard_error)
+        for level in inside:
+            inside[level] += (t < stats.t.ppf(0.5 + level / 2, 7)).mean() / 30
+    assert abs(inside[0.90] - 0.90) < 0.02
+    assert abs(inside[0.99] - 0.99) < 0.008
+
+
+def test_one_replicate_has_no_error(patches):
+    solution = rd.solve(patches, rays=100_000, replicates=1)
+    assert np.isnan(solution.error)
+    assert np.isnan(solution.irradiance_standard_error).all()
+    assert "unknown" in solution.report()
+
+
+def test_black_scene_has_known_radiosity_and_an_error_of_irradiance():
+    solution = rd.solve(rd.subdivide(cube(0.0, 1.0), cells=3), error=0.05)
+    assert np.array_equal(solution.radiosity, solution.patches.emission)
+    assert not solution.standard_error.any()
+    assert 0 < solution.error <= 0.05
+
+
+@pytest.mark.parametrize(
+    ("choices", "message"),
+    [
+        ({}, "exactly one"),
+        ({"rays": 1000, "seconds": 1}, "exactly one"),
+        ({"rays": 0}, "rays is 0"),
+        ({"rays": -5}, "rays is -5"),
+        ({"rays": float("nan")}, "rays is nan"),
+        ({"rays": "many"}, "rays is 'many'"),
+        ({"seconds": 0}, "seconds is 0"),
+        ({"error": 1.5}, "below 1"),
+        ({"error": 0.1, "replicates": 1}, "2 replicates"),
+        ({"rays": 1e11}, "32-bit counters"),
+        ({"quanta": 2**33}, "32-bit counters"),
+        ({"rays": 1000, "replicates": 0}, "replicates is 0"),
+        ({"rays": 1000, "seed": -1}, "seed is -1"),
+        ({"rays": 1000, "method": "magic"}, "'magic' does not exist; known are random-walk"),
+        ({"rays": 1000, "equation": "cubic"}, "equation 'cubic' does not exist; known are discrete"),
+        ({"rays": 1000, "lines": "curved"}, "lines 'curved' does not exist; known are local"),
+        ({"rays": 1000, "order": "sideways"}, "order 'sideways' does not exist; known are breadth-first, depth-first"),
+        ({"rays": 1000, "numbers": "lucky"}, "numbers 'lucky' does not exist; known are halton, random"),
+        ({"rays": 1000, "numbers": "random", "coherent": True}, "coherent"),
+        ({"rays": 1000, "order": "depth-first", "coherent": True}, "coherent"),
+    ],
+)
+def test_senseless_choices_are_refused(patches, choices, message):
+    with pytest.raises(rd.MethodError, match=message):
+        rd.solve(patches, **choices)
+
+
+def test_unknown_device_is_refused(patches):
+    with pytest.raises(rd.DeviceError, match="'abacus' does not exist"):
+        rd.solve(patches, rays=1000, device="abacus")
+
+
+def test_a_scene_without_light_is_refused():
+    with pytest.raises(rd.SceneError, match="no surface emits"):
+        rd.solve(cube(0.5, 0.0), rays=1000)
+
+
+def test_solve_wants_a_scene():
+    with pytest.raises(rd.MethodError, match="load_scene"):
+        rd.solve("room", rays=1000)
+
+
+def test_progress_is_told(patches):
+    told = []
+    solution = rd.solve(patches, rays=3_000_000, progress=told.append)
+    assert told[0].message == "compiling"
+    rays = [p.rays for p in told]
+    assert rays == sorted(rays)
+    assert rays[-1] == solution.rays
+    assert all(p.fraction is None or 0 <= p.fraction <= 1 for p in told)
+    assert told[-1].rays_per_second > 0
+    assert told[-1].stage >= 1
+    assert told[-1].error > 0
+
+
+@pytest.mark.parametrize("order", ["breadth-first", "depth-first"])
+def test_interruption_returns_the_last_complete_stage(patches, order):
+    def listen(progress):
+        if progress.stage >= 2:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    before = signal.getsignal(signal.SIGINT)
+    solution = rd.solve(patches, rays=1e9, replicates=2, order=order, progress=listen)
+    assert signal.getsignal(signal.SIGINT) is before
+    assert solution.status == "interrupted"
+    assert 0 < solution.rays < 1e9
+    assert np.array_equal(solution.irradiance, rd.solve(patches, quanta=solution.quanta, replicates=2).irradiance)
+
+
+def test_interruption_before_the_first_stage_is_a_keyboard_interrupt(patches):
+    with pytest.raises(KeyboardInterrupt):
+        rd.solve(patches, rays=1e9, replicates=2, progress=lambda p: p.message == "tracing" and os.kill(os.getpid(), signal.SIGINT))
+
+
+def test_solve_runs_outside_the_main_thread(patches):
+    found = []
+    thread = threading.Thread(target=lambda: found.append(rd.solve(patches, rays=50_000)))
+    thread.start()
+    thread.join()
+    assert found[0].status == "complete"
+
+
+def test_books_close_exactly(solution):
+    book = solution.books[0]
+    assert book["closes"]
+    assert book["emitted"] == pytest.approx(25.6)
+    table = solution.surface_table()
+    assert sum(row["absorbed"] for row in table) == pytest.approx(book["absorbed"], rel=1e-6)
+    assert sum(row["emitted"] for row in table) == pytest.approx(book["emitted"], rel=1e-9)
+    assert [row["surface"] for row in table] == list(solution.patches.scene.names)
+
+
+def test_report_says_what_matters(solution):
+    text = solution.report()
+    for word in ("lines", "8 replicates", "error", "closes exactly", "ceiling", "W/m²"):
+        assert word in text
+
+
+def test_save_and_load(solution, tmp_path):
+    solution.save(tmp_path / "room.npz")
+    loaded = rd.load_solution(tmp_path / "room.npz")
+    for name in ("radiosity", "irradiance", "standard_error", "irradiance_standard_error", "arrivals"):
+        assert np.array_equal(getattr(loaded, name), getattr(solution, name))
+    assert loaded.patches.scene.hash == solution.patches.scene.hash == loaded.provenance["scene"]
+    assert loaded.report() == solution.report()
+    assert set(loaded.provenance["versions"]) == {"radiosity", "drjit", "mitsuba", "numpy"}
+    assert np.array_equal(loaded.state["arrivals"], solution.state["arrivals"])
+
+
+@pytest.mark.parametrize("damage", ["missing", "empty", "noise", "truncated", "other"])
+def test_damaged_solutions_are_refused(solution, tmp_path, damage):
+    path = tmp_path / "x.npz"
+    if damage == "other":
+        np.savez(path, a=1)
+    elif damage != "missing":
+        solution.save(path)
+        whole = path.read_bytes()
+        path.write_bytes({"empty": b"", "noise": bytes(range(256)) * 9, "truncated": whole[: len(whole) // 2]}[damage])
+    with pytest.raises(rd.SceneError, match="x.npz"):
+        rd.load_solution(path)
+
+
+def test_unwritable_solution(solution, tmp_path):
+    with pytest.raises(rd.OutputError, match="cannot be written"):
+        solution.save(tmp_path / "nowhere" / "x.npz")
