@@ -1,5 +1,7 @@
 """The TOML scene: looks by surface name, units, powers, and one clear error for each fault."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from samples import MTL, OBJ, box_gltf, ply_text, stl_bytes
@@ -182,6 +184,19 @@ def test_power_without_area(load, tmp_path):
         pytest.warns(RadiosityWarning, match="1 face without area"),
     ):
         load(text)
+
+
+def test_the_example_of_the_documentation(load, tmp_path):
+    document = Path(__file__).resolve().parents[1] / "docs" / "scene-toml.md"
+    example = document.read_text().split("```toml\n")[1].split("```")[0]
+    (tmp_path / "box.mtl").write_text(MTL.replace("white", "oak"))
+    (tmp_path / "room.obj").write_text(OBJ.replace("usemtl white", "usemtl oak"))
+    (tmp_path / "scene.toml").write_text(example)
+    scene = rd.load_scene(tmp_path / "scene.toml")
+    assert scene.names == ("room/floor/oak", "room/lamp/light", "lamp")
+    np.testing.assert_allclose(scene.reflectance, [[0.45, 0.30, 0.18], [0.5] * 3, [0] * 3])
+    np.testing.assert_allclose(scene.emission[2], 40 / 0.01)
+    assert len(scene.cameras) == 1
 
 
 def test_not_text(load, tmp_path):
