@@ -37,10 +37,10 @@ def cast_form_factors(patches, lines: int, random) -> np.ndarray:
 
 def test_dense_solve_on_the_same_patches(random):
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=3)
-    n, batches = len(patches), 8
+    n, batches = len(patches), 24
     dense = np.zeros((batches, n, 3))
     for i in range(batches):
-        factors = cast_form_factors(patches, 4000, random)
+        factors = cast_form_factors(patches, 3000, random)
         for band in range(3):
             matrix = np.eye(n) - patches.reflectance[:, band, None] * factors
             dense[i, :, band] = np.linalg.solve(matrix, patches.emission[:, band])
@@ -49,9 +49,9 @@ def test_dense_solve_on_the_same_patches(random):
     both = np.hypot(error, solution.standard_error)
     known = both > 0
     z = (solution.radiosity - mean)[known] / both[known]
-    # 189 patches in 3 bands, about 14 degrees of freedom: p(|t| > 7) = 6e-6 each
-    assert np.abs(z).max() < 7
-    assert 0.7 < np.sqrt(np.mean(z**2)) < 1.4
+    # 193 patches in 3 bands, 23 degrees of freedom or more where the dense error dominates: p(|t| > 6) = 4e-6 each
+    assert np.abs(z).max() < 6
+    assert 0.8 < np.sqrt(np.mean(z**2)) < 1.25
     assert np.abs(z.mean()) < 0.5  # neighbours share lines, so the mean is no sum of independent errors
     area = patches.area
     relative = np.sqrt(area @ (solution.radiosity - mean) ** 2 / (area @ (mean - patches.emission) ** 2))
@@ -135,6 +135,6 @@ def test_difference_from_the_path_tracer_falls_with_the_patch_size():
     floor = rms(noise)
     print(f"\ncells, RMS difference from the path tracer (its noise {floor:.3%}): "
           + ", ".join(f"{k}: {d:.3%}" for k, d in zip((2, 4, 8, 16), differences, strict=True)))  # fmt: skip
-    assert differences[0] > differences[1] > differences[2]
-    assert differences[2] < differences[0] / 4
-    assert differences[3] == pytest.approx(floor, abs=0.006)
+    excess = np.sqrt(np.maximum(np.square(differences) - floor**2, 0))
+    assert (excess[1:] < 0.75 * excess[:-1]).all()
+    assert excess[-1] < excess[0] / 4

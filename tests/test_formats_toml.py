@@ -186,6 +186,24 @@ def test_power_without_area(load, tmp_path):
         load(text)
 
 
+def test_looks_for_other_formats(tmp_path, strangers):
+    """The entries reach a scene in MGF before its own values are looked at."""
+    (tmp_path / "scene.toml").write_text(f"""
+        geometry = ['{strangers / "renderpark" / "cube.mgf"}']
+        unit = "cm"
+        [[surface]]
+        name = "*"
+        reflectance = 0.25
+    """)
+    scene = rd.load_scene(tmp_path / "scene.toml")  # no warning: what is not diffuse there was said anew
+    with pytest.warns(RadiosityWarning, match="not diffuse"):
+        plain = rd.load_scene(strangers / "renderpark" / "cube.mgf")
+    assert (scene.reflectance == 0.25).all()
+    assert scene.photometric == plain.photometric
+    np.testing.assert_allclose(scene.area, plain.area * 1e-4)
+    np.testing.assert_allclose(scene.emission, plain.emission)
+
+
 def test_the_example_of_the_documentation(load, tmp_path):
     document = Path(__file__).resolve().parents[1] / "docs" / "scene-toml.md"
     example = document.read_text().split("```toml\n")[1].split("```")[0]

@@ -3,6 +3,7 @@
 import os
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -83,14 +84,13 @@ def describe() -> dict[str, str]:
     """Facts for ``radiosity doctor``."""
     library = llvm.prepare()
     import drjit as dr
-    import mitsuba as mi
 
     return {
         "LLVM": f"{library.version} ({library.path}, {library.origin})",
         "device": choose("auto").name,
         "CUDA": "found" if dr.has_backend(dr.JitBackend.CUDA) else "none",
         "threads": str(dr.thread_count()),
-        "drjit": dr.__version__,
-        "mitsuba": mi.__version__,
+        "drjit": version("drjit"),
+        "mitsuba": version("mitsuba"),
         "numpy": np.__version__,
     }

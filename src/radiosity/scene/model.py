@@ -7,6 +7,7 @@ from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..errors import RadiosityWarning, SceneError, shown
 from .paint import Paint
@@ -82,7 +83,7 @@ class Scene:
         *,
         surface=None,
         names=None,
-        two_sided=False,
+        two_sided: ArrayLike = False,
         back=None,
         back_reflectance=None,
         back_emission=None,

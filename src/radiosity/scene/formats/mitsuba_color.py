@@ -8,8 +8,8 @@ import numpy as np
 from ...errors import SceneError
 from .mitsuba_image import find_file, read_image
 from .mitsuba_node import Node, Spectrum
-from .mitsuba_parse import message
 
+PLAIN = {"srgb": "color", "uniform": "value", "rawconstant": "value", "d65": "color"}  # plugin: its argument
 CHECKER = 64  # pixels along an edge of the image that stands for a checkerboard
 
 Color = tuple[float, ...]
@@ -44,10 +44,10 @@ def collapse(color) -> Color:
 
 
 class Colors:
-    """Reads the colours of the file ``path``; images are found beside it and read once."""
+    """Reads colours; images are found in ``folders`` and read once."""
 
-    def __init__(self, path: Path):
-        self.path = path
+    def __init__(self, folders: list[Path]):
+        self._folders = folders
         self._images: dict[tuple[Path, bool], np.ndarray] = {}
 
     def get(self, node: Node, key: str, default: float, *, emission: bool = False) -> "Color | Image | VertexColors":
@@ -58,36 +58,40 @@ class Colors:
         """
         nested = node.child(key)
         if nested is not None:
-            return self._texture(nested)
+            return self._texture(nested, emission)
         value = node.values.get(key, default)
         if isinstance(value, Spectrum):
             flat = not value.wavelengths
-            return value.values[:1] if flat else collapse(_srgb(value.wavelengths, value.values, emission))
+            return value.values[:1] if flat else collapse(_srgb(value.wavelengths, value.values, emission, node.place))
         color = np.atleast_1d(np.asarray(value)) if not isinstance(value, str) else np.zeros(0)
         if color.shape not in ((1,), (3,)):
             raise SceneError(f"{node.place}: '{key}' of this '{node.plugin}' is {value!r}; expected a colour")
         return collapse(color)
 
-    def _texture(self, node: Node) -> "Color | Image | VertexColors":
+    def _texture(self, node: Node, emission: bool) -> "Color | Image | VertexColors":
         to_uv = node.values.get("to_uv", np.eye(4))
-        to_uv = to_uv[np.ix_((0, 1, 3), (0, 1, 3))] if to_uv.shape == (4, 4) else to_uv
+        if np.shape(to_uv) != (4, 4):
+            raise SceneError(f"{node.place}: 'to_uv' of this '{node.plugin}' is {to_uv!r}; expected a transformation")
+        to_uv = to_uv[np.ix_((0, 1, 3), (0, 1, 3))]
         if node.plugin == "bitmap":
             return Image(self._bitmap(node), to_uv)
         if node.plugin == "checkerboard":
             return Image(self._checkerboard(node), to_uv)
         if node.plugin == "mesh_attribute":
             return VertexColors()
-        try:
-            return collapse(node.evaluate())
-        except Exception as error:  # of many classes
-            text = message(error, self.path)
-            raise SceneError(f"{node.place}: '{node.plugin}' has no RGB value ({text}); give an rgb or a bitmap") from None
+        if node.plugin in PLAIN:
+            color = self.get(node, PLAIN[node.plugin], 1.0, emission=emission)
+            scale = node.number("scale", 1.0)
+            return tuple(scale * v for v in color) if isinstance(color, tuple) else color
+        if node.plugin in ("regular", "irregular"):
+            return collapse(_srgb(*_samples(node), emission, node.place))
+        raise SceneError(f"{node.place}: a '{node.plugin}' as a colour is not read; give an rgb, a spectrum or a bitmap")
 
     def _bitmap(self, node: Node) -> np.ndarray:
         name = node.values.get("filename")
         if not isinstance(name, str):
             raise SceneError(f"{node.place}: a bitmap without a filename")
-        file = find_file(self.path, name, node)
+        file = find_file(self._folders, name, node)
         raw = bool(node.values.get("raw", False))
         if (file, raw) not in self._images:
             self._images[file, raw] = read_image(file, raw)
@@ -102,13 +106,30 @@ class Colors:
 
 def equal_energy_rgb() -> np.ndarray:
     """(3,) linear sRGB of a radiance that is 1 at all wavelengths, as Mitsuba converts it."""
-    return np.array(_srgb((360.0, 830.0), (1.0, 1.0), True))
+    return np.array(_srgb((360.0, 830.0), (1.0, 1.0), True, ""))
 
 
-def _srgb(wavelengths, values, emission: bool):
+def _samples(node: Node) -> tuple[list[float], list[float]]:
+    """Wavelengths and values of a sampled spectrum."""
+    try:
+        values = [float(v) for v in str(node.values.get("values", "")).replace(",", " ").split()]
+        if node.plugin == "irregular":
+            return [float(v) for v in str(node.values.get("wavelengths", "")).replace(",", " ").split()], values
+    except ValueError as error:
+        raise SceneError(f"{node.place}: the spectrum cannot be read ({error})") from None
+    ends = node.number("wavelength_min", 360.0), node.number("wavelength_max", 830.0)
+    return [float(v) for v in np.linspace(*ends, len(values))], values
+
+
+def _srgb(wavelengths, values, emission: bool, place: str) -> list[float]:
     import mitsuba.scalar_rgb as rgb
 
+    steps = np.diff(wavelengths)
+    finite = np.isfinite((*wavelengths, *values)).all()
+    if len(values) < 2 or len(wavelengths) != len(values) or not finite or not (steps > 0).all():
+        text = f"{place}: a spectrum of {len(values)} values at {len(wavelengths)} wavelengths"
+        raise SceneError(f"{text}; expected two or more finite ones, at growing wavelengths")
     try:
         return [float(v) for v in rgb.spectrum_list_to_srgb(list(wavelengths), list(values), not emission, not emission)]
     except (RuntimeError, TypeError) as error:
-        raise SceneError(f"a spectrum of {len(values)} values cannot be converted to RGB ({error})") from None
+        raise SceneError(f"{place}: the spectrum cannot be converted to RGB ({error})") from None

@@ -12,16 +12,17 @@ from .textures import decode_srgb, linear_image
 FLOAT_IMAGES = (".exr", ".hdr", ".pfm", ".rgbe")
 
 
-def find_file(path: Path, name: str, node: Node) -> Path:
-    """A file that a plugin names, beside the scene file.
+def find_file(folders: list[Path], name: str, node: Node) -> Path:
+    """A file that a plugin names, in one of the folders or beside the XML file that names it.
 
     Raises:
         SceneError: there is none.
     """
-    for file in (path.parent / name, path.parent / name.replace("\\", "/"), Path(node.place.rsplit(" (", 1)[0]).parent / name):
-        if file.is_file():
-            return file
-    raise SceneError(f"{node.place}: the file '{name}' of this '{node.plugin}' does not exist beside {path.name}")
+    for folder in (*folders, Path(node.place.rsplit(" (", 1)[0]).parent):
+        for file in (folder / name, folder / name.replace("\\", "/")):
+            if file.is_file():
+                return file
+    raise SceneError(f"{node.place}: the file '{name}' of this '{node.plugin}' does not exist in {folders[0]}")
 
 
 def read_image(file: Path, raw: bool) -> np.ndarray:

@@ -13,7 +13,6 @@ from .mitsuba_node import Node
 from .mitsuba_shapes import Geometry
 from .obj_tables import parse
 from .ply import read_ply
-from .ply_rows import Lists
 
 NORMALS, COORDINATES, COLORS, DOUBLE = 0x1, 0x2, 0x8, 0x2000  # flags of serialized files
 MAGIC = 0x041C
@@ -53,17 +52,19 @@ def _obj(node: Node, file: Path) -> Geometry:
 
 
 def _ply(node: Node, file: Path) -> Geometry:
-    columns = read_ply(file).columns
-    vertex, face = columns.get("vertex", {}), columns.get("face", {})
-    lists = next((found for name in ("vertex_indices", "vertex_index") if isinstance(found := face.get(name), Lists)), None)
-    if lists is None or any(not isinstance(vertex.get(axis), np.ndarray) for axis in "xyz"):
-        raise SceneError(f"{file}: the file has no vertices with x, y, z or no faces")
+    elements = read_ply(file).columns
+    if "vertex" not in elements or "face" not in elements:
+        raise SceneError(f"{file}: the file has no vertices or no faces")
+    vertex, lists = elements["vertex"].numbers, elements["face"].lists
+    index = next((lists[name] for name in ("vertex_indices", "vertex_index") if name in lists), None)
+    if index is None or not {"x", "y", "z"} <= set(vertex):
+        raise SceneError(f"{file}: the vertices have no x, y, z, or the faces no vertex_indices")
     points = _columns(vertex, ("x", "y", "z"))
-    index = _checked(lists.values.astype(np.int64), len(points), file)
-    faces = cut(points[index], lists.sizes)
+    corners = _checked(index.values.astype(np.int64), len(points), file)
+    faces = cut(points[corners], index.sizes)
     uv = next((_columns(vertex, pair) for pair in (("u", "v"), ("s", "t")) if set(pair) <= set(vertex)), None)
     color = _columns(vertex, ("r", "g", "b")) if {"r", "g", "b"} <= set(vertex) else None
-    return Geometry(points, np.where(faces >= 0, index[faces], -1), uv, color, {"nx", "ny", "nz"} <= set(vertex))
+    return Geometry(points, np.where(faces >= 0, corners[faces], -1), uv, color, {"nx", "ny", "nz"} <= set(vertex))
 
 
 def _columns(columns: dict, names: tuple[str, ...]) -> np.ndarray:

@@ -1,6 +1,5 @@
 """The tree of plain values that a Mitsuba scene file is read into."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -28,7 +27,6 @@ class Node:
         place: file, line and column.
         values: numbers, strings, booleans, colours as (3,) arrays, `Spectrum`, transformations as (4, 4) arrays.
         children: nested and referenced plugins, with the names of the arguments.
-        evaluate: RGB of a texture that does not vary, as Mitsuba evaluates it.
     """
 
     kind: str
@@ -37,7 +35,6 @@ class Node:
     place: str
     values: dict[str, Any] = field(default_factory=dict)
     children: list[tuple[str, "Node"]] = field(default_factory=list)
-    evaluate: Callable[[], tuple[float, ...]] = tuple
 
     def of(self, kind: str) -> list["Node"]:
         """The children of a kind."""

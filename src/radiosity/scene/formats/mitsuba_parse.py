@@ -14,15 +14,15 @@ from .mitsuba_depth import check_depth
 from .mitsuba_node import Node, Spectrum
 
 
-def parse(path: Path) -> Node:
-    """The scene node of a file.
+def parse(path: Path) -> tuple[Node, list[Path]]:
+    """The scene node of a file, and the folders where it looks for others.
 
     Raises:
         SceneError: malformed XML, or what Mitsuba refuses: its message, with line and column.
     """
     check_depth(path)
     import mitsuba as package
-    import mitsuba.scalar_rgb as rgb  # its own module: the variant that a user has set stays as it is
+    import mitsuba.scalar_rgb  # its types, by its own module: the variant that a user has set stays as it is
 
     mitsuba: Any = package  # its stubs do not know all that it takes
     parser = mitsuba.parser
@@ -37,7 +37,6 @@ def parse(path: Path) -> Node:
         parser.transform_all(config, state)
         nodes = [_node(mitsuba, state, index) for index in range(len(state.nodes))]
         for index, node in enumerate(nodes):
-            node.evaluate = lambda index=index: _evaluate(mitsuba, rgb, config, state, index)
             _link(mitsuba, node, state.nodes[index].props, nodes)
     except Exception as error:  # of many classes
         raise SceneError(message(error, path)) from None
@@ -45,7 +44,7 @@ def parse(path: Path) -> Node:
         mitsuba.set_file_resolver(before)
     if nodes[0].kind != "Scene":
         raise SceneError(f"{path}: the file describes a '{nodes[0].plugin}'; the outermost element must be <scene>")
-    return nodes[0]
+    return nodes[0], [path.parent, *(Path(str(folder)) for folder in resolver)]
 
 
 def message(error: Exception, path: Path) -> str:
@@ -83,11 +82,3 @@ def _plain(mitsuba, value):
         return Spectrum(() if value.is_uniform() else tuple(value.wavelengths), tuple(value.values))
     # a colour has any attribute that its letters spell, "matrix" too: ask for the type
     return np.array(value.matrix if "Transform" in type(value).__name__ else value, np.float64)
-
-
-def _evaluate(mitsuba, rgb, config, state, index: int) -> tuple[float, ...]:
-    alone = mitsuba.parser.ParserState(state)
-    alone.nodes[0] = state.nodes[index]  # the root is what is built
-    interaction = rgb.SurfaceInteraction3f()
-    interaction.uv = [0.5, 0.5]
-    return tuple(float(v) for v in mitsuba.parser.instantiate(config, alone).eval(interaction))

@@ -1,0 +1,126 @@
+"""Each argument of `Scene.from_arrays`, checked: it comes back as an array of its full shape, or is a SceneError."""
+
+import numpy as np
+
+from ..errors import SceneError
+from .model import Back, Camera
+
+
+def array(value, dtype, what, source) -> np.ndarray:
+    if isinstance(value, np.ndarray) and np.iscomplexobj(value):
+        raise SceneError(f"{source}: {what} cannot be read as numbers (they are complex)")
+    try:
+        return np.array(value, dtype=dtype)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise SceneError(f"{source}: {what} cannot be read as numbers ({error})") from None
+
+
+def whole(value, what, kind, source) -> np.ndarray:
+    raw = array(value, np.float64, what, source)
+    if not np.isfinite(raw).all() or (raw != np.floor(raw)).any() or np.abs(raw).max(initial=0) > 2**53:
+        raise SceneError(f"{source}: {what} must hold whole {kind}")
+    return raw.astype(np.int64)
+
+
+def words(value, what, source) -> tuple[str, ...]:
+    if isinstance(value, str) or not np.iterable(value):
+        raise SceneError(f"{source}: {what} is {value!r}; expected a sequence of names")
+    return tuple(str(word) for word in value)
+
+
+def cameras_of(value, source) -> tuple[Camera, ...]:
+    if not np.iterable(value) or not all(isinstance(camera, Camera) for camera in value):
+        raise SceneError(f"{source}: cameras must be a sequence of Camera")
+    return tuple(value)
+
+
+def indices(faces, source) -> np.ndarray:
+    raw = whole(faces, "faces", "vertex numbers", source)
+    if raw.size == 0:
+        return np.zeros((0, 4), np.int64)
+    if raw.ndim != 2 or raw.shape[1] not in (3, 4):
+        raise SceneError(f"{source}: faces have shape {raw.shape}; expected (n_faces, 3) or (n_faces, 4)")
+    result = np.full((len(raw), 4), -1, np.int64)
+    result[:, : raw.shape[1]] = raw
+    return result
+
+
+def check_indices(faces, n_vertices, source) -> None:
+    low = faces.copy()
+    low[:, 3] = np.maximum(low[:, 3], 0 if n_vertices else -1)
+    wrong = (low < 0) | (low >= n_vertices) | (faces < -1)
+    if wrong.any():
+        face, corner = np.argwhere(wrong)[0]
+        raise SceneError(
+            f"{source}: face {face} names vertex {faces[face, corner]}; there are {n_vertices} (0 to {n_vertices - 1})"
+        )
+
+
+def per_face(value, n, what, source) -> np.ndarray:
+    value = array(value, np.float64, what, source)
+    if value.ndim == 0:
+        return np.full((n, 1), value)
+    if value.ndim == 1 and len(value) == n:
+        return value[:, None]
+    if value.ndim == 2 and value.shape[0] in (1, n) and value.shape[1] >= 1:
+        return np.broadcast_to(value, (n, value.shape[1])).copy()
+    raise SceneError(f"{source}: {what} has shape {value.shape}; expected one number, ({n},), (1, n_bands) or ({n}, n_bands)")
+
+
+def widen(value, n_bands, source) -> np.ndarray:
+    if value.shape[1] not in (1, n_bands):
+        raise SceneError(f"{source}: values have {value.shape[1]} and {n_bands} bands; give all the same number, or one")
+    return np.broadcast_to(value, (len(value), n_bands)).copy()
+
+
+def surfaces_of(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]:
+    index = np.zeros(n, np.int64) if surface is None else whole(surface, "surface", "surface numbers", source)
+    if index.shape != (n,):
+        raise SceneError(f"{source}: surface has shape {index.shape}; expected ({n},)")
+    if index.min() < 0:
+        raise SceneError(f"{source}: surface of face {int(index.argmin())} is {index.min()}; expected 0 or more")
+    if names is None:
+        if index.max() >= max(n, 1) * 4 + 1024:
+            raise SceneError(
+                f"{source}: surface of face {int(index.argmax())} is {index.max()}; number the surfaces from 0 without gaps"
+            )
+        names = ("surface",) if index.max() == 0 else tuple(f"surface {i}" for i in range(int(index.max()) + 1))
+    names = words(names, "names", source)
+    if index.max() >= len(names):
+        raise SceneError(f"{source}: face {int(index.argmax())} has surface {index.max()}, but there are {len(names)} names")
+    return index.astype(np.int32), names
+
+
+def backs_of(back, two_sided, n, source) -> np.ndarray:
+    if back is None:
+        sides = array(two_sided, np.float64, "two_sided", source)
+        if sides.shape not in ((), (n,)) or not np.isin(sides, (0, 1)).all():
+            raise SceneError(f"{source}: two_sided must be True, False or ({n},) of them")
+        return np.where(np.broadcast_to(sides.astype(bool), (n,)), Back.RADIATES, Back.ABSORBS).astype(np.uint8)
+    values = whole(back, "back", "numbers", source)
+    values = np.broadcast_to(values, (n,)) if values.ndim == 0 else values
+    if values.shape != (n,) or not np.isin(values, tuple(Back)).all():
+        raise SceneError(
+            f"{source}: back must hold {', '.join(f'{int(b)} ({b.name.lower()})' for b in Back)} for each of {n} faces"
+        )
+    return values.astype(np.uint8)
+
+
+def check_values(value, what, surface, names, source) -> None:
+    top = 1.0 if "reflectance" in what else np.inf
+    wrong = ~((value >= 0) & (value < top))
+    if wrong.any():
+        face, band = np.argwhere(wrong)[0]
+        rule = "must lie in [0, 1)" if top == 1.0 else "must be finite and not negative"
+        raise SceneError(
+            f"{source}: {what} of face {face} (surface '{names[surface[face]]}', band {band}) is {value[face, band]:g}; it {rule}"
+        )
+
+
+def bands_of(bands, n_bands, source) -> tuple[str, ...]:
+    if bands is None:
+        bands = {1: ("grey",), 3: ("red", "green", "blue")}.get(n_bands, tuple(f"band {i}" for i in range(n_bands)))
+    bands = words(bands, "bands", source)
+    if len(bands) != n_bands:
+        raise SceneError(f"{source}: {len(bands)} band names for {n_bands} bands")
+    return bands
