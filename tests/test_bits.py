@@ -93,7 +93,7 @@ def test_quanta_replay_a_run_bit_for_bit():
             again = rd.solve(patches, replicates=2, quanta=first.quanta)
             assert np.array_equal(first.irradiance, again.irradiance)
             assert np.array_equal(first.irradiance_standard_error, again.irradiance_standard_error)
-    assert first.quanta > first_stage(2)  # several stages were replayed
+    assert first.quanta > first_stage(2, len(patches))  # several stages were replayed
 
 
 def test_coherent_firing_traces_the_same_lines():

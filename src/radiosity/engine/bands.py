@@ -63,48 +63,58 @@ class BandTally:
 
     def __init__(self, engine, groups: BandGroups):
         self.engine = engine
-        types, device = engine.types, engine.geometry.device
-        areas = engine.geometry.patches.area
+        types, areas = engine.types, engine.geometry.patches.area
         width = engine.total + 2 * engine.replicates
         self.share = upload(types.Float64, engine.source.share)
         self.shares = [upload(types.Float64, groups.emission[:, g] * areas / engine.source.power) for g in range(groups.n_groups)]
         self.rhos = [upload(types.UInt32, Source.fixed(groups.reflectance[:, g])) for g in range(groups.n_groups)]
         self.received = [dr.zeros(types.UInt64, width) for _ in self.shares]
-        self.weights = [dr.zeros(types.UInt32, engine.total) for _ in self.shares]
         self.before = [dr.zeros(types.UInt64, engine.total) for _ in self.shares]
         self.arrivals_before = dr.zeros(types.UInt32, engine.total)
+        self.weights: list = []
         self.quanta_before = 0
         self.fired = np.zeros((groups.n_groups, engine.replicates), object)
-        assert device is engine.geometry.device
 
-    def weigh(self, deficit) -> None:
-        """Before a sweep: what each patch's lines carry now."""
+    def weigh(self, numbers, rows) -> None:
+        """Before a sweep: what the lines of the patches ``numbers[rows]`` carry; ``numbers`` are all that received since the
+        last one."""
         engine, types = self.engine, self.engine.types
-        number = dr.arange(types.UInt32, engine.total)
-        patch = number - engine.replicate(number) * engine.n_opaque
         wide = types.Float64
+        patch = numbers - engine.replicate(numbers) * engine.n_opaque
         new = dr.opaque(wide, float(engine.quanta - self.quanta_before))
-        arrivals = dr.gather(types.UInt32, engine.arrivals, number)
-        owed = dr.fma(dr.gather(wide, self.share, patch), new, self._fraction(engine.rho, patch) * wide(arrivals - self.arrivals_before))
+        arrivals = dr.gather(types.UInt32, engine.arrivals, numbers)
+        since = arrivals - dr.gather(types.UInt32, self.arrivals_before, numbers)
+        owed = dr.fma(dr.gather(wide, self.share, patch), new, self._fraction(engine.rho, patch) * wide(since))
+        weights = []
         for g, (share, rho) in enumerate(zip(self.shares, self.rhos, strict=True)):
-            received = dr.gather(types.UInt64, self.received[g], number)
-            power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, self._fraction(rho, patch) * wide(received - self.before[g]))
+            received = dr.gather(types.UInt64, self.received[g], numbers)
+            since = received - dr.gather(types.UInt64, self.before[g], numbers)
+            power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, self._fraction(rho, patch) * wide(since))
             carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
-            self.weights[g] = types.UInt32(dr.floor(carried + 0.5))
-            self.before[g] = received
-        self.arrivals_before = arrivals
+            weights.append(types.UInt32(dr.floor(carried + 0.5)))
+            dr.scatter(self.before[g], received, numbers)
+        dr.scatter(self.arrivals_before, arrivals, numbers)
+        dr.eval(weights, self.before, self.arrivals_before)
+        self.weights = [dr.gather(types.UInt32, weight, rows) for weight in weights]
+        dr.eval(self.weights)
         self.quanta_before = engine.quanta
-        sums = [dr.block_sum(types.UInt64(w) * types.UInt64(deficit), engine.n) for w in self.weights]
-        dr.eval(self.weights, self.before, self.arrivals_before, sums)
-        self.fired += np.array([[int(x) for x in np.array(s)] for s in sums], object)
 
     def _fraction(self, rho, patch):
         types = self.engine.types
         return types.Float64(dr.gather(types.UInt32, rho, patch)) * 2.0**-32
 
-    def deposit(self, number, landed) -> None:
-        """In a kernel: lines of patch numbers land in slots."""
+    def deposit(self, rank, landed) -> None:
+        """In a kernel: lines of the batch's patches (by rank) land in slots."""
         types = self.engine.types
         for received, weight in zip(self.received, self.weights, strict=True):
-            dr.scatter_add(received, types.UInt64(dr.gather(types.UInt32, weight, number)), landed)
+            dr.scatter_add(received, types.UInt64(dr.gather(types.UInt32, weight, rank)), landed)
         dr.schedule(self.received)
+
+    def count_fired(self, batch) -> None:
+        """After a sweep: the power that left, summed from the lines' side."""
+        engine, types = self.engine, self.engine.types
+        replicate = engine.replicate(batch.numbers)
+        for g, weight in enumerate(self.weights):
+            sums = dr.zeros(types.UInt64, engine.replicates)
+            dr.scatter_add(sums, types.UInt64(weight) * types.UInt64(batch.counts), replicate)
+            self.fired[g] += np.array([int(x) for x in np.array(sums)], object)

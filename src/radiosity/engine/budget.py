@@ -60,14 +60,13 @@ class Budget:
             raise MethodError("a target error needs 2 replicates or more: a single one has no error")
 
 
-def first_stage(replicates: int) -> int:
-    """N of the first rung: a power of two."""
-    return max(LEAST_QUANTA, 1 << round(math.log2(FIRST_STAGE / replicates)))
+def first_stage(replicates: int, n_patches: int) -> int:
+    """N of the first rung: a power of two, so large that passing over all patches does not outweigh the lines."""
+    return max(LEAST_QUANTA, 1 << round(math.log2(max(FIRST_STAGE / replicates, 2 * n_patches))))
 
 
-def rung_after(quanta: int, replicates: int) -> int:
-    """The rung above N on the ladder of doubling powers of two."""
-    first = first_stage(replicates)
+def rung_after(quanta: int, first: int) -> int:
+    """The rung above N on the ladder of doubling powers of two that begins at ``first``."""
     return first if quanta < first else 1 << int(math.floor(math.log2(quanta))) + 1
 
 
@@ -82,7 +81,7 @@ class Progressed:
     error: float
 
 
-def next_quanta(budget: Budget, replicates: int, at: Progressed) -> int | None:
+def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed) -> int | None:
     """N of the next stage, or None where the budget is used up.
 
     The stages of any run are the powers of two on the ladder below its last N, then N: so N alone replays a run.
@@ -91,7 +90,7 @@ def next_quanta(budget: Budget, replicates: int, at: Progressed) -> int | None:
         ceiling = int(at.quanta * (LIMIT * 0.95) / (at.lines / replicates))
     else:
         ceiling = None
-    rung = rung_after(at.quanta, replicates)
+    rung = rung_after(at.quanta, first)
     wanted = _wanted(budget, replicates, at)
     if wanted is None or wanted <= at.quanta * 1.01:
         return None

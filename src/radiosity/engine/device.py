@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import DeviceError
 from .. import llvm
+from ..errors import DeviceError
 
 VARIANTS = {"cpu": "llvm_ad_rgb", "cuda": "cuda_ad_rgb"}
 PACKET = 64  # kernels may read whole packets past an array's end: every upload is padded to this

@@ -83,6 +83,7 @@ class _Run:
         self.begun = time.perf_counter()
         self.device_name = device
         self.stop = Stop()
+        self.rung = first_stage(replicates, len(patches))
         self.stage, self.lines, self.error = 0, 0, math.nan
 
     def solve(self) -> Solution:
@@ -104,7 +105,7 @@ class _Run:
         snapshot, status, target = None, "complete", first
         self.tracing_since = time.perf_counter()
         while target is not None:
-            started, self.goal = time.perf_counter(), self._expected(target, snapshot)
+            started, self.goal = time.perf_counter(), snapshot and (snapshot.quanta, snapshot.lines)
             engine.set_quanta(target)
             try:
                 run(self.method.order, engine, self._swept)
@@ -118,7 +119,7 @@ class _Run:
                 status = "interrupted"
                 break
             now = time.perf_counter()
-            target = next_quanta(self.budget, self.replicates, Progressed(target, snapshot.lines, now - self.begun, now - started, self.error))
+            target = next_quanta(self.budget, self.replicates, self.rung, Progressed(target, snapshot.lines, now - self.begun, now - started, self.error))
         if snapshot is None:
             raise KeyboardInterrupt
         if self.budget.error is not None and status == "complete" and not self.error <= self.budget.error:
@@ -132,7 +133,7 @@ class _Run:
 
     def _first_quanta(self) -> int:
         """N of the first stage: the ladder's first rung, or less where the budget asks for less."""
-        rung = first_stage(self.replicates)
+        rung = self.rung
         if self.budget.quanta is not None:
             return min(rung, int(self.budget.quanta))
         if self.budget.rays is None or self.budget.rays >= 8 * rung * self.replicates:
@@ -163,10 +164,6 @@ class _Run:
             )  # fmt: skip
         return min(rung, found)
 
-    def _expected(self, target: int, snapshot) -> float | None:
-        """Lines of a whole stage, from the stage before."""
-        return None if snapshot is None else snapshot.lines * target / snapshot.quanta
-
     def _swept(self, count: int) -> None:
         self.lines += count
         self._tell("tracing")
@@ -193,7 +190,7 @@ class _Run:
             fraction = None if not needed else min(self.lines / needed, (self.budget.error / self.error) ** (1 / 0.6))
             left = (needed - self.lines) / rate if needed and rate else None
         elif self.budget.quanta is not None and getattr(self, "goal", None):
-            whole = self.goal * self.budget.quanta / max(getattr(self, "rung", 0) or self.budget.quanta, 1)
+            whole = self.goal[1] * self.budget.quanta / self.goal[0]
             fraction = self.lines / whole if whole else None
             left = (whole - self.lines) / rate if rate and whole else None
         clipped = None if fraction is None else min(max(fraction, 0.0), 1.0)

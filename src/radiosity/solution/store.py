@@ -93,8 +93,8 @@ def _restore(arrays: dict, meta: dict) -> Solution:
     for which, facts in meta["paints"].items():
         images = tuple(arrays[f"{which}_picture_{i}"] for i in range(facts["images"]))
         limit = np.inf if facts["limit"] is None else facts["limit"]
-        paints[which] = Paint(images, *(arrays[f"{which}_{name}"] for name in PAINT_ARRAYS), limit)
-    cameras = tuple(Camera(**{k: tuple(v) if isinstance(v, list) else v for k, v in c.items()}) for c in described["cameras"])
+        paints[which] = Paint(images, **{name: arrays[f"{which}_{name}"] for name in PAINT_ARRAYS}, limit=limit)
+    cameras = tuple(_camera(**fields) for fields in described["cameras"])
     scene = Scene(
         **{name: arrays[f"scene_{name}"] for name in SCENE_ARRAYS}, **paints, cameras=cameras,
         names=tuple(described["names"]), bands=tuple(described["bands"]), photometric=described["photometric"],
@@ -107,6 +107,10 @@ def _restore(arrays: dict, meta: dict) -> Solution:
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
     return Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars, state=state)
+
+
+def _camera(origin, target, up, **rest) -> Camera:
+    return Camera(tuple(origin), tuple(target), tuple(up), **rest)
 
 
 def _umask() -> int:

@@ -8,22 +8,29 @@ import drjit as dr
 
 
 def run(engine, progress) -> None:
-    """Follow all walks to their ends."""
-    types = engine.types
-    deficit = engine.owed() - engine.fired
-    before = dr.sum(types.UInt64(engine.fired))
-    dr.eval(deficit, before)
-    for lanes in engine.lanes(deficit):
-        walk(engine, lanes)
-        after = dr.sum(types.UInt64(engine.fired))
-        progress(int(after[0]) - int(before[0]))
-        before = after
+    """Follow all walks to their ends. ``progress(lines)`` is called after each launch."""
+    batch, _ = engine.due()
+    if batch is not None:
+        walk_all(engine, batch, progress)
 
 
-def walk(engine, lanes) -> None:
+def walk_all(engine, batch, progress) -> None:
+    """From the lines of a batch, a launch at a time."""
+    for chunk in batch.chunks(engine.types):
+        before = _lines(engine)
+        walk(engine, chunk)
+        progress(_lines(engine) - before)
+
+
+def _lines(engine) -> int:
+    total = dr.sum(engine.types.UInt64(engine.fired))
+    return int(total[0])
+
+
+def walk(engine, chunk) -> None:
     """One lane for each line owed at the start."""
     types = engine.types
-    number, _ = engine.read(lanes)
+    number, _ = chunk.read(types)
 
     def body(number, going):
         index = dr.scatter_inc(engine.fired, number, going) + 1
@@ -38,6 +45,6 @@ def walk(engine, lanes) -> None:
         going &= ((low + rho) >> 32) > (low >> 32)
         return landed, going
 
-    going = dr.full(types.Bool, True, lanes.count)
+    going = dr.full(types.Bool, True, chunk.width)
     dr.while_loop((number, going), lambda number, going: going, body, mode="symbolic")
     dr.eval(engine.arrivals, engine.fired)

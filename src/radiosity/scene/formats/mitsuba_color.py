@@ -99,9 +99,13 @@ class Colors:
 
     def _checkerboard(self, node: Node) -> np.ndarray:
         colors = [self.get(node, key, value) for key, value in (("color0", 0.4), ("color1", 0.2))]
-        colors = [np.broadcast_to(c.mean if isinstance(c, Image) else c, 3) for c in colors if not isinstance(c, VertexColors)]
+        plain = [color.mean if isinstance(color, Image) else color for color in colors if not isinstance(color, VertexColors)]
+        if len(plain) < 2:
+            raise SceneError(f"{node.place}: a checkerboard of mesh attributes is not read; give an rgb")
         half = np.arange(CHECKER) < CHECKER // 2
-        return np.where((half[:, None] == half)[..., None], colors[0], colors[-1]).astype(np.float32)
+        width = max(map(len, plain))
+        first, second = (np.broadcast_to(color, width) for color in plain)
+        return np.where((half[:, None] == half)[..., None], first, second).astype(np.float32)
 
 
 def equal_energy_rgb() -> np.ndarray:

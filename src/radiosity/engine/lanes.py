@@ -1,0 +1,95 @@
+"""One lane a line: which patch fires in which lane, and which of its lines."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import drjit as dr
+
+from ..method.numbers import strata
+from .device import upload
+
+CHUNK = 1 << 22  # lanes of one launch
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Patches that fire in a sweep.
+
+    Attributes:
+        numbers: UInt32, patch numbers.
+        counts: UInt32, lines each of them fires now.
+        begins: UInt64, lines of all before it.
+        fired: UInt32, lines each has fired before.
+        total: lines of all.
+    """
+
+    numbers: Any
+    counts: Any
+    begins: Any
+    fired: Any
+    total: int
+
+    @staticmethod
+    def of(types, numbers, counts, fired) -> "Batch":
+        """From evaluated arrays; every count is at least 1."""
+        begins = dr.prefix_sum(types.UInt64(counts))
+        dr.eval(begins)
+        last = dr.width(numbers) - 1
+        return Batch(numbers, counts, begins, fired, int(begins[last]) + int(counts[last]) if last >= 0 else 0)
+
+    def chunks(self, types) -> "Iterator[Chunk]":
+        """Launches of at most ``CHUNK`` lanes."""
+        for start in range(0, self.total, CHUNK):
+            width = min(CHUNK, self.total - start)
+            first, end = dr.opaque(types.UInt64, start), dr.opaque(types.UInt64, start + width)  # no literals: one kernel for all
+            # each entry writes its rank where its lines begin; the running maximum carries it to all of them
+            rank = dr.zeros(types.UInt32, width)
+            here = (self.begins < end) & (self.begins + types.UInt64(self.counts) > first)
+            at = types.UInt32(dr.maximum(self.begins, first) - first)
+            dr.scatter(rank, dr.arange(types.UInt32, dr.width(self.numbers)), at, active=here)
+            yield Chunk(self, dr.block_prefix_reduce(dr.ReduceOp.Max, rank, width, exclusive=False), first, width)
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Lanes of one launch: the rank of each lane's patch in its batch."""
+
+    batch: Batch
+    rank: Any
+    first: Any
+    width: int
+
+    def read(self, types, boxes: tuple[int, int] | None = None):
+        """In a kernel of this width: patch number and index (from 1) of each line, ``boxes`` as in `method.numbers.strata`."""
+        batch = self.batch
+        lane = types.UInt64(dr.arange(types.UInt32, self.width)) + self.first
+        number = dr.gather(types.UInt32, batch.numbers, self.rank)
+        within = types.UInt32(lane - dr.gather(types.UInt64, batch.begins, self.rank))
+        base = dr.gather(types.UInt32, batch.fired, self.rank) + 1
+        if boxes is not None:
+            within = by_boxes(types, base, within, dr.gather(types.UInt32, batch.counts, self.rank), boxes)
+        return number, base + within
+
+
+def by_boxes(types, base, within, count, boxes: tuple[int, int]):
+    """Which of a patch's ``count`` lines from ``base`` on is fired as the ``within``-th, when they go box by box.
+
+    As many whole cycles of the boxes as fit are permuted; the rest, less than a cycle, keeps its order.
+    """
+    n = strata.boxes(*boxes)
+    walk = upload(types.UInt32, strata.walk(*boxes))
+    cycles = count // n
+    box = types.UInt32(types.Float64(within) / types.Float64(cycles))  # exact for 32-bit numbers
+    whole = within < cycles * n
+    offset = dr.gather(types.UInt32, walk, box, whole) + n - base % n
+    offset = dr.select(offset >= n, offset - n, offset)
+    return dr.select(whole, offset + (within - box * cycles) * n, within)
+
+
+def boxes_for(types, counts) -> tuple[int, int] | None:
+    """For coherent firing: the boxes that suit the patch of a typical line; None where none would pay."""
+    wide = types.Float64(counts)
+    squares, total = dr.sum(wide * wide), dr.sum(wide)
+    dr.eval(squares, total)
+    return strata.largest(float(squares[0]) / float(total[0]))
