@@ -226,6 +226,15 @@ def test_doctor_names_a_bad_llvm(tmp_path):
     assert found.stderr.splitlines()[-1].startswith(f"radiosity: error: DRJIT_LIBLLVM_PATH names {tmp_path / 'libLLVM.so'}")
 
 
+@pytest.mark.parametrize("command", [("check", "room"), ("solve", "room", *SMALL), ("solve", "--help")], ids=" ".join)
+def test_terminals_without_superscripts(command):
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    found = subprocess.run([sys.executable, "-m", "radiosity", *command], env=environment, capture_output=True, check=False)
+    assert found.returncode == 0
+    assert found.stderr == b""
+    assert found.stdout.isascii()
+
+
 def test_progress_line():
     state = Progress(2, 12_300_000, 21.4e6, 0.0123, 0.5, 185.0, "tracing")
     assert progress.facts(state) == "stage 3, 12.3M rays, 21.4M/s, error 1.2 %, 3 min 05 s left"

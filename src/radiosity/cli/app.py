@@ -4,6 +4,7 @@ import os
 import sys
 import warnings
 from contextlib import contextmanager
+from io import TextIOWrapper
 
 from cyclopts import App, CoercionError, CycloptsError
 
@@ -38,6 +39,9 @@ def run(arguments: list[str]) -> int:
     """Run a command and return the exit status; errors become one line on stderr."""
     debug = "--debug" in arguments
     arguments = [argument for argument in arguments if argument != "--debug"]
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without m² gets m?, not an error after a long run
     try:
         with tidy_warnings(debug):
             status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")

@@ -85,16 +85,19 @@ class BandTally:
         arrivals = dr.gather(types.UInt32, engine.arrivals, numbers)
         since = arrivals - dr.gather(types.UInt32, self.arrivals_before, numbers)
         owed = dr.fma(dr.gather(wide, self.share, patch), new, self._fraction(engine.rho, patch) * wide(since))
-        weights = []
+        weights, received_now = [], []
         for g, (share, rho) in enumerate(zip(self.shares, self.rhos, strict=True)):
             received = dr.gather(types.UInt64, self.received[g], numbers)
             since = received - dr.gather(types.UInt64, self.before[g], numbers)
             power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, self._fraction(rho, patch) * wide(since))
             carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
             weights.append(types.UInt32(dr.floor(carried + 0.5)))
-            dr.scatter(self.before[g], received, numbers)
+            received_now.append(received)
+        dr.eval(weights, received_now, arrivals)  # before the writes, which would copy whole arrays that are yet to be read
+        for before, received in zip(self.before, received_now, strict=True):
+            dr.scatter(before, received, numbers)
         dr.scatter(self.arrivals_before, arrivals, numbers)
-        dr.eval(weights, self.before, self.arrivals_before)
+        dr.eval(self.before, self.arrivals_before)
         self.weights = [dr.gather(types.UInt32, weight, rows) for weight in weights]
         dr.eval(self.weights)
         self.quanta_before = engine.quanta

@@ -8,7 +8,6 @@ from .quanta import LIMIT
 
 FIRST_STAGE = 1 << 18  # quanta of all replicates together in the first stage
 LEAST_QUANTA = 1024
-SLOPE = 0.55  # of error against lines, on the safe side of what low discrepancy lines reach
 
 
 @dataclass(frozen=True)
@@ -84,33 +83,28 @@ class Progressed:
 def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed) -> int | None:
     """N of the next stage, or None where the budget is used up.
 
-    The stages of any run are the powers of two on the ladder below its last N, then N: so N alone replays a run.
+    The stages of any run are the rungs of the ladder below its last N, then N: so N alone replays a run, also where
+    bands make the result depend on the stages. A stage between two rungs is therefore the last.
     """
-    if at.lines / replicates >= LIMIT / 2 and budget.quanta is None:
-        ceiling = int(at.quanta * (LIMIT * 0.95) / (at.lines / replicates))
-    else:
-        ceiling = None
+    if at.quanta < first or at.quanta & (at.quanta - 1):
+        return None
     rung = rung_after(at.quanta, first)
-    wanted = _wanted(budget, replicates, at)
+    wanted = _wanted(budget, replicates, rung, at)
     if wanted is None or wanted <= at.quanta * 1.01:
         return None
     target = min(rung, wanted)
-    if ceiling is not None:
-        target = min(target, ceiling)
-        if target <= at.quanta * 1.01:
-            return None
+    if budget.quanta is None and at.lines / replicates * target / at.quanta > LIMIT * 0.95:
+        return None  # 32-bit counters hold no more
     return target
 
 
-def _wanted(budget: Budget, replicates: int, at: Progressed) -> int | None:
+def _wanted(budget: Budget, replicates: int, rung: int, at: Progressed) -> int | None:
     if budget.quanta is not None:
         return int(budget.quanta)
     if budget.rays is not None:
         return round(budget.rays * at.quanta / at.lines)
     if budget.seconds is not None:
         left = budget.seconds - at.seconds
-        rate = at.lines / max(at.stage_seconds, 1e-9)  # of the last stage, whose lines are about half of all
-        return round(at.quanta * (1 + 0.9 * left * rate / 2 / at.lines)) if left > 0 else None
-    if math.isnan(at.error) or at.error <= budget.error:
-        return None
-    return max(round(at.quanta * min(1.1 * (at.error / budget.error) ** (1 / SLOPE), 64.0)), at.quanta + 1 + at.quanta // 8)
+        rate = at.lines / max(at.stage_seconds, 1e-9) / 2  # a stage fires about half of all lines so far
+        return round(at.quanta * (1 + 0.9 * left * rate / at.lines)) if left > 0 else None
+    return None if math.isnan(at.error) or at.error <= (budget.error or 0) else rung

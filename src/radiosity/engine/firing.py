@@ -17,6 +17,7 @@ from .geometry import Geometry
 from .lanes import Batch, Chunk, boxes_for
 from .lines import land, local_line, patch_of
 
+FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
 
 
@@ -39,7 +40,7 @@ class Engine:
         self.randomisation = upload(u32, np.array(drawn, np.uint32))
         width = self.total + 2 * replicates
         self.arrivals, self.fired = dr.zeros(u32, width), dr.zeros(u32, self.total)
-        self.touched = dr.zeros(self.types.Bool, width)
+        self.touched, self.landed = dr.zeros(self.types.Bool, width), None
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
         self.quanta = 0
         self.begins_stage = True
@@ -67,10 +68,15 @@ class Engine:
         types = self.types
         if self.begins_stage:
             numbers = dr.arange(types.UInt32, self.total)
+        elif self.landed is not None:
+            numbers = np.unique(self.landed)
+            numbers = upload(types.UInt32, numbers[numbers < self.total])
         else:
             numbers = dr.compress(self.touched)
             numbers = dr.gather(types.UInt32, numbers, dr.compress(numbers < self.total))  # less the slots behind the patches
-        self.touched, self.begins_stage = dr.zeros(types.Bool, self.total + 2 * self.replicates), False
+        if self.landed is None:
+            self.touched = dr.zeros(types.Bool, self.total + 2 * self.replicates)
+        self.begins_stage, self.landed = False, None
         dr.eval(numbers)
         return numbers
 
@@ -114,21 +120,27 @@ class Engine:
         types = self.types
         bits = self.numbers.bits_for(largest)
         boxes = boxes_for(types, batch.counts) if self.method.coherent else None
+        few = batch.total <= FEW
         for chunk in batch.chunks(types):
-            self._fire(chunk, bits, boxes)
+            landed = self._fire(chunk, bits, boxes, few)
+            self.landed = np.array(landed) if few else None
         dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers)
         if self.bands is not None:
             self.bands.count_fired(batch)
         dr.eval(self.fired)
 
-    def _fire(self, chunk: Chunk, bits: int, boxes) -> None:
+    def _fire(self, chunk: Chunk, bits: int, boxes, few: bool):
         number, index = chunk.read(self.types, boxes)
         landed = self.trace(number, index, bits, coherent=boxes is not None)
         dr.scatter_add(self.arrivals, self.types.UInt32(1), landed)
-        dr.scatter(self.touched, self.types.Bool(True), landed)
+        if few:
+            dr.schedule(landed)
+        else:
+            dr.scatter(self.touched, self.types.Bool(True), landed)
         if self.bands is not None:
             self.bands.deposit(chunk.rank, landed)
         dr.eval(self.arrivals, self.touched)
+        return landed
 
     def trace(self, number, index, bits: int, *, coherent: bool = False):
         """Fire the ``index``-th line (from 1) of each patch number: the slot of ``arrivals`` where it lands."""

@@ -46,10 +46,10 @@ class Faults:
     def warn(self) -> None:
         """One warning a fault, and one for the rest where there are very many."""
         for place, what in list(self.found.items())[:NAMED]:
-            warnings.warn(f"{place}: {what}; line left out", RadiosityWarning, stacklevel=4)
+            warnings.warn(f"{place}: {what}; line left out", RadiosityWarning, stacklevel=5)
         if len(self.found) > NAMED:
             last = list(self.found)[-1]
-            warnings.warn(f"{len(self.found) - NAMED} more lines left out, the last {last}", RadiosityWarning, stacklevel=4)
+            warnings.warn(f"{len(self.found) - NAMED} more lines left out, the last {last}", RadiosityWarning, stacklevel=5)
 
 
 def decode(word: bytes) -> str:
