@@ -40,7 +40,12 @@ def sphere(reflectance: float, emission: float, subdivisions: int = 3) -> rd.Sce
 def facing(first: np.ndarray, second: np.ndarray) -> rd.Scene:
     """Two black parallelograms, the first emitting 1 W/m²: the share of its power that lands on the other is F_12."""
     return rd.Scene.from_arrays(
-        np.concatenate([first, second]), np.arange(8).reshape(2, 4), 0.0, [1.0, 0.0], surface=[0, 1], names=["emitter", "receiver"]
+        np.concatenate([first, second]),
+        np.arange(8).reshape(2, 4),
+        0.0,
+        [1.0, 0.0],
+        surface=[0, 1],
+        names=["emitter", "receiver"],
     )
 
 
@@ -60,7 +65,9 @@ def perpendicular_squares() -> tuple[rd.Scene, float]:
     a = (1 + w * w) * (1 + h * h) / (1 + s)
     b = (w * w * (1 + s) / ((1 + w * w) * s)) ** (w * w)
     c = (h * h * (1 + s) / ((1 + h * h) * s)) ** (h * h)
-    value = (w * np.arctan(1 / w) + h * np.arctan(1 / h) - np.sqrt(s) * np.arctan(1 / np.sqrt(s)) + 0.25 * np.log(a * b * c)) / (np.pi * w)
+    value = (w * np.arctan(1 / w) + h * np.arctan(1 / h) - np.sqrt(s) * np.arctan(1 / np.sqrt(s)) + 0.25 * np.log(a * b * c)) / (
+        np.pi * w
+    )
     return facing(quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0, 0, 0), (0, 1, 0), (0, 0, 1))), float(value)
 
 

@@ -83,5 +83,5 @@ def test_threads_do_not_change_band_power():
 
 
 def test_depth_first_refuses_different_bands():
-    with pytest.raises(rd.MethodError, match="3 different bands.*breadth-first"):
+    with pytest.raises(rd.MethodError, match=r"3 different bands.*breadth-first"):
         rd.solve(cube(COLORS, LIGHT), rays=1000, order="depth-first")

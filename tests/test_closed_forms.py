@@ -30,7 +30,10 @@ def test_labyrinth_furnace_is_one_everywhere(mean_reflectance, numbers):
     solution = rd.solve(rd.subdivide(scene, cells=1), rays=2_000_000, replicates=16, numbers=numbers)
     error = (solution.radiosity - 1) / solution.standard_error
     area = solution.patches.area
-    assert np.sqrt(np.average((solution.radiosity[:, 0] - 1) ** 2, weights=area)) < 0.02 * mean_reflectance / (1 - mean_reflectance) ** 0.5
+    assert (
+        np.sqrt(np.average((solution.radiosity[:, 0] - 1) ** 2, weights=area))
+        < 0.02 * mean_reflectance / (1 - mean_reflectance) ** 0.5
+    )
     assert np.abs(error).max() < 6.5  # the largest of 75, Student with 15 degrees of freedom: p = 75 * 1e-5
     assert 0.75 < np.sqrt(np.mean(error**2)) < 1.5
     assert solution.escaped[0] == 0

@@ -1,7 +1,6 @@
 """`cornell-box` against a dense solve on the same patches, and against Mitsuba's own path tracer."""
 
 import numpy as np
-import pytest
 
 import radiosity as rd
 from radiosity.engine.caster import first_hits
@@ -127,10 +126,14 @@ def test_difference_from_the_path_tracer_falls_with_the_patch_size():
         solution = rd.solve(patches, rays=8_000_000, replicates=8)
         column, row, inverted = patches.place
         middle = np.where(scene.is_quad[patches.face], 0.5, np.where(inverted, 2 / 3, 1 / 3))
-        cell = cells.number((column + middle) / k, (row + middle) / k, *(np.full(len(patches), 2) for _ in range(2)), scene.is_quad[patches.face])
+        cell = cells.number(
+            (column + middle) / k, (row + middle) / k, *(np.full(len(patches), 2) for _ in range(2)), scene.is_quad[patches.face]
+        )
         parent = coarse.first[patches.face] + cell + np.where(patches.is_back, coarse.cells_per_face[patches.face], 0)
         assert np.array_equal(coarse.is_back[parent], patches.is_back)
-        total = np.stack([np.bincount(parent, weights=patches.area * b, minlength=len(coarse)) for b in solution.radiosity.T], axis=1)
+        total = np.stack(
+            [np.bincount(parent, weights=patches.area * b, minlength=len(coarse)) for b in solution.radiosity.T], axis=1
+        )
         differences.append(rms(total / coarse.area[:, None] - reference))
     floor = rms(noise)
     print(f"\ncells, RMS difference from the path tracer (its noise {floor:.3%}): "

@@ -34,7 +34,11 @@ def test_old_or_broken_libraries_are_refused(tmp_path, monkeypatch):
 
 
 def test_a_broken_setting_is_one_sentence_not_a_crash(tmp_path):
-    code = "import radiosity as rd\ntry:\n rd.solve(rd.load_scene('room'), rays=10**5)\nexcept rd.DeviceError as e: print('refused', e)"
+    code = (
+        "import radiosity as rd\n"
+        "try:\n rd.solve(rd.load_scene('room'), rays=10**5)\n"
+        "except rd.DeviceError as error: print('refused', error)"
+    )
     done = python(code, **{llvm.VARIABLE: str(tmp_path / "libLLVM.so")})
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("refused")

@@ -139,6 +139,13 @@ def test_faces_with_holes_joined_by_seams(load):
     np.testing.assert_allclose(scene.normal, [(0, 0, 1)] * scene.n_faces)
 
 
+def test_faces_with_holes_given_as_such(load):
+    hole = "".join(f"v h{i} =\n p {x} {y} 0\n" for i, (x, y) in enumerate([(0.5, 0.25), (0.5, 0.75), (1, 0.75), (1, 0.25)]))
+    scene = load(CORNERS + hole + GREY + "fh a b c d - h0 h1 h2 h3\n")
+    assert scene.area.sum() == pytest.approx(2 - 0.25)
+    np.testing.assert_allclose(scene.normal, [(0, 0, 1)] * scene.n_faces)
+
+
 def test_what_is_not_diffuse_is_named(load):
     with pytest.warns(rd.RadiosityWarning, match="not diffuse.*'shiny'"):
         scene = load(CORNERS + "m shiny =\n rd 0.3\n rs 0.2 0.05\nf a b c d\n")

@@ -16,7 +16,8 @@ ALPHA = 1e-4
 
 def scene_of_all_kinds() -> rd.Scene:
     """A closed box of triangles and parallelograms, every side radiating, far from the origin."""
-    vertices = np.array([(0, 0, 0), (2, 0, 0), (2, 3, 0), (0, 3, 0), (0, 0, 1), (2, 0, 1), (2, 3, 1), (0, 3, 1)], float) + [900.0, -50.0, 7.0]
+    vertices = np.array([(0, 0, 0), (2, 0, 0), (2, 3, 0), (0, 3, 0), (0, 0, 1), (2, 0, 1), (2, 3, 1), (0, 3, 1)], float)
+    vertices += np.array([900.0, -50.0, 7.0])
     faces = [(0, 1, 2, -1), (0, 2, 3, -1), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, -1), (2, 7, 3, -1), (3, 7, 4, 0)]
     return rd.Scene.from_arrays(vertices, faces, 0.5, 1.0, two_sided=True)
 
@@ -77,10 +78,10 @@ def test_points_are_uniform_and_directions_cosine_distributed(random):
         if patches.scene.is_quad[face]:
             assert stats.chisquare(np.histogram2d(u, v, bins=8, range=[[0, 1], [0, 1]])[0].ravel()).pvalue > ALPHA
         else:
-            cell = cells.number(u, v, *(np.full(len(u), 8) for _ in range(2)), np.zeros(len(u), bool))
-            assert stats.chisquare(np.bincount(cell, minlength=64)).pvalue > ALPHA
-            assert stats.chisquare(np.bincount(cells.number(np.sqrt(u), v, *(np.full(len(u), 8) for _ in range(2)), np.zeros(len(u), bool)),
-                                               minlength=64)).pvalue < ALPHA  # fmt: skip
+            eight, triangle = np.full(len(u), 8), np.zeros(len(u), bool)
+            counts, wrong = (np.bincount(cells.number(x, v, eight, eight, triangle), minlength=64) for x in (u, np.sqrt(u)))
+            assert stats.chisquare(counts).pvalue > ALPHA
+            assert stats.chisquare(wrong).pvalue < ALPHA
 
 
 def stack(back: rd.Back) -> rd.Scene:

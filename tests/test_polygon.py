@@ -43,6 +43,16 @@ def test_a_hole_joined_by_a_seam():
     assert not ((centres > 1) & (centres < 3)).all(axis=1).any()
 
 
+def test_seams_that_run_across_their_own_holes():
+    outline, far, near = [(0, 0), (8, 0), (8, 4), (0, 4)], [(5, 1), (5, 3), (7, 3), (7, 1)], [(1, 1), (1, 3), (3, 3), (3, 1)]
+    flat = np.array([*outline, far[3], *far, outline[3], near[3], *near, outline[3]], float)  # as mgfilt makes them of holes
+    triangles, difference = triangulate(turned(flat, 4))
+    assert difference < 1e-12
+    centres = flat[triangles].mean(axis=1)
+    for hole in (far, near):
+        assert not ((centres > np.min(hole, axis=0)) & (centres < np.max(hole, axis=0))).all(axis=1).any()
+
+
 def test_a_polygon_that_crosses_itself_says_so():
     star = turned(np.array([(0, 3), (2, -3), (-3, 1), (3, 1), (-2, -3)], float), 1)
     assert triangulate(star)[1] > 0.01

@@ -156,7 +156,9 @@ def test_interruption_returns_the_last_complete_stage(patches, order):
 
 def test_interruption_before_the_first_stage_is_a_keyboard_interrupt(patches):
     with pytest.raises(KeyboardInterrupt):
-        rd.solve(patches, rays=1e9, replicates=2, progress=lambda p: p.message == "tracing" and os.kill(os.getpid(), signal.SIGINT))
+        rd.solve(
+            patches, rays=1e9, replicates=2, progress=lambda p: p.message == "tracing" and os.kill(os.getpid(), signal.SIGINT)
+        )
 
 
 def test_solve_runs_outside_the_main_thread(patches):
@@ -203,10 +205,54 @@ def test_damaged_solutions_are_refused(solution, tmp_path, damage):
         solution.save(path)
         whole = path.read_bytes()
         path.write_bytes({"empty": b"", "noise": bytes(range(256)) * 9, "truncated": whole[: len(whole) // 2]}[damage])
-    with pytest.raises(rd.SceneError, match="x.npz"):
+    with pytest.raises(rd.SceneError, match=r"x\.npz"):
         rd.load_solution(path)
 
 
 def test_unwritable_solution(solution, tmp_path):
     with pytest.raises(rd.OutputError, match="cannot be written"):
         solution.save(tmp_path / "nowhere" / "x.npz")
+
+
+@pytest.mark.parametrize("scene", ["room", "cornell-box"])
+def test_an_interrupted_run_goes_on_to_the_same_bits(scene, tmp_path):
+    """Stopped after every few sweeps, saved, loaded and resumed: the result is that of one run."""
+    cut = rd.subdivide(rd.load_scene(scene), cells=4)
+    whole = rd.solve(cut, quanta=700_000, replicates=2)
+    part, stops = None, 0
+    while True:
+        calls = []
+
+        def listen(progress, calls=calls, first=part is None):
+            calls.append(progress)
+            if len(calls) >= 4 and (progress.stage >= 1 or not first):
+                os.kill(os.getpid(), signal.SIGINT)
+
+        part = rd.solve(cut, quanta=700_000, replicates=2, progress=listen if stops < 6 else None, resume=part)
+        part.save(tmp_path / "part.npz")
+        part = rd.load_solution(tmp_path / "part.npz")
+        if part.status == "complete":
+            break
+        stops += 1
+    assert stops == 6
+    assert np.array_equal(part.irradiance, whole.irradiance)
+    assert part.books == whole.books
+    assert all(np.array_equal(part.state[key], whole.state[key]) for key in whole.state)
+
+
+def test_more_rays_go_on_from_a_solution(patches, solution):
+    more = rd.solve(patches, rays=4_000_000, resume=solution)
+    assert abs(more.rays / 4_000_000 - 1) < 0.05
+    assert np.array_equal(more.irradiance, rd.solve(patches, quanta=more.quanta).irradiance)
+
+
+def test_going_on_with_something_else_is_refused(patches, solution):
+    with pytest.raises(rd.MethodError, match=r"seed \(0 then, 1 now\)"):
+        rd.solve(patches, rays=4_000_000, resume=solution, seed=1)
+    with pytest.raises(rd.MethodError, match="choices"):
+        rd.solve(patches, rays=4_000_000, resume=solution, numbers="random")
+    with pytest.raises(rd.MethodError, match="patches"):
+        rd.solve(rd.subdivide(patches.scene, cells=2), rays=4_000_000, resume=solution)
+    with pytest.raises(rd.MethodError, match="scene"):
+        rd.solve(rd.subdivide(rd.load_scene("labyrinth"), cells=1), rays=10**6, resume=rd.solve(
+            rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=1), rays=10**6))  # fmt: skip

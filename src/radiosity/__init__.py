@@ -1,11 +1,11 @@
 """Radiosity by tracing lines: B = E + rho F B, without ever forming F.
 
-    scene file -> Scene -> Patches -> [ numbers -> lines -> hits -> tally ] -> Solution -> files, pictures
+scene file -> Scene -> Patches -> [ numbers -> lines -> hits -> tally ] -> Solution -> files, pictures
 
-    scene = load_scene("room.mgf")               # or Scene.from_arrays(...)
-    patches = subdivide(scene, size=0.10)        # or cells=k, or leave it to solve
-    solution = solve(patches, rays=10_000_000)   # radiosity and its standard error, per patch and band
-    solution.export("room.glb")
+scene = load_scene("room.mgf")               # or Scene.from_arrays(...)
+patches = subdivide(scene, size=0.10)        # or cells=k, or leave it to solve
+solution = solve(patches, rays=10_000_000)   # radiosity and its standard error, per patch and band
+solution.export("room.glb")
 """
 
 from . import llvm
@@ -19,9 +19,9 @@ from .solution import Solution, load_solution
 llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
 
 __all__ = [
+    "PRESETS",
     "Back",
     "Camera",
-    "PRESETS",
     "DeviceError",
     "Method",
     "MethodError",

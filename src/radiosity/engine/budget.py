@@ -66,7 +66,7 @@ def first_stage(replicates: int, n_patches: int) -> int:
 
 def rung_after(quanta: int, first: int) -> int:
     """The rung above N on the ladder of doubling powers of two that begins at ``first``."""
-    return first if quanta < first else 1 << int(math.floor(math.log2(quanta))) + 1
+    return first if quanta < first else 1 << (quanta.bit_length())
 
 
 @dataclass(frozen=True)
@@ -80,13 +80,14 @@ class Progressed:
     error: float
 
 
-def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed) -> int | None:
+def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, *, replay: bool) -> int | None:
     """N of the next stage, or None where the budget is used up.
 
-    The stages of any run are the rungs of the ladder below its last N, then N: so N alone replays a run, also where
-    bands make the result depend on the stages. A stage between two rungs is therefore the last.
+    The stages of any run are the rungs of the ladder below its last N, then N: so N alone replays a run also where
+    bands make the result depend on the stages (``replay``); there a stage between two rungs is the last. Integers alone
+    do not depend on stages, and may go on from any N.
     """
-    if at.quanta < first or at.quanta & (at.quanta - 1):
+    if replay and (at.quanta < first or at.quanta & (at.quanta - 1)):
         return None
     rung = rung_after(at.quanta, first)
     wanted = _wanted(budget, replicates, rung, at)

@@ -60,7 +60,9 @@ def first_hits(scene: Scene, origins: np.ndarray, directions: np.ndarray, device
         dr.eval(outputs)
         face, u, v, front, distance, valid = (np.array(x) for x in outputs)
         u, v = np.where(valid, u, 0), np.where(valid, v, 0)
-        parts.append((np.where(valid, face.astype(np.int64), -1), u, v, front & valid, np.where(valid, distance / tree.scale, np.inf)))
+        parts.append(
+            (np.where(valid, face.astype(np.int64), -1), u, v, front & valid, np.where(valid, distance / tree.scale, np.inf))
+        )
     if not parts:
         parts = [tuple(np.zeros(0) for _ in range(5))]
     face, u, v, front, distance = (np.concatenate(column) for column in zip(*parts, strict=True))

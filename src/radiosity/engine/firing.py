@@ -111,7 +111,9 @@ class Engine:
     def replicate(self, number):
         """Of a patch number: its quotient by n_patches, from a product by the reciprocal that is one short at most."""
         quotient = dr.mul_hi(number, self.magic)
-        return quotient + dr.select(number - quotient * self.n_opaque >= self.n_opaque, self.types.UInt32(1), self.types.UInt32(0))
+        return quotient + dr.select(
+            number - quotient * self.n_opaque >= self.n_opaque, self.types.UInt32(1), self.types.UInt32(0)
+        )
 
     # ---- firing ----------------------------------------------------------------------------------------------------
 

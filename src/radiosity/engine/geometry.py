@@ -138,11 +138,13 @@ class Geometry:
         """(n_primitives * 8,) UInt32: front's first patch, cell counts and flags, back's first patch, face, normal, offset."""
         scene, patches = self.scene, self.patches
         _, face = primitives(scene)
-        origin, first, second, offset = self.frames
+        _, first, second, offset = self.frames
         cross = np.cross(first, second)
         normal = cross / np.linalg.norm(cross, axis=1, keepdims=True)
         back = np.select(
-            [scene.back == Back.RADIATES, scene.back == Back.PASSES], [patches.first[:-1] + patches.cells_per_face, PASSES], ABSORBS
+            [scene.back == Back.RADIATES, scene.back == Back.PASSES],
+            [patches.first[:-1] + patches.cells_per_face, PASSES],
+            ABSORBS,
         )
         packed = patches.columns | (patches.rows.astype(np.int64) << COLUMN_BITS) | np.where(scene.is_quad, QUAD, 0)
         record = np.zeros((len(face), HIT_WORDS), np.uint32)
@@ -160,7 +162,9 @@ class Geometry:
         column, row, inverted = patches.place
         record = np.empty((len(patches), 2), np.uint32)
         record[:, 0] = patches.face + np.where(patches.is_back, 1 << 31, 0)
-        record[:, 1] = column | (row << COLUMN_BITS) | np.where(inverted, INVERTED, 0) | np.where(self.scene.is_quad[patches.face], QUAD, 0)
+        record[:, 1] = (
+            column | (row << COLUMN_BITS) | np.where(inverted, INVERTED, 0) | np.where(self.scene.is_quad[patches.face], QUAD, 0)
+        )
         return upload(self.device.types.UInt32, record)
 
 

@@ -15,12 +15,14 @@ MASK = (1 << COLUMN_BITS) - 1
 def local_line(geometry: Geometry, patch, numbers):
     """Origin and direction (three floats each, the caster's coordinates) of a local line of a patch (UInt32)."""
     types = geometry.device.types
-    Float, UInt32 = types.Float, types.UInt32
+    Float = types.Float
     face, place = dr.gather(types.Array2u, geometry.patch_records, patch)
     front = face < (1 << 31)
     face = face & 0x7FFFFFFF
     words = [dr.gather(types.Array4f, geometry.face_records, face * 4 + i) for i in range(4)]
-    origin, first, second, normal, tangent = (types.Array3f(*(words[i // 4][i % 4] for i in range(at, at + 3))) for at in range(0, 15, 3))
+    origin, first, second, normal, tangent = (
+        types.Array3f(*(words[i // 4][i % 4] for i in range(at, at + 3))) for at in range(0, 15, 3)
+    )
     side = dr.select(front, Float(1), Float(-1))
     x, y = numbers[2], numbers[3]
     s, t = triangle(x, y)
@@ -120,7 +122,9 @@ def patch_of(geometry: Geometry, hit: Landing, absorbed: int, escaped: int):
     limit = dr.select(quad, columns, columns - row)
     column = dr.minimum(UInt32(x), limit - 1)
     inverted = ((x - Float(column)) + (y - Float(row)) > 1) & (column + 1 < limit)
-    cell = dr.select(quad, row * columns + column, row * (2 * columns - row) + 2 * column + dr.select(inverted, UInt32(1), UInt32(0)))
+    cell = dr.select(
+        quad, row * columns + column, row * (2 * columns - row) + 2 * column + dr.select(inverted, UInt32(1), UInt32(0))
+    )
     first = dr.select(hit.front, hit.record[0], hit.record[2])
     patch = dr.select(first == ABSORBS, UInt32(absorbed), first + cell)
     return dr.select(hit.valid, patch, UInt32(escaped))

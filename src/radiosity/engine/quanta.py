@@ -40,7 +40,10 @@ class Source:
         power = emission * patches.area
         total = math.fsum(power)
         if not (math.isfinite(total) and total > 0):
-            raise SceneError(f"{patches.scene.source}: no surface emits (total power {total:g} {patches.scene.power_unit}); give one an emission")
+            raise SceneError(
+                f"{patches.scene.source}: no surface emits (total power {total:g} {patches.scene.power_unit}); "
+                "give one an emission"
+            )
         return Source(power / total, Source.fixed(reflectance), total)
 
     @staticmethod

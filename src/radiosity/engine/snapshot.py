@@ -1,73 +1,78 @@
-"""What is left of a complete stage on the host: counters, and the tallies of the bands."""
+"""What a run's integers mean: irradiance with errors, and the books."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..patches.model import Patches
 from ..solution.books import Books, exact_dot, exact_sum
-from ..solution.errors import mean_and_error
+from ..solution.errors import mean_and_error, relative_error
 from .bands import QUANTUM, BandGroups
-from .firing import Engine
 from .quanta import Source
 
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """A complete stage of N quanta.
+    """A complete stage: the problem, and the integers as `state.capture` names them."""
 
-    Attributes:
-        quanta: N.
-        arrivals, fired: (replicates, n_patches) uint32.
-        missed: (2, replicates) uint32, escaped and lost lines.
-        received: (n_groups, replicates, n_patches) uint64, 2^-31 quanta; None where the integers say it all.
-        received_missed: (n_groups, 2, replicates) uint64 of the same, escaped and lost.
-        fired_power: (n_groups, replicates) Python integers of the same.
-    """
+    patches: Patches
+    source: Source
+    groups: BandGroups
+    state: dict[str, np.ndarray]
 
-    quanta: int
-    arrivals: np.ndarray
-    fired: np.ndarray
-    missed: np.ndarray
-    received: np.ndarray | None
-    received_missed: np.ndarray | None
-    fired_power: np.ndarray | None
-
-    @staticmethod
-    def of(engine: Engine) -> "Snapshot":
-        """Copy an engine's counters."""
-        arrivals, fired, missed = engine.counters()
-        if engine.bands is None:
-            return Snapshot(engine.quanta, arrivals, fired, missed, None, None, None)
-        flat = np.stack([np.array(a) for a in engine.bands.received])
-        received = flat[:, : engine.total].reshape(-1, engine.replicates, engine.n)
-        missed_power = flat[:, engine.total :].reshape(-1, 2, engine.replicates)
-        return Snapshot(engine.quanta, arrivals, fired, missed, received, missed_power, engine.bands.fired.copy())
+    @property
+    def quanta(self) -> int:
+        return int(self.state["quanta"])
 
     @property
     def lines(self) -> int:
-        return int(self.fired.sum(dtype=np.uint64))
+        return int(self.state["fired"].sum(dtype=np.uint64))
 
-    def irradiance(self, source: Source, area: np.ndarray, group: int) -> tuple[np.ndarray, np.ndarray]:
-        """Mean and standard error, (n_patches,) each, of a group of bands."""
-        counts = self.arrivals if self.received is None else self.received[group]
-        unit = source.power / self.quanta / (1 if self.received is None else QUANTUM)
+    def irradiance(self) -> tuple[np.ndarray, np.ndarray]:
+        """Mean and standard error, (n_patches, n_bands) each."""
+        columns = [self._irradiance(group) for group in range(self.groups.n_groups)]
+        scaled = [[x * s for x in columns[g]] for g, s in zip(self.groups.index, self.groups.scale, strict=True)]
+        mean, error = (np.stack(column, axis=1) for column in zip(*scaled, strict=True))
+        return mean, error
+
+    def _irradiance(self, group: int) -> tuple[np.ndarray, np.ndarray]:
+        counts = self.state["received"][group] if "received" in self.state else self.state["arrivals"]
+        unit = self.source.power / self.quanta / (QUANTUM if "received" in self.state else 1)
         mean, error = mean_and_error(counts.astype(np.float64))
-        return mean * (unit / area), error * (unit / area)
+        return mean * (unit / self.patches.area), error * (unit / self.patches.area)
 
-    def books(self, source: Source, groups: BandGroups, group: int, area: np.ndarray) -> Books:
-        """Of a group of bands."""
-        replicates = len(self.arrivals)
-        rho = Source.fixed(groups.reflectance[:, group])
-        if self.received is None:
-            counts, missed, fired, unit = self.arrivals, self.missed, exact_sum(self.fired), 1
+    def error(self) -> float:
+        """See `Solution.error`."""
+        irradiance, error = self.irradiance()
+        rho = self.patches.reflectance
+        return relative_error(rho * irradiance, rho * error, self.patches.area, (irradiance, error))
+
+    def books(self) -> tuple[dict, ...]:
+        """See `Solution.books`."""
+        books = [self._books(group) for group in range(self.groups.n_groups)]
+        result = []
+        for group, scale in zip(self.groups.index, self.groups.scale, strict=True):
+            book = books[group]
+            powers = {name: getattr(book, name) * book.watts * scale for name in Books.COLUMNS}
+            result.append(powers | {"closes": book.closes})
+        return tuple(result)
+
+    def _books(self, group: int) -> Books:
+        state, source = self.state, self.source
+        replicates = len(state["arrivals"])
+        rho = Source.fixed(self.groups.reflectance[:, group])
+        if "received" not in state:
+            counts, missed, fired, unit = state["arrivals"], state["missed"], exact_sum(state["fired"]), 1
             whole, fraction = source.emitted(self.quanta)
             emitted = ((exact_sum(whole) << 32) + exact_sum(fraction)) * replicates
         else:
-            assert self.received_missed is not None and self.fired_power is not None
-            counts, missed, fired, unit = self.received[group], self.received_missed[group], int(self.fired_power[group].sum()), QUANTUM
-            share = groups.emission[:, group] * area / source.power
+            counts, missed, unit = state["received"][group], state["received_missed"][group], QUANTUM
+            fired = sum(int(power) for power in state["fired_power"][group])
+            share = self.groups.emission[:, group] * self.patches.area / source.power
             emitted = round(float(share.sum()) * self.quanta * QUANTUM) * replicates << 32
         reflected = sum(exact_dot(row, rho) for row in counts)
         arrived = exact_sum(counts) << 32
-        return Books(emitted, fired << 32, reflected, arrived - reflected, exact_sum(missed[0]) << 32, exact_sum(missed[1]) << 32,
-                     source.power / self.quanta / unit / 2**32 / replicates)  # fmt: skip
+        watts = source.power / self.quanta / unit / 2**32 / replicates
+        return Books(
+            emitted, fired << 32, reflected, arrived - reflected, exact_sum(missed[0]) << 32, exact_sum(missed[1]) << 32, watts
+        )

@@ -58,9 +58,26 @@ def room() -> Scene:
 
     walls = box((0, 0, 0), (6, 4, 3), inward=True)
     names = ("south wall", "north wall", "west wall", "east wall", "floor", "ceiling")
-    parts = [(name, 0.7 if name == "ceiling" else 0.3 if name == "floor" else 0.5, 0.0, [face]) for name, face in zip(names, walls, strict=True)]
-    parts.append(("low box", 0.6, 0.0, box((1.0, 0.8, 0), (2.2, 2.0, 0.8), turn=20)[:-2] + box((1.0, 0.8, 0), (2.2, 2.0, 0.8), turn=20)[-1:]))
-    parts.append(("tall box", 0.6, 0.0, box((3.6, 2.0, 0), (4.6, 3.0, 1.8), turn=-15)[:-2] + box((3.6, 2.0, 0), (4.6, 3.0, 1.8), turn=-15)[-1:]))
+    parts = [
+        (name, 0.7 if name == "ceiling" else 0.3 if name == "floor" else 0.5, 0.0, [face])
+        for name, face in zip(names, walls, strict=True)
+    ]
+    parts.append(
+        (
+            "low box",
+            0.6,
+            0.0,
+            box((1.0, 0.8, 0), (2.2, 2.0, 0.8), turn=20)[:-2] + box((1.0, 0.8, 0), (2.2, 2.0, 0.8), turn=20)[-1:],
+        )
+    )
+    parts.append(
+        (
+            "tall box",
+            0.6,
+            0.0,
+            box((3.6, 2.0, 0), (4.6, 3.0, 1.8), turn=-15)[:-2] + box((3.6, 2.0, 0), (4.6, 3.0, 1.8), turn=-15)[-1:],
+        )
+    )
     parts.append(("light", 0.0, CEILING_LIGHT, [quad((2.6, 1.6, 2.99), (0, 0.8, 0), (0.8, 0, 0))]))
     camera = Camera((0.25, 0.25, 1.9), (4.0, 2.6, 0.8), (0, 0, 1), 62.0, 800, 600)
     return join(parts, source="room", cameras=(camera,), backs={"light": 0.7})

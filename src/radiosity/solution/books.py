@@ -1,6 +1,7 @@
 """The books of a run in whole numbers: emitted + rounding = absorbed + escaped + lost, exactly (contract 8)."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -23,6 +24,8 @@ class Books:
     escaped: int
     lost: int
     watts: float
+
+    COLUMNS: ClassVar = ("emitted", "rounding", "absorbed", "escaped", "lost")
 
     @property
     def rounding(self) -> int:

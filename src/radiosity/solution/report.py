@@ -46,7 +46,9 @@ def _surfaces(solution) -> list[str]:
         values = [row[f"radiosity{t}"] for t in tails] + [row[f"irradiance{t}"] for t in tails]
         error = "?" if np.isnan(row["error"]) else f"{row['error']:.2%}"
         result.append(
-            f"{row['surface'][:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} " + " ".join(f"{v:>9.4g}" for v in values) + f" {error:>7}"
+            f"{row['surface'][:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
+            + " ".join(f"{v:>9.4g}" for v in values)
+            + f" {error:>7}"
         )
     if len(rows) > MOST_ROWS:
         result.append(f"... and {len(rows) - MOST_ROWS} more surfaces (export a .csv for all)")

@@ -16,7 +16,17 @@ from ..scene.paint import Paint
 from .model import Solution
 
 FORMAT = 1
-SCENE_ARRAYS = ("vertices", "faces", "reflectance", "emission", "back", "back_reflectance", "back_emission", "surface", "patch_size")
+SCENE_ARRAYS = (
+    "vertices",
+    "faces",
+    "reflectance",
+    "emission",
+    "back",
+    "back_reflectance",
+    "back_emission",
+    "surface",
+    "patch_size",
+)
 PAINT_ARRAYS = ("image", "uv", "color")
 SOLUTION_ARRAYS = ("irradiance", "irradiance_standard_error", "arrivals")
 SCALARS = ("rays", "seconds", "quanta", "replicates", "books", "status", "provenance")

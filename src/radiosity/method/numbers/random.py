@@ -1,4 +1,7 @@
-"""Random numbers without state: Philox 4x32-10 (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3", 2011)."""
+"""Random numbers without state: Philox 4x32-10.
+
+J. K. Salmon, M. A. Moraes, R. O. Dror and D. E. Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011.
+"""
 
 from dataclasses import dataclass
 

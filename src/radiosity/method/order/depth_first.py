@@ -40,7 +40,9 @@ def walk(engine, chunk) -> None:
         patch = landed - engine.replicate(landed) * engine.n_opaque
         wide = types.UInt64
         rho = wide(dr.gather(types.UInt32, engine.rho, patch, going))
-        rest = wide(dr.gather(types.UInt32, engine.fraction, patch, going)) + wide(dr.gather(types.UInt32, engine.phase, landed, going))
+        rest = wide(dr.gather(types.UInt32, engine.fraction, patch, going)) + wide(
+            dr.gather(types.UInt32, engine.phase, landed, going)
+        )
         low = rho * wide(before) + rest
         going &= ((low + rho) >> 32) > (low >> 32)
         return landed, going

@@ -2,7 +2,7 @@
 
 A surface is object x material: ``desk.drawer/wood``. ``rd`` and ``ed`` count, each with its colour; ``rs``, ``td`` and ``ts``
 make a material one that is not diffuse. With ``sides 1`` a face is invisible from behind. A two-sided face, the default, looks
-identical from both sides (specification, entity ``sides``): it reflects, and emits ``ed`` lm/m², on either.
+identical from both sides (specification, entity ``sides``): it reflects, and emits ``ed`` lm/m², on either, as in RenderPark.
 Curved primitives arrive with 20 edges around, inscribed, so that their area is a little small.
 """
 

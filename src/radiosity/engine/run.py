@@ -1,0 +1,143 @@
+"""The one loop over stages."""
+
+import math
+import time
+import warnings
+from dataclasses import asdict, replace
+from importlib.metadata import version
+
+import numpy as np
+
+from ..errors import MethodError, RadiosityWarning
+from ..method import Method
+from ..method.order import run as fire_all
+from ..patches import Patches
+from ..solution.model import Solution
+from .bands import BandGroups
+from .budget import Budget, Progressed, first_stage, next_quanta
+from .device import choose
+from .firing import Engine
+from .geometry import Geometry
+from .progress import Interrupted, Listener, Stop, Teller
+from .quanta import Source
+from .snapshot import Snapshot
+from .state import capture, check_same, restore
+
+ENOUGH = 20.0  # times sqrt(patches): quanta from which on a number of rays is met closely
+PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
+
+
+class Run:
+    """A problem, a method and a budget."""
+
+    def __init__(self, patches: Patches, method: Method, budget: Budget, replicates: int, seed: int, device: str,
+                 listener: Listener | None, resume: Solution | None):  # fmt: skip
+        self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
+        self.replicates, self.resume = replicates, resume
+        self.groups = BandGroups.of(patches)
+        self.source = Source.of(patches, self.groups.emission.max(axis=1), self.groups.reflectance.max(axis=1))
+        if self.groups.n_groups > 1 and method.order != "breadth-first":
+            raise MethodError(
+                f"order '{method.order}' cannot carry {self.groups.n_groups} different bands: "
+                "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
+            )
+        self.rung = first_stage(replicates, len(patches))
+        self.teller, self.stop = Teller(budget, listener), Stop()
+        self.teller.tell("compiling")
+        self.device = choose(device)
+        if resume is not None:
+            check_same(resume.provenance, self._provenance())
+        self.geometry = Geometry(patches, self.device)
+
+    def solve(self) -> Solution:
+        """Stage after stage until the budget is used up, or Ctrl-C."""
+        with self.stop.listening():
+            return self._stages()
+
+    def _stages(self) -> Solution:
+        engine, target = self._engine(), 0
+        if self.resume is None:
+            target = self._first_quanta()
+        else:
+            restore(engine, self.resume.state)
+            target = engine.quanta
+        self.teller.begin(int(engine.counters()[1].sum(dtype=np.uint64)))
+        snapshot, status, pending = None, "complete", {}
+        while target:
+            started = time.perf_counter()
+            if target != engine.quanta:
+                engine.set_quanta(target)
+            try:
+                fire_all(self.method.order, engine, self._swept)
+            except Interrupted as reason:
+                status, pending = str(reason), capture(engine)
+                break
+            snapshot = Snapshot(self.patches, self.source, self.groups, capture(engine))
+            error = snapshot.error() if self.replicates > 1 else math.nan
+            self.teller.complete(snapshot.lines, target, error)
+            if self.stop.asked:
+                status = "interrupted"
+                break
+            at = Progressed(target, snapshot.lines, self.teller.elapsed, time.perf_counter() - started, error)
+            target = next_quanta(self.budget, self.replicates, self.rung, at, replay=self.groups.n_groups > 1)
+        if snapshot is None:
+            if self.resume is None:
+                raise KeyboardInterrupt
+            return replace(self.resume, status=status, state=pending)
+        if self.budget.error is not None and status == "complete" and not self.teller.error <= self.budget.error:
+            status = "counters full before the target error was reached; take more replicates"
+        return self._solution(snapshot, status, pending)
+
+    def _engine(self) -> Engine:
+        return Engine(self.geometry, self.source, self.method, self.seed, self.replicates, self.groups)
+
+    def _swept(self, count: int) -> None:
+        self.teller.lines += count
+        self.teller.tell("tracing")
+        if self.stop.asked:
+            raise Interrupted("interrupted")
+        seconds = self.budget.seconds
+        if seconds is not None and self.teller.stage and self.teller.elapsed > PATIENCE * seconds + 1:
+            raise Interrupted("complete")
+
+    def _first_quanta(self) -> int:
+        """N of the first stage: the ladder's first rung, or less where the budget asks for less."""
+        if self.budget.quanta is not None:
+            return min(self.rung, int(self.budget.quanta))
+        if self.budget.rays is None or self.budget.rays >= 8 * self.rung * self.replicates:
+            return self.rung
+        return self._few_quanta(self.budget.rays / self.replicates)
+
+    def _few_quanta(self, rays: float) -> int:
+        """For a small number of rays a replicate: how many a quantum takes is measured in a run that is thrown away."""
+        engine = self._engine()
+        trial = max(1, min(self.rung, math.ceil(rays)))
+        engine.set_quanta(trial)
+        fire_all(self.method.order, engine, lambda count: None)
+        lines = int(engine.counters()[1].sum(dtype=np.uint64)) / self.replicates
+        found = max(1, round(trial * rays / max(lines, 1)))
+        enough = ENOUGH * math.sqrt(len(self.patches))
+        if found < enough:
+            warnings.warn(
+                f"{self.budget.rays:g} lines give each of {self.replicates} replicates {found} quanta for {len(self.patches)} "
+                f"patches; with fewer than {enough:.0f} their number is met only roughly, and errors are large",
+                RadiosityWarning,
+                stacklevel=6,
+            )
+        return min(self.rung, found)
+
+    def _solution(self, snapshot: Snapshot, status: str, pending) -> Solution:
+        mean, error = snapshot.irradiance()
+        arrivals = snapshot.state["arrivals"].sum(axis=0, dtype=np.int64)
+        return Solution(
+            self.patches, mean, error, arrivals, snapshot.lines, self.teller.elapsed, snapshot.quanta, self.replicates,
+            snapshot.books(), status, self._provenance(), pending or snapshot.state,
+        )  # fmt: skip
+
+    def _provenance(self) -> dict:
+        return {
+            "scene": self.patches.scene.hash, "source": self.patches.scene.source, "method": str(self.method),
+            "choices": asdict(self.method), "seed": self.seed, "replicates": self.replicates, "device": self.device.name,
+            "patches": len(self.patches), "budget": {k: v for k, v in vars(self.budget).items() if v is not None},
+            "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
+        }  # fmt: skip
