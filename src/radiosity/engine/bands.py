@@ -7,6 +7,7 @@ import numpy as np
 
 from ..patches.model import Patches
 from .device import upload
+from .lanes import paired
 from .quanta import Source
 
 QUANTUM = 2**31  # fixed point units of a quantum: an arrival adds at most one, and 2^32 of them fit in 64 bits
@@ -58,26 +59,44 @@ class BandTally:
     """Power of each group, in 64-bit fixed point, received by every patch and carried by its lines.
 
     A line carries, of each band, what its patch received since the last sweep divided by the real number of lines owed
-    for it, not by the number fired: that would leave the power of patches that fire nothing behind.
+    for it, not by the number fired: that would leave the power of patches that fire nothing behind. The groups of a
+    patch lie side by side in memory, so that a landing touches one place.
+
+    Attributes:
+        received: UInt64, group g of slot s (see `firing`) at s * n_groups + g.
+        before: the same of patch numbers, as it was at the last sweep; arrivals_before likewise.
+        fired: UInt64, power that left replicate r along lines, at g * replicates + r.
     """
 
     def __init__(self, engine, groups: BandGroups):
-        self.engine = engine
+        self.engine, self.n = engine, groups.n_groups
         types, areas = engine.types, engine.geometry.patches.area
-        width = engine.total + 2 * engine.replicates
         self.share = upload(types.Float64, engine.source.share)
-        self.shares = [upload(types.Float64, groups.emission[:, g] * areas / engine.source.power) for g in range(groups.n_groups)]
-        self.rhos = [upload(types.UInt32, Source.fixed(groups.reflectance[:, g])) for g in range(groups.n_groups)]
-        self.received = [dr.zeros(types.UInt64, width) for _ in self.shares]
-        self.before = [dr.zeros(types.UInt64, engine.total) for _ in self.shares]
-        self.arrivals_before = dr.zeros(types.UInt32, engine.total)
+        self.shares = [upload(types.Float64, groups.emission[:, g] * areas / engine.source.power) for g in range(self.n)]
+        self.rhos = [upload(types.UInt32, Source.fixed(groups.reflectance[:, g])) for g in range(self.n)]
+        self.received = dr.opaque(types.UInt64, 0, (engine.total + 2 * engine.replicates) * self.n)
+        self.before = dr.opaque(types.UInt64, 0, engine.total * self.n)
+        self.arrivals_before = dr.opaque(types.UInt32, 0, engine.total)
+        self.fired = dr.opaque(types.UInt64, 0, self.n * engine.replicates)
         self.weights: list = []
         self.quanta_before = 0
-        self.fired = np.zeros((groups.n_groups, engine.replicates), object)
 
     def weigh(self, numbers, rows) -> None:
         """Before a sweep: what the lines of the patches ``numbers[rows]`` carry; ``numbers`` are all that received since the
         last one."""
+        types = self.engine.types
+        weights, received, arrivals = self._weights(numbers)
+        for g in range(self.n):
+            dr.scatter(self.before, received[g], numbers * self.n + g)
+        dr.scatter(self.arrivals_before, arrivals, numbers)
+        rows = paired(types, rows)
+        self.weights = [dr.gather(types.UInt32, weight, rows) for weight in weights]
+        dr.eval(self.before, self.arrivals_before, self.weights)
+        self.quanta_before = self.engine.quanta
+
+    def _weights(self, numbers):
+        """Weights of lines, power received and arrivals of patch numbers, evaluated: no expression may still wait to read
+        the arrays that are written next, or Dr.Jit copies them whole."""
         engine, types = self.engine, self.engine.types
         wide = types.Float64
         patch = numbers - engine.replicate(numbers) * engine.n_opaque
@@ -85,32 +104,26 @@ class BandTally:
         arrivals = dr.gather(types.UInt32, engine.arrivals, numbers)
         since = arrivals - dr.gather(types.UInt32, self.arrivals_before, numbers)
         owed = dr.fma(dr.gather(wide, self.share, patch), new, self._fraction(engine.rho, patch) * wide(since))
-        weights, received_now = [], []
+        weights, totals = [], []
         for g, (share, rho) in enumerate(zip(self.shares, self.rhos, strict=True)):
-            received = dr.gather(types.UInt64, self.received[g], numbers)
-            since = received - dr.gather(types.UInt64, self.before[g], numbers)
+            received = dr.gather(types.UInt64, self.received, numbers * self.n + g)
+            since = received - dr.gather(types.UInt64, self.before, numbers * self.n + g)
             power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, self._fraction(rho, patch) * wide(since))
             carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
             weights.append(types.UInt32(dr.floor(carried + 0.5)))
-            received_now.append(received)
-        dr.eval(weights, received_now, arrivals)  # before the writes, which would copy whole arrays that are yet to be read
-        for before, received in zip(self.before, received_now, strict=True):
-            dr.scatter(before, received, numbers)
-        dr.scatter(self.arrivals_before, arrivals, numbers)
-        dr.eval(self.before, self.arrivals_before)
-        self.weights = [dr.gather(types.UInt32, weight, rows) for weight in weights]
-        dr.eval(self.weights)
-        self.quanta_before = engine.quanta
+            totals.append(received)
+        dr.eval(weights, totals, arrivals)
+        return weights, totals, arrivals
 
     def _fraction(self, rho, patch):
         types = self.engine.types
         return types.Float64(dr.gather(types.UInt32, rho, patch)) * 2.0**-32
 
-    def deposit(self, rank, landed) -> None:
+    def deposit(self, rank, landed, active) -> None:
         """In a kernel: lines of the batch's patches (by rank) land in slots."""
         types = self.engine.types
-        for received, weight in zip(self.received, self.weights, strict=True):
-            dr.scatter_add(received, types.UInt64(dr.gather(types.UInt32, weight, rank)), landed)
+        for g, weight in enumerate(self.weights):
+            dr.scatter_add(self.received, types.UInt64(dr.gather(types.UInt32, weight, rank)), landed * self.n + g, active=active)
         dr.schedule(self.received)
 
     def count_fired(self, batch) -> None:
@@ -118,6 +131,6 @@ class BandTally:
         engine, types = self.engine, self.engine.types
         replicate = engine.replicate(batch.numbers)
         for g, weight in enumerate(self.weights):
-            sums = dr.zeros(types.UInt64, engine.replicates)
-            dr.scatter_add(sums, types.UInt64(weight) * types.UInt64(batch.counts), replicate)
-            self.fired[g] += np.array([int(x) for x in np.array(sums)], object)
+            power = types.UInt64(weight) * types.UInt64(batch.counts)
+            dr.scatter_add(self.fired, power, replicate + g * engine.replicates)
+        dr.schedule(self.fired)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from ..errors import MethodError
 from .quanta import LIMIT
 
-FIRST_STAGE = 1 << 18  # quanta of all replicates together in the first stage
+FIRST_STAGE = 1 << 20  # quanta of all replicates together in the first stage
 LEAST_QUANTA = 1024
 
 

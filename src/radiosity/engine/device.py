@@ -80,6 +80,18 @@ def upload(dtype, values: np.ndarray):
     return result
 
 
+def frozen(array) -> np.ndarray:
+    """The present values of a Dr.Jit array on the host, without a copy where it lies in host memory.
+
+    A second handle holds the values: what a kernel writes into ``array`` later goes to a copy of Dr.Jit's.
+    """
+    import drjit as dr
+
+    dr.eval(array)
+    dr.sync_thread()
+    return np.asarray(type(array)(array))
+
+
 def describe() -> dict[str, str]:
     """Facts for ``radiosity doctor``."""
     library = llvm.prepare()

@@ -12,7 +12,7 @@ from ..method.model import Method
 from ..method.numbers import make
 from . import quanta as contract
 from .bands import BandGroups, BandTally
-from .device import upload
+from .device import frozen, upload
 from .geometry import Geometry
 from .lanes import Batch, Chunk, boxes_for
 from .lines import land, local_line, patch_of
@@ -39,11 +39,11 @@ class Engine:
         drawn = [self.numbers.randomisation(contract.stream(seed, r, 1)) for r in range(replicates)]
         self.randomisation = upload(u32, np.array(drawn, np.uint32))
         width = self.total + 2 * replicates
-        self.arrivals, self.fired = dr.zeros(u32, width), dr.zeros(u32, self.total)
-        self.touched, self.landed = dr.zeros(self.types.Bool, width), None
+        self.arrivals, self.fired = dr.opaque(u32, 0, width), dr.opaque(u32, 0, self.total)
+        self.touched, self.landed = dr.opaque(self.types.Bool, False, width), None
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
         self.quanta = 0
-        self.begins_stage = True
+        self.begins_stage, self.owes = True, False
         self.bands = BandTally(self, groups) if groups is not None and groups.n_groups > 1 else None
 
     def set_quanta(self, quanta: int) -> None:
@@ -52,14 +52,13 @@ class Engine:
             raise MethodError(f"quanta may only grow within a run ({self.quanta} to {quanta})")
         whole, fraction = self.source.emitted(quanta)
         self.whole, self.fraction = (upload(self.types.UInt32, a) for a in (whole, fraction))
-        self.quanta, self.begins_stage = quanta, True
+        self.quanta, self.begins_stage, self.owes = quanta, True, True
 
     def counters(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Arrivals and fired lines, (replicates, n_patches) uint32, and escaped and lost lines, (2, replicates)."""
-        dr.eval(self.arrivals, self.fired)
-        flat = np.array(self.arrivals)
+        flat, fired = frozen(self.arrivals), frozen(self.fired)
         arrivals = flat[: self.total].reshape(self.replicates, self.n)
-        return arrivals, np.array(self.fired).reshape(self.replicates, self.n), flat[self.total :].reshape(2, self.replicates)
+        return arrivals, fired.reshape(self.replicates, self.n), flat[self.total :].reshape(2, self.replicates)
 
     # ---- what is owed ----------------------------------------------------------------------------------------------
 
@@ -70,12 +69,12 @@ class Engine:
             numbers = dr.arange(types.UInt32, self.total)
         elif self.landed is not None:
             numbers = np.unique(self.landed)
-            numbers = upload(types.UInt32, numbers[numbers < self.total])
+            numbers = upload(types.UInt32, _not_alone(numbers[numbers < self.total], self.total))
         else:
             numbers = dr.compress(self.touched)
             numbers = dr.gather(types.UInt32, numbers, dr.compress(numbers < self.total))  # less the slots behind the patches
         if self.landed is None:
-            self.touched = dr.zeros(types.Bool, self.total + 2 * self.replicates)
+            self.touched = dr.opaque(types.Bool, False, self.total + 2 * self.replicates)
         self.begins_stage, self.landed = False, None
         dr.eval(numbers)
         return numbers
@@ -94,7 +93,8 @@ class Engine:
         """The patches that owe lines now, and the largest line number among them."""
         types = self.types
         numbers = self.candidates()
-        if dr.width(numbers) == 0:
+        self.owes = dr.width(numbers) > 0
+        if not self.owes:
             return None, 0
         owed, fired = self.owed(numbers), dr.gather(types.UInt32, self.fired, numbers)
         deficit, largest = owed - fired, dr.max(owed)
@@ -102,11 +102,10 @@ class Engine:
         rows = dr.compress(deficit > 0)
         if self.bands is not None:
             self.bands.weigh(numbers, rows)
-        if dr.width(rows) == 0:
+        self.owes = dr.width(rows) > 0
+        if not self.owes:
             return None, 0
-        columns = [dr.gather(types.UInt32, column, rows) for column in (numbers, deficit, fired)]
-        dr.eval(columns)
-        return Batch.of(types, *columns), int(largest[0])
+        return Batch.of(types, *(dr.gather(types.UInt32, column, rows) for column in (numbers, deficit, fired))), int(largest[0])
 
     def replicate(self, number):
         """Of a patch number: its quotient by n_patches, from a product by the reciprocal that is one short at most."""
@@ -124,9 +123,9 @@ class Engine:
         boxes = boxes_for(types, batch.counts) if self.method.coherent else None
         few = batch.total <= FEW
         for chunk in batch.chunks(types):
-            landed = self._fire(chunk, bits, boxes, few)
-            self.landed = np.array(landed) if few else None
-        dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers)
+            landed = self._fire(chunk, 32 if few else bits, boxes, few)
+            self.landed = frozen(landed)[: batch.total] if few else None
+        dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
         if self.bands is not None:
             self.bands.count_fired(batch)
         dr.eval(self.fired)
@@ -134,13 +133,14 @@ class Engine:
     def _fire(self, chunk: Chunk, bits: int, boxes, few: bool):
         number, index = chunk.read(self.types, boxes)
         landed = self.trace(number, index, bits, coherent=boxes is not None)
-        dr.scatter_add(self.arrivals, self.types.UInt32(1), landed)
+        real = chunk.real(self.types) if few else True
+        dr.scatter_add(self.arrivals, self.types.UInt32(1), landed, active=real)
         if few:
             dr.schedule(landed)
         else:
             dr.scatter(self.touched, self.types.Bool(True), landed)
         if self.bands is not None:
-            self.bands.deposit(chunk.rank, landed)
+            self.bands.deposit(chunk.rank, landed, real)
         dr.eval(self.arrivals, self.touched)
         return landed
 
@@ -156,3 +156,10 @@ class Engine:
         landed = patch_of(self.geometry, hit, LOST, ESCAPED)
         slot = dr.select(landed == ESCAPED, types.UInt32(self.total), types.UInt32(self.total + self.replicates)) + replicate
         return dr.select(landed >= LOST, slot, landed + replicate * self.n_opaque)
+
+
+def _not_alone(numbers: np.ndarray, total: int) -> np.ndarray:
+    """A single patch gets company that owes nothing: arrays of one entry would compile kernels of their own."""
+    if len(numbers) == 1 and total > 1:
+        return np.append(numbers, (numbers[0] + 1) % total).astype(np.uint32)
+    return numbers

@@ -9,7 +9,7 @@ import drjit as dr
 from ..method.numbers import strata
 from .device import upload
 
-CHUNK = 1 << 22  # lanes of one launch
+CHUNK = 1 << 20  # lanes of one launch: enough to keep all cores busy, and little memory to touch
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Batch:
 
     Attributes:
         numbers: UInt32, patch numbers.
-        counts: UInt32, lines each of them fires now.
+        counts: UInt32, lines each of them fires now; a last entry may have none (see `paired`).
         begins: UInt64, lines of all before it.
         fired: UInt32, lines each has fired before.
         total: lines of all.
@@ -32,11 +32,16 @@ class Batch:
 
     @staticmethod
     def of(types, numbers, counts, fired) -> "Batch":
-        """From evaluated arrays; every count is at least 1."""
+        """From the patches that fire, one or more of them, and how often."""
+        width = dr.width(numbers)
+        company = paired(types, dr.arange(types.UInt32, width))
+        numbers, fired = dr.gather(types.UInt32, numbers, company), dr.gather(types.UInt32, fired, company)
+        counts = dr.select(dr.arange(types.UInt32, dr.width(company)) < width, dr.gather(types.UInt32, counts, company), 0)
+        dr.eval(numbers, counts, fired)
         begins = dr.prefix_sum(types.UInt64(counts))
         dr.eval(begins)
         last = dr.width(numbers) - 1
-        return Batch(numbers, counts, begins, fired, int(begins[last]) + int(counts[last]) if last >= 0 else 0)
+        return Batch(numbers, counts, begins, fired, int(begins[last]) + int(counts[last]))
 
     def chunks(self, types) -> "Iterator[Chunk]":
         """Launches of at most ``CHUNK`` lanes."""
@@ -44,21 +49,34 @@ class Batch:
             width = min(CHUNK, self.total - start)
             first, end = dr.opaque(types.UInt64, start), dr.opaque(types.UInt64, start + width)  # no literals: one kernel for all
             # each entry writes its rank where its lines begin; the running maximum carries it to all of them
-            rank = dr.zeros(types.UInt32, width)
+            rank = dr.zeros(types.UInt32, max(width, 2))
             here = (self.begins < end) & (self.begins + types.UInt64(self.counts) > first)
             at = types.UInt32(dr.maximum(self.begins, first) - first)
             dr.scatter(rank, dr.arange(types.UInt32, dr.width(self.numbers)), at, active=here)
-            yield Chunk(self, dr.block_prefix_reduce(dr.ReduceOp.Max, rank, width, exclusive=False), first, width)
+            rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, max(width, 2), exclusive=False)
+            yield Chunk(self, rank, first, end, max(width, 2))
+
+
+def paired(types, rows):
+    """Indices; a single one is repeated. Arrays of one entry would compile kernels of their own."""
+    if dr.width(rows) != 1:
+        return rows
+    return dr.gather(types.UInt32, rows, dr.zeros(types.UInt32, 2) + dr.opaque(types.UInt32, 0))
 
 
 @dataclass(frozen=True)
 class Chunk:
-    """Lanes of one launch: the rank of each lane's patch in its batch."""
+    """Lanes of one launch: the rank of each lane's patch in its batch. A single line has a lane beside it that is not real."""
 
     batch: Batch
     rank: Any
     first: Any
+    end: Any
     width: int
+
+    def real(self, types):
+        """Mask of the lanes that hold a line."""
+        return types.UInt64(dr.arange(types.UInt32, self.width)) + self.first < self.end
 
     def read(self, types, boxes: tuple[int, int] | None = None):
         """In a kernel of this width: patch number and index (from 1) of each line, ``boxes`` as in `method.numbers.strata`."""

@@ -14,7 +14,7 @@ from ..method.order import run as fire_all
 from ..patches import Patches
 from ..solution.model import Solution
 from .bands import BandGroups
-from .budget import Budget, Progressed, first_stage, next_quanta
+from .budget import LEAST_QUANTA, Budget, Progressed, first_stage, next_quanta
 from .device import choose
 from .firing import Engine
 from .geometry import Geometry
@@ -23,7 +23,9 @@ from .quanta import Source
 from .snapshot import Snapshot
 from .state import capture, check_same, restore
 
+MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 ENOUGH = 20.0  # times sqrt(patches): quanta from which on a number of rays is met closely
+TRIAL = 1 << 17  # lines of that measurement, replicates together, or an eighth of the budget
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
 
 
@@ -73,7 +75,7 @@ class Run:
                 status, pending = str(reason), capture(engine)
                 break
             snapshot = Snapshot(self.patches, self.source, self.groups, capture(engine))
-            error = snapshot.error() if self.replicates > 1 else math.nan
+            error = snapshot.error() if self.replicates > 1 and self._error_matters else math.nan
             self.teller.complete(snapshot.lines, target, error)
             if self.stop.asked:
                 status = "interrupted"
@@ -91,6 +93,11 @@ class Run:
     def _engine(self) -> Engine:
         return Engine(self.geometry, self.source, self.method, self.seed, self.replicates, self.groups)
 
+    @property
+    def _error_matters(self) -> bool:
+        """Between stages the error costs a pass over all replicates: for a target, or for someone who looks on."""
+        return self.budget.error is not None or self.teller.listener is not None
+
     def _swept(self, count: int) -> None:
         self.teller.lines += count
         self.teller.tell("tracing")
@@ -104,14 +111,14 @@ class Run:
         """N of the first stage: the ladder's first rung, or less where the budget asks for less."""
         if self.budget.quanta is not None:
             return min(self.rung, int(self.budget.quanta))
-        if self.budget.rays is None or self.budget.rays >= 8 * self.rung * self.replicates:
+        if self.budget.rays is None or self.budget.rays >= MANY * self.rung * self.replicates:
             return self.rung
         return self._few_quanta(self.budget.rays / self.replicates)
 
     def _few_quanta(self, rays: float) -> int:
         """For a small number of rays a replicate: how many a quantum takes is measured in a run that is thrown away."""
         engine = self._engine()
-        trial = max(1, min(self.rung, math.ceil(rays)))
+        trial = max(min(math.ceil(rays), LEAST_QUANTA), min(int(rays) // 8, TRIAL // self.replicates))
         engine.set_quanta(trial)
         fire_all(self.method.order, engine, lambda count: None)
         lines = int(engine.counters()[1].sum(dtype=np.uint64)) / self.replicates

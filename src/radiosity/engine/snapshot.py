@@ -36,9 +36,9 @@ class Snapshot:
         return mean, error
 
     def _irradiance(self, group: int) -> tuple[np.ndarray, np.ndarray]:
-        counts = self.state["received"][group] if "received" in self.state else self.state["arrivals"]
+        counts = self.state["received"][..., group] if "received" in self.state else self.state["arrivals"]
         unit = self.source.power / self.quanta / (QUANTUM if "received" in self.state else 1)
-        mean, error = mean_and_error(counts.astype(np.float64))
+        mean, error = mean_and_error(counts)
         return mean * (unit / self.patches.area), error * (unit / self.patches.area)
 
     def error(self) -> float:
@@ -66,8 +66,8 @@ class Snapshot:
             whole, fraction = source.emitted(self.quanta)
             emitted = ((exact_sum(whole) << 32) + exact_sum(fraction)) * replicates
         else:
-            counts, missed, unit = state["received"][group], state["received_missed"][group], QUANTUM
-            fired = sum(int(power) for power in state["fired_power"][group])
+            counts, missed, unit = state["received"][..., group], state["received_missed"][..., group], QUANTUM
+            fired = exact_sum(state["fired_power"][group])
             share = self.groups.emission[:, group] * self.patches.area / source.power
             emitted = round(float(share.sum()) * self.quanta * QUANTUM) * replicates << 32
         reflected = sum(exact_dot(row, rho) for row in counts)

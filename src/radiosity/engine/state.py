@@ -3,33 +3,33 @@
 import numpy as np
 
 from ..errors import MethodError
-from .device import upload
+from .device import frozen, upload
 
 SAME = ("scene", "choices", "seed", "replicates")
 
 
 def capture(engine) -> dict[str, np.ndarray]:
-    """Copy an engine's counters to the host.
+    """An engine's counters on the host, as they are now.
 
-    Keys: quanta, arrivals and fired (replicates, n_patches), missed (2, replicates); where bands differ also received,
-    before (groups, replicates, n_patches), received_missed (groups, 2, replicates), arrivals_before, quanta_before and
-    fired_power (groups, replicates; decimal text, for it may need more than 64 bits).
+    Keys: quanta, arrivals and fired (replicates, n_patches), missed (2, replicates). Where bands differ also received
+    (replicates, n_patches, groups), received_missed (2, replicates, groups) and fired_power (groups, replicates); and,
+    within a stage, before (as received), arrivals_before and quanta_before, which equal their namesakes after it.
     """
     arrivals, fired, missed = engine.counters()
     state = {"quanta": np.array(engine.quanta), "arrivals": arrivals, "fired": fired, "missed": missed}
     bands = engine.bands
     if bands is None:
         return state
-    shape = (engine.replicates, engine.n)
-    received = np.stack([np.array(a) for a in bands.received])
-    return state | {
-        "received": received[:, : engine.total].reshape(-1, *shape),
-        "received_missed": received[:, engine.total :].reshape(-1, 2, engine.replicates),
-        "before": np.stack([np.array(a).reshape(shape) for a in bands.before]),
-        "arrivals_before": np.array(bands.arrivals_before).reshape(shape),
-        "quanta_before": np.array(bands.quanta_before),
-        "fired_power": bands.fired.astype(str),
-    }
+    received = frozen(bands.received)
+    split, shape = engine.total * bands.n, (engine.replicates, engine.n)
+    state["received"] = received[:split].reshape(*shape, bands.n)
+    state["received_missed"] = received[split:].reshape(2, engine.replicates, bands.n)
+    state["fired_power"] = frozen(bands.fired).reshape(bands.n, engine.replicates)
+    if engine.owes:
+        state["before"] = frozen(bands.before).reshape(*shape, bands.n)
+        state["arrivals_before"] = frozen(bands.arrivals_before).reshape(shape)
+        state["quanta_before"] = np.array(bands.quanta_before)
+    return state
 
 
 def restore(engine, state: dict[str, np.ndarray]) -> None:
@@ -40,7 +40,7 @@ def restore(engine, state: dict[str, np.ndarray]) -> None:
     """
     wanted = {"quanta", "arrivals", "fired", "missed"}
     if engine.bands is not None:
-        wanted |= {"received", "received_missed", "before", "arrivals_before", "quanta_before", "fired_power"}
+        wanted |= {"received", "received_missed", "fired_power"}
     missing = sorted(wanted - set(state))
     if missing or state["arrivals"].shape != (engine.replicates, engine.n):
         raise MethodError(
@@ -51,14 +51,11 @@ def restore(engine, state: dict[str, np.ndarray]) -> None:
     engine.fired = upload(types.UInt32, state["fired"])
     bands = engine.bands
     if bands is not None:
-        bands.received = [
-            upload(types.UInt64, np.concatenate([a.ravel(), b.ravel()]))
-            for a, b in zip(state["received"], state["received_missed"], strict=True)
-        ]
-        bands.before = [upload(types.UInt64, a) for a in state["before"]]
-        bands.arrivals_before = upload(types.UInt32, state["arrivals_before"])
-        bands.quanta_before = int(state["quanta_before"])
-        bands.fired = np.array([[int(x) for x in row] for row in state["fired_power"]], object)
+        bands.received = upload(types.UInt64, np.concatenate([state["received"].ravel(), state["received_missed"].ravel()]))
+        bands.before = upload(types.UInt64, state.get("before", state["received"]))
+        bands.arrivals_before = upload(types.UInt32, state.get("arrivals_before", state["arrivals"]))
+        bands.quanta_before = int(state.get("quanta_before", state["quanta"]))
+        bands.fired = upload(types.UInt64, state["fired_power"])
     engine.set_quanta(int(state["quanta"]))
 
 

@@ -6,10 +6,16 @@ import numpy as np
 def mean_and_error(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Mean and standard error of the mean over axis 0 (replicates); the error of a single replicate is unknown: NaN."""
     count = len(values)
-    mean = values.mean(axis=0)
+    mean = np.zeros(values.shape[1:])
+    for row in values:  # row by row: no copy of all replicates in double precision
+        mean += row
+    mean /= count
     if count < 2:
         return mean, np.full(mean.shape, np.nan)
-    return mean, values.std(axis=0, ddof=1) / np.sqrt(count)
+    squares = np.zeros(mean.shape)
+    for row in values:
+        squares += (row - mean) ** 2
+    return mean, np.sqrt(squares / (count * (count - 1)))
 
 
 def relative_error(value: np.ndarray, error: np.ndarray, area: np.ndarray, fallback: tuple[np.ndarray, np.ndarray]) -> float:

@@ -47,6 +47,6 @@ def walk(engine, chunk) -> None:
         going &= ((low + rho) >> 32) > (low >> 32)
         return landed, going
 
-    going = dr.full(types.Bool, True, chunk.width)
+    going = chunk.real(types)
     dr.while_loop((number, going), lambda number, going: going, body, mode="symbolic")
     dr.eval(engine.arrivals, engine.fired)
