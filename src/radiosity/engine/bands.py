@@ -123,7 +123,13 @@ class BandTally:
         """In a kernel: lines of the batch's patches (by rank) land in slots."""
         types = self.engine.types
         for g, weight in enumerate(self.weights):
-            dr.scatter_add(self.received, types.UInt64(dr.gather(types.UInt32, weight, rank)), landed * self.n + g, active=active)
+            dr.scatter_add(
+                self.received,
+                types.UInt64(dr.gather(types.UInt32, weight, rank)),
+                landed * self.n + g,
+                active=active,
+                mode=self.engine.mode,
+            )
         dr.schedule(self.received)
 
     def count_fired(self, batch) -> None:

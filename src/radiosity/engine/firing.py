@@ -17,6 +17,7 @@ from .geometry import Geometry
 from .lanes import Batch, Chunk, boxes_for
 from .lines import land, local_line, patch_of
 
+CROWDED = 1 << 14  # fewer counters than this are fought over
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
 
@@ -41,6 +42,8 @@ class Engine:
         width = self.total + 2 * replicates
         self.arrivals, self.fired = dr.opaque(u32, 0, width), dr.opaque(u32, 0, self.total)
         self.touched, self.landed = dr.opaque(self.types.Bool, False, width), None
+        # Dr.Jit's own choice keeps a copy of the counters for each thread, which costs more than it saves where there are many
+        self.mode = dr.ReduceMode.Auto if self.total < CROWDED else dr.ReduceMode.Direct
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
         self.quanta = 0
         self.begins_stage, self.owes = True, False
@@ -134,7 +137,7 @@ class Engine:
         number, index = chunk.read(self.types, boxes)
         landed = self.trace(number, index, bits, coherent=boxes is not None)
         real = chunk.real(self.types) if few else True
-        dr.scatter_add(self.arrivals, self.types.UInt32(1), landed, active=real)
+        dr.scatter_add(self.arrivals, self.types.UInt32(1), landed, active=real, mode=self.mode)
         if few:
             dr.schedule(landed)
         else:

@@ -33,10 +33,10 @@ class Batch:
     @staticmethod
     def of(types, numbers, counts, fired) -> "Batch":
         """From the patches that fire, one or more of them, and how often."""
-        width = dr.width(numbers)
-        company = paired(types, dr.arange(types.UInt32, width))
-        numbers, fired = dr.gather(types.UInt32, numbers, company), dr.gather(types.UInt32, fired, company)
-        counts = dr.select(dr.arange(types.UInt32, dr.width(company)) < width, dr.gather(types.UInt32, counts, company), 0)
+        if dr.width(numbers) == 1:
+            both = paired(types, dr.arange(types.UInt32, 1))
+            numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
+            counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
         dr.eval(numbers, counts, fired)
         begins = dr.prefix_sum(types.UInt64(counts))
         dr.eval(begins)

@@ -25,7 +25,7 @@ from .state import capture, check_same, restore
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 ENOUGH = 20.0  # times sqrt(patches): quanta from which on a number of rays is met closely
-TRIAL = 1 << 17  # lines of that measurement, replicates together, or an eighth of the budget
+TRIAL = 1 << 15  # quanta of that measurement, or an eighth of a replicate's budget
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
 
 
@@ -117,11 +117,11 @@ class Run:
 
     def _few_quanta(self, rays: float) -> int:
         """For a small number of rays a replicate: how many a quantum takes is measured in a run that is thrown away."""
-        engine = self._engine()
-        trial = max(min(math.ceil(rays), LEAST_QUANTA), min(int(rays) // 8, TRIAL // self.replicates))
+        engine = Engine(self.geometry, self.source, self.method, self.seed, 1)
+        trial = max(min(math.ceil(rays), LEAST_QUANTA), min(int(rays) // 8, TRIAL))
         engine.set_quanta(trial)
         fire_all(self.method.order, engine, lambda count: None)
-        lines = int(engine.counters()[1].sum(dtype=np.uint64)) / self.replicates
+        lines = int(engine.counters()[1].sum(dtype=np.uint64))
         found = max(1, round(trial * rays / max(lines, 1)))
         enough = ENOUGH * math.sqrt(len(self.patches))
         if found < enough:
