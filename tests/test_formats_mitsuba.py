@@ -174,3 +174,27 @@ def test_the_variant_of_the_user_stays(load, variant):
     finally:
         if before is not None:
             mi.set_variant(before)
+
+
+def test_any_variant_may_be_set(tmp_path):
+    """What Mitsuba's module exports depends on the variant that a program has set; the reader must not."""
+    import mitsuba
+
+    path = tmp_path / "scene.xml"
+    path.write_text(
+        '<scene version="3.0.0"><shape type="rectangle"><bsdf type="diffuse"><spectrum name="reflectance" value="0.25"/></bsdf>'
+        '<emitter type="area"><spectrum name="radiance" value="2"/></emitter></shape></scene>'
+    )
+    before = mitsuba.variant()
+    found = []
+    try:
+        for variant in ("scalar_rgb", "scalar_spectral", "llvm_ad_rgb"):
+            mitsuba.set_variant(variant)
+            found.append(rd.load_scene(path))
+            assert mitsuba.variant() == variant
+    finally:
+        if before is not None:
+            mitsuba.set_variant(before)
+    for scene in found:
+        assert scene.reflectance.ravel() == pytest.approx([0.25])
+        assert scene.emission.ravel() == pytest.approx([2 * np.pi])

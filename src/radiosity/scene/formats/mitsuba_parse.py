@@ -78,7 +78,7 @@ def _link(mitsuba, node: Node, props, nodes: list[Node]) -> None:
 def _plain(mitsuba, value):
     if isinstance(value, (bool, int, float, str)):
         return value
-    if isinstance(value, mitsuba.Spectrum):
+    if hasattr(value, "is_uniform"):  # a property's spectrum; what mitsuba.Spectrum is depends on the variant set
         return Spectrum(() if value.is_uniform() else tuple(value.wavelengths), tuple(value.values))
     # a colour has any attribute that its letters spell, "matrix" too: ask for the type
     return np.array(value.matrix if "Transform" in type(value).__name__ else value, np.float64)
