@@ -1,0 +1,96 @@
+"""Speed in ratios measured in one run: ``make bench``. Nothing here is a test; machines differ and are noisy."""
+
+import os
+import resource
+import subprocess
+import sys
+import time
+import warnings
+from dataclasses import replace
+
+import numpy as np
+from rates import LINES, measure
+from scenes import black, room, strangers
+
+import radiosity as rd
+
+ROW = "{:<34} {:>9} {:>9} {:>9} {:>9} {:>7}  {}"
+
+
+def main() -> None:
+    """Print every table."""
+    import drjit as dr
+
+    print(f"{os.cpu_count()} processors, {dr.thread_count()} threads, sweeps of {LINES:,} lines; rates in million lines a second")
+    print(ROW.format("incoherent", "faces", "patches", "ours", "bare", "ratio", "wanted"))
+    warnings.simplefilter("ignore")
+    for tiles, cells, wanted in ((2, 12, ">= 0.8"), (24, 1, ">= 0.9"), (188, 1, ">= 0.9")):
+        row("room", rd.subdivide(room(tiles), cells=cells), wanted)
+    loaded = {name: rd.load_scene(path) for name, path in strangers().items()}
+    for name, scene in loaded.items():
+        row(name, rd.subdivide(black(scene), cells=1), ">= 0.9")
+    finer_patches()
+    coherent()
+    for name, scene in loaded.items():
+        whole_run(name, scene)
+    whole_run("room, 2 million patches", rd.load_scene("room"), cells=354)
+    start_up()
+
+
+def row(name: str, patches, wanted: str, **choices):
+    """One line of the table."""
+    rates = measure(patches, **choices)
+    n, faces = len(patches), patches.scene.n_faces
+    print(ROW.format(name, faces, n, f"{rates.ours:.1f}", f"{rates.bare:.1f}", f"{rates.ratio:.2f}", wanted), flush=True)
+    return rates
+
+
+def finer_patches() -> None:
+    """10^4 and 10^6 patches on the same faces."""
+    scene = room(24)
+    few, many = (row("room, finer patches", rd.subdivide(scene, cells=cells), "") for cells in (1, 10))
+    print(f"  10^6 against 10^4 patches on equal faces: {few.ours / many.ours:.2f} times the time (wanted: within 1.3)")
+
+
+def coherent() -> None:
+    """Packets of like directions, where patches fire many lines: some faces of a room emit all of them."""
+    for tiles, faces in ((24, 40), (96, 40), (1, 17)):
+        scene = room(tiles)
+        some = np.zeros((scene.n_faces, 1))
+        some[:: max(scene.n_faces // faces, 1)] = 1.0
+        patches = rd.subdivide(replace(scene, emission=some), cells=1)
+        row(f"coherent, {min(faces, scene.n_faces)} patches fire", patches, "> 1.3", coherent=True)
+
+
+def whole_run(name: str, scene, **cut) -> None:
+    """10^7 lines of a real run, replicates and bands as they are by default."""
+    patches = rd.subdivide(scene, **cut)
+    for replicates in (1, 8) if not cut else (1,):
+        for again in (False, True):
+            told = []
+            begun = time.perf_counter()
+            solution = rd.solve(
+                patches, rays=10_000_000, replicates=replicates, progress=lambda p, t=told: t.append((time.perf_counter(), p))
+            )
+            sweeps = told[-1][0] - next(t for t, p in told if p.message != "compiling") if len(told) > 1 else 0.0
+            before = next(t for t, p in told if p.message != "compiling") - begun
+            print(f"{name}, {len(patches):,} patches, {replicates} replicate(s){', again' if again else ''}: {solution.rays:,} lines; "
+                  f"first sweep after {before:.2f} s, all others {sweeps:.2f} s, in all {time.perf_counter() - begun:.2f} s", flush=True)  # fmt: skip
+    print(f"  peak memory so far {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GiB")
+
+
+def start_up() -> None:
+    """A new process, to the end of its first sweep."""
+    code = (
+        "import time; t = time.perf_counter(); import radiosity as rd\n"
+        "def told(p):\n"
+        "    if p.message == 'tracing': print(f'start-up to the end of the first sweep {time.perf_counter() - t:.2f} s'); raise SystemExit\n"
+        "rd.solve(rd.load_scene('room'), rays=10**7, progress=told)"
+    )
+    begun = time.perf_counter()
+    print(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip(), end="; ")
+    print(f"the whole process {time.perf_counter() - begun:.2f} s")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+"""Our lines a second, and those of Mitsuba's bare ray caster on the same rays, in turn."""
+
+import time
+from dataclasses import dataclass
+
+import radiosity as rd  # first: it points Dr.Jit to a libLLVM
+
+# isort: split
+import drjit as dr
+
+from radiosity.engine.device import choose, entered
+from radiosity.engine.firing import Engine
+from radiosity.engine.geometry import Geometry
+from radiosity.engine.lines import local_line
+from radiosity.engine.quanta import Source
+
+LINES = 1 << 22  # of a sweep
+TURNS = 7
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Million lines a second: the best of all turns; and the median ratio of ours to the bare caster's, turn by turn."""
+
+    ours: float
+    bare: float
+    ratio: float
+
+
+def measure(patches: rd.Patches, *, coherent: bool = False, lines: int = LINES, turns: int = TURNS) -> Rates:
+    """Time whole sweeps (what is owed, lanes, numbers, lines, hits, tally) of black patches against the bare caster."""
+    device = choose("cpu")
+    geometry = Geometry(patches, device)
+    source = Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0])
+    engine = Engine(geometry, source, rd.Method(coherent=coherent), 0, 1)
+    rays, width = _rays(engine, lines)
+    ours, bare, quanta = [], [], lines
+    for turn in range(turns + 1):
+        quanta += lines
+        engine.set_quanta(quanta)
+        one = _time(lambda: engine.fire(*engine.due()))
+        two = _time(lambda: _bare(geometry, rays))
+        if turn:  # the first compiles
+            ours.append(lines / one / 1e6)
+            bare.append(width / two / 1e6)
+    ratios = sorted(a / b for a, b in zip(ours, bare, strict=True))
+    return Rates(max(ours), max(bare), ratios[len(ratios) // 2])
+
+
+def _rays(engine: Engine, lines: int):
+    """The rays of the first sweep, in memory, in the order in which they are fired."""
+    types = engine.types
+    engine.set_quanta(lines)
+    batch, largest = engine.due()
+    parts, total = [], 0
+    for chunk in batch.chunks(types):
+        number, index = chunk.read(types)
+        randomisation = dr.gather(types.Array4u, engine.randomisation, dr.zeros(types.UInt32, chunk.width))
+        points = engine.numbers.points(index, number, randomisation, engine.numbers.bits_for(largest))
+        ray = local_line(engine.geometry, number, points)
+        dr.eval(ray)
+        parts.append(ray)
+        total += chunk.width
+    dr.sync_thread()
+    engine.fire(batch, largest)
+    return parts, total
+
+
+def _bare(geometry: Geometry, rays) -> None:
+    with entered(geometry.device) as mi:
+        for origin, direction in rays:
+            ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
+            hit = geometry.tree.caster.ray_intersect_preliminary(ray, coherent=False)
+            dr.eval(hit.t, hit.prim_index, hit.prim_uv)
+
+
+def _time(work) -> float:
+    dr.sync_thread()
+    begun = time.perf_counter()
+    work()
+    dr.sync_thread()
+    return time.perf_counter() - begun
