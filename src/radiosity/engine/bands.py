@@ -119,7 +119,7 @@ class BandTally:
         types = self.engine.types
         return types.Float64(dr.gather(types.UInt32, rho, patch)) * 2.0**-32
 
-    def deposit(self, rank, landed, active) -> None:
+    def deposit(self, rank, landed, active, mode) -> None:
         """In a kernel: lines of the batch's patches (by rank) land in slots."""
         types = self.engine.types
         for g, weight in enumerate(self.weights):
@@ -128,7 +128,7 @@ class BandTally:
                 types.UInt64(dr.gather(types.UInt32, weight, rank)),
                 landed * self.n + g,
                 active=active,
-                mode=self.engine.mode,
+                mode=mode,
             )
         dr.schedule(self.received)
 

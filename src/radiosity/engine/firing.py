@@ -17,7 +17,7 @@ from .geometry import Geometry
 from .lanes import Batch, Chunk, boxes_for
 from .lines import land, local_line, patch_of
 
-CROWDED = 1 << 14  # fewer counters than this are fought over
+DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
 
@@ -42,11 +42,9 @@ class Engine:
         width = self.total + 2 * replicates
         self.arrivals, self.fired = dr.opaque(u32, 0, width), dr.opaque(u32, 0, self.total)
         self.touched, self.landed = dr.opaque(self.types.Bool, False, width), None
-        # Dr.Jit's own choice keeps a copy of the counters for each thread, which costs more than it saves where there are many
-        self.mode = dr.ReduceMode.Auto if self.total < CROWDED else dr.ReduceMode.Direct
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
         self.quanta = 0
-        self.begins_stage, self.owes = True, False
+        self.everywhere, self.owes = True, False
         self.bands = BandTally(self, groups) if groups is not None and groups.n_groups > 1 else None
 
     def set_quanta(self, quanta: int) -> None:
@@ -55,7 +53,7 @@ class Engine:
             raise MethodError(f"quanta may only grow within a run ({self.quanta} to {quanta})")
         whole, fraction = self.source.emitted(quanta)
         self.whole, self.fraction = (upload(self.types.UInt32, a) for a in (whole, fraction))
-        self.quanta, self.begins_stage, self.owes = quanta, True, True
+        self.quanta, self.everywhere, self.owes = quanta, True, True
 
     def counters(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Arrivals and fired lines, (replicates, n_patches) uint32, and escaped and lost lines, (2, replicates)."""
@@ -66,9 +64,10 @@ class Engine:
     # ---- what is owed ----------------------------------------------------------------------------------------------
 
     def candidates(self):
-        """Numbers of all patches that may owe a line: those a line landed on since the last call, or all in a new stage."""
+        """Numbers of all patches that may owe a line: those a line landed on since the last call, or all: in a new stage, or
+        where lines landed nearly everywhere."""
         types = self.types
-        if self.begins_stage:
+        if self.everywhere:
             numbers = dr.arange(types.UInt32, self.total)
         elif self.landed is not None:
             numbers = np.unique(self.landed)
@@ -78,7 +77,7 @@ class Engine:
             numbers = dr.gather(types.UInt32, numbers, dr.compress(numbers < self.total))  # less the slots behind the patches
         if self.landed is None:
             self.touched = dr.opaque(types.Bool, False, self.total + 2 * self.replicates)
-        self.begins_stage, self.landed = False, None
+        self.everywhere, self.landed = False, None
         dr.eval(numbers)
         return numbers
 
@@ -124,34 +123,37 @@ class Engine:
         types = self.types
         bits = self.numbers.bits_for(largest)
         boxes = boxes_for(types, batch.counts) if self.method.coherent else None
-        few = batch.total <= FEW
+        few, dense = batch.total <= FEW, batch.total > DENSE * self.total
+        # a copy of the counters for each thread spares atomic additions, where there are many lines to a counter
+        mode = dr.ReduceMode.Expand if dense else dr.ReduceMode.Direct
         for chunk in batch.chunks(types):
-            landed = self._fire(chunk, 32 if few else bits, boxes, few)
+            landed = self._fire(chunk, 32 if few else bits, boxes, few, dense, mode)
             self.landed = frozen(landed)[: batch.total] if few else None
+        self.everywhere = dense
         dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
         if self.bands is not None:
             self.bands.count_fired(batch)
         dr.eval(self.fired)
 
-    def _fire(self, chunk: Chunk, bits: int, boxes, few: bool):
+    def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, dense: bool, mode):
         number, index = chunk.read(self.types, boxes)
         landed = self.trace(number, index, bits, coherent=boxes is not None)
         real = chunk.real(self.types) if few else True
-        dr.scatter_add(self.arrivals, self.types.UInt32(1), landed, active=real, mode=self.mode)
+        dr.scatter_add(self.arrivals, self.types.UInt32(1), landed, active=real, mode=mode)
         if few:
             dr.schedule(landed)
-        else:
+        elif not dense:
             dr.scatter(self.touched, self.types.Bool(True), landed)
         if self.bands is not None:
-            self.bands.deposit(chunk.rank, landed, real)
+            self.bands.deposit(chunk.rank, landed, real, mode)
         dr.eval(self.arrivals, self.touched)
         return landed
 
     def trace(self, number, index, bits: int, *, coherent: bool = False):
         """Fire the ``index``-th line (from 1) of each patch number: the slot of ``arrivals`` where it lands."""
         types = self.types
-        replicate = self.replicate(number)
-        patch = number - replicate * self.n_opaque
+        replicate = types.UInt32(0) if self.replicates == 1 else self.replicate(number)
+        patch = number if self.replicates == 1 else number - replicate * self.n_opaque
         randomisation = dr.gather(types.Array4u, self.randomisation, replicate)
         numbers = self.numbers.points(index, patch, randomisation, bits)
         origin, direction = local_line(self.geometry, patch, numbers)

@@ -23,8 +23,10 @@ INSET = 4 * OFFSET  # and this far from its edges, so that the offset does not l
 
 COLUMN_BITS = 14
 QUAD, SECOND_HALF, INVERTED = 1 << 28, 1 << 29, 1 << 30
-ABSORBS, PASSES = 0xFFFFFFFF, 0xFFFFFFFE  # instead of a back's first patch
-HIT_WORDS, FACE_WORDS = 8, 16
+BACK_BIT = 30  # of a hit record's flags: two bits, a `Back`
+NORMAL_BITS = 21  # of each component of a normal in a hit record: only the side that a line comes from is asked of it
+NORMAL_ONE = (1 << NORMAL_BITS - 1) - 1
+HIT_WORDS, FACE_WORDS = 4, 16
 
 _trees: "WeakKeyDictionary[Scene, dict[str, Tree]]" = WeakKeyDictionary()
 
@@ -102,6 +104,14 @@ class Geometry:
         return bool((self.scene.back == Back.PASSES).any())
 
     @cached_property
+    def some_backs_radiate(self) -> bool:
+        return bool((self.scene.back == Back.RADIATES).any())
+
+    @cached_property
+    def all_quads(self) -> bool:
+        return bool(self.scene.is_quad.all())
+
+    @cached_property
     def frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Origin and edges of the faces in the caster's coordinates, float64 from its own vertices, and their offset."""
         scene, vertices = self.scene, self.tree.vertices.astype(np.float64)
@@ -135,25 +145,31 @@ class Geometry:
 
     @cached_property
     def hit_records(self):
-        """(n_primitives * 8,) UInt32: front's first patch, cell counts and flags, back's first patch, face, normal, offset."""
+        """(n_primitives * 4,) UInt32: the front's first patch, cell counts and flags, and the normal in two words."""
         scene, patches = self.scene, self.patches
         _, face = primitives(scene)
-        _, first, second, offset = self.frames
+        _, first, second, _ = self.frames
         cross = np.cross(first, second)
         normal = cross / np.linalg.norm(cross, axis=1, keepdims=True)
-        back = np.select(
-            [scene.back == Back.RADIATES, scene.back == Back.PASSES],
-            [patches.first[:-1] + patches.cells_per_face, PASSES],
-            ABSORBS,
-        )
+        x, y, z = (np.round(normal[face] * NORMAL_ONE).astype(np.int64) + NORMAL_ONE + 1).T
         packed = patches.columns | (patches.rows.astype(np.int64) << COLUMN_BITS) | np.where(scene.is_quad, QUAD, 0)
+        packed |= scene.back.astype(np.int64) << BACK_BIT
         record = np.zeros((len(face), HIT_WORDS), np.uint32)
         record[:, 0], record[:, 1] = patches.first[:-1][face], packed[face]
-        record[:, 2], record[:, 3] = back[face], face
         record[np.concatenate([[False], face[1:] == face[:-1]]), 1] |= SECOND_HALF
-        record[:, 4:7] = normal[face].astype(np.float32).view(np.uint32)
-        record[:, 7] = offset[face].astype(np.float32).view(np.uint32)
+        both = x | y << NORMAL_BITS | z << 2 * NORMAL_BITS
+        record[:, 2], record[:, 3] = both & 0xFFFFFFFF, both >> 32
         return upload(self.device.types.UInt32, record)
+
+    @cached_property
+    def primitive_faces(self):
+        """(n_primitives,) UInt32: the face of each of the caster's triangles."""
+        return upload(self.device.types.UInt32, primitives(self.scene)[1].astype(np.uint32))
+
+    @cached_property
+    def offsets(self):
+        """(n_faces,) Float: how far in front of a face its lines begin."""
+        return upload(self.device.types.Float, self.frames[3].astype(np.float32))
 
     @cached_property
     def patch_records(self):

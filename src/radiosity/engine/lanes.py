@@ -21,6 +21,8 @@ class Batch:
         counts: UInt32, lines each of them fires now; a last entry may have none (see `paired`).
         begins: UInt64, lines of all before it.
         fired: UInt32, lines each has fired before.
+        entries: UInt32, in pairs: the number, and what turns the how-manieth lane of all into the how-manieth line of the
+            patch (fired + 1 - begins; 32-bit arithmetic goes round, and the sum is right).
         total: lines of all.
     """
 
@@ -28,6 +30,7 @@ class Batch:
     counts: Any
     begins: Any
     fired: Any
+    entries: Any
     total: int
 
     @staticmethod
@@ -39,9 +42,10 @@ class Batch:
             counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
         dr.eval(numbers, counts, fired)
         begins = dr.prefix_sum(types.UInt64(counts))
-        dr.eval(begins)
+        entries = dr.ravel(types.Array2u(numbers, fired + 1 - types.UInt32(begins)))
+        dr.eval(begins, entries)
         last = dr.width(numbers) - 1
-        return Batch(numbers, counts, begins, fired, int(begins[last]) + int(counts[last]))
+        return Batch(numbers, counts, begins, fired, entries, int(begins[last]) + int(counts[last]))
 
     def chunks(self, types) -> "Iterator[Chunk]":
         """Launches of at most ``CHUNK`` lanes."""
@@ -81,13 +85,12 @@ class Chunk:
     def read(self, types, boxes: tuple[int, int] | None = None):
         """In a kernel of this width: patch number and index (from 1) of each line, ``boxes`` as in `method.numbers.strata`."""
         batch = self.batch
-        lane = types.UInt64(dr.arange(types.UInt32, self.width)) + self.first
-        number = dr.gather(types.UInt32, batch.numbers, self.rank)
-        within = types.UInt32(lane - dr.gather(types.UInt64, batch.begins, self.rank))
+        number, ahead = dr.gather(types.Array2u, batch.entries, self.rank)
+        index = dr.arange(types.UInt32, self.width) + types.UInt32(self.first) + ahead
+        if boxes is None:
+            return number, index
         base = dr.gather(types.UInt32, batch.fired, self.rank) + 1
-        if boxes is not None:
-            within = by_boxes(types, base, within, dr.gather(types.UInt32, batch.counts, self.rank), boxes)
-        return number, base + within
+        return number, base + by_boxes(types, base, index - base, dr.gather(types.UInt32, batch.counts, self.rank), boxes)
 
 
 def by_boxes(types, base, within, count, boxes: tuple[int, int]):
@@ -98,11 +101,19 @@ def by_boxes(types, base, within, count, boxes: tuple[int, int]):
     n = strata.boxes(*boxes)
     walk = upload(types.UInt32, strata.walk(*boxes))
     cycles = count // n
-    box = types.UInt32(types.Float64(within) / types.Float64(cycles))  # exact for 32-bit numbers
+    box = _quotient(types, within, cycles)
     whole = within < cycles * n
     offset = dr.gather(types.UInt32, walk, box, whole) + n - base % n
     offset = dr.select(offset >= n, offset - n, offset)
     return dr.select(whole, offset + (within - box * cycles) * n, within)
+
+
+def _quotient(types, dividend, divisor):
+    """Of 32-bit numbers, exact while it is below 2^20: a single precision guess that is one off at most."""
+    guess = types.UInt32(types.Float(dividend) / types.Float(divisor))
+    rest = types.Int(dividend - guess * divisor)
+    guess = dr.select(rest < 0, guess - 1, guess)
+    return dr.select(rest >= types.Int(divisor), guess + 1, guess)
 
 
 def boxes_for(types, counts) -> tuple[int, int] | None:

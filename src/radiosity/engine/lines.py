@@ -6,10 +6,12 @@ from typing import Any
 import drjit as dr
 
 from ..method.lines.local import hemisphere, triangle
+from ..scene.model import Back
 from .device import entered
-from .geometry import ABSORBS, COLUMN_BITS, INVERTED, PASSES, QUAD, SECOND_HALF, Geometry
+from .geometry import BACK_BIT, COLUMN_BITS, INVERTED, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, Geometry
 
 MASK = (1 << COLUMN_BITS) - 1
+NORMAL_MASK = (1 << NORMAL_BITS) - 1
 
 
 def local_line(geometry: Geometry, patch, numbers):
@@ -19,96 +21,88 @@ def local_line(geometry: Geometry, patch, numbers):
     face, place = dr.gather(types.Array2u, geometry.patch_records, patch)
     front = face < (1 << 31)
     face = face & 0x7FFFFFFF
-    words = [dr.gather(types.Array4f, geometry.face_records, face * 4 + i) for i in range(4)]
-    origin, first, second, normal, tangent = (
-        types.Array3f(*(words[i // 4][i % 4] for i in range(at, at + 3))) for at in range(0, 15, 3)
-    )
+    block = dr.gather(types.Array44f, geometry.face_records, face)  # one read of 16 words, not four of four
+    words = [block[i // 4][i % 4] for i in range(16)]
+    origin, first, second, normal, tangent = (types.Array3f(*words[at : at + 3]) for at in range(0, 15, 3))
     side = dr.select(front, Float(1), Float(-1))
     x, y = numbers[2], numbers[3]
-    s, t = triangle(x, y)
-    inverted = (place & INVERTED) != 0
-    quad = (place & QUAD) != 0
-    s, t = dr.select(inverted, 1 - s, s), dr.select(inverted, 1 - t, t)
-    s, t = dr.select(quad, x, s), dr.select(quad, y, t)
+    s, t = x, y
+    if not geometry.all_quads:
+        s, t = triangle(x, y)
+        inverted, quad = (place & INVERTED) != 0, (place & QUAD) != 0
+        s, t = dr.select(inverted, 1 - s, s), dr.select(inverted, 1 - t, t)
+        s, t = dr.select(quad, x, s), dr.select(quad, y, t)
     column, row = Float(place & MASK), Float((place >> COLUMN_BITS) & MASK)
     dx, dy, dz = hemisphere(numbers[0], numbers[1])
     bitangent = dr.cross(normal, tangent)
     direction = tangent * dx + bitangent * dy + normal * (dz * side)
-    point = origin + first * (column + s) + second * (row + t) + normal * (words[3][3] * side)
+    point = origin + first * (column + s) + second * (row + t) + normal * (words[15] * side)
     return point, direction
 
 
 @dataclass(frozen=True)
 class Landing:
-    """Where lines land: face, face coordinates, side, distance in the caster's units, and the hit record's words."""
+    """Where lines land: primitive, face coordinates, side, distance in the caster's units, and the hit record's first words."""
 
     valid: Any
-    face: Any
+    primitive: Any
     u: Any
     v: Any
     front: Any
     distance: Any
-    record: Any
+    first: Any
     packed: Any
+
+    def back(self, kind: Back):
+        """Mask: the line came from behind, and backs there are of this kind."""
+        return self.valid & ~self.front & ((self.packed >> BACK_BIT) == int(kind))
 
 
 def land(geometry: Geometry, origin, direction, *, coherent: bool = False, active=True) -> Landing:
     """Trace lines to the first side that does not let them pass."""
     if not geometry.some_backs_pass:
-        return _hit(geometry, origin, direction, coherent, active)
+        return _hit(geometry, origin, direction, coherent, active)[0]
     types = geometry.device.types
     Float, Bool, UInt32 = types.Float, types.Bool, types.UInt32
 
-    def body(origin, direction, going, distance, valid, face, u, v, front, words, packed):
-        hit = _hit(geometry, origin, direction, coherent, going)
-        passes = going & hit.valid & ~hit.front & (hit.record[2] == PASSES)
+    def body(origin, going, hit):
+        new, normal = _hit(geometry, origin, direction, coherent, going)
+        passes = going & new.back(Back.PASSES)
         done = going & ~passes
-        distance = dr.select(going, distance + hit.distance, distance)
-        valid = dr.select(done, hit.valid, valid)
-        face, u, v = dr.select(done, hit.face, face), dr.select(done, hit.u, u), dr.select(done, hit.v, v)
-        front, packed = dr.select(done, hit.front, front), dr.select(done, hit.packed, packed)
-        words = dr.select(done, hit.record, words)
+        travelled = dr.select(going, hit[5] + new.distance, hit[5])
+        kept = [dr.select(done, value, old) for value, old in zip(_fields(new), hit, strict=True)]
         # go on in front of the face just passed, from the side of its normal
-        step = origin + direction * hit.distance + _normal(types, hit) * hit.offset
-        return dr.select(passes, step, origin), direction, passes, distance, valid, face, u, v, front, words, packed
+        offset = dr.gather(Float, geometry.offsets, dr.gather(UInt32, geometry.primitive_faces, new.primitive, passes), passes)
+        step = origin + direction * new.distance + normal * (offset * (1.0 / NORMAL_ONE))
+        return dr.select(passes, step, origin), passes, (*kept[:5], travelled, *kept[6:])
 
     width = dr.width(origin, direction)
-    state = (
-        types.Array3f(origin), types.Array3f(direction), Bool(active) & dr.full(Bool, True, width), dr.zeros(Float, width),
-        dr.full(Bool, False, width), dr.zeros(UInt32, width), dr.zeros(Float, width), dr.zeros(Float, width),
-        dr.full(Bool, False, width), dr.zeros(types.Array4u, width), dr.zeros(UInt32, width),
-    )  # fmt: skip
-    state = dr.while_loop(state, lambda *s: s[2], body, mode="symbolic")
-    _, _, _, distance, valid, face, u, v, front, words, packed = state
-    return Landing(valid, face, u, v, front, distance, words, packed)
+    none, zero, whole = dr.full(Bool, False, width), dr.zeros(Float, width), dr.zeros(UInt32, width)
+    state = (types.Array3f(origin), dr.full(Bool, True, width) & active, (none, whole, zero, zero, none, zero, whole, whole))
+    _, _, hit = dr.while_loop(state, lambda origin, going, hit: going, body, mode="symbolic")
+    return Landing(*hit)
 
 
-@dataclass(frozen=True)
-class _Hit(Landing):
-    normal: Any
-    offset: Any
+def _fields(hit: Landing):
+    return hit.valid, hit.primitive, hit.u, hit.v, hit.front, hit.distance, hit.first, hit.packed
 
 
-def _normal(types, hit: "_Hit"):
-    return hit.normal
-
-
-def _hit(geometry: Geometry, origin, direction, coherent: bool, active) -> _Hit:
+def _hit(geometry: Geometry, origin, direction, coherent: bool, active):
+    """The nearest hit, and the face's normal, not normalised."""
     types = geometry.device.types
-    Float = types.Float
+    Float, Int32 = types.Float, types.Int
     with entered(geometry.device) as mi:
         ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
         found = geometry.tree.caster.ray_intersect_preliminary(ray, coherent=coherent, active=active)
     valid = found.is_valid() & active
-    record = dr.gather(types.Array4u, geometry.hit_records, found.prim_index * 2, valid)
-    rest = dr.gather(types.Array4u, geometry.hit_records, found.prim_index * 2 + 1, valid)
-    normal = types.Array3f(*(dr.reinterpret_array(Float, rest[i]) for i in range(3)))
-    half = (record[1] & SECOND_HALF) != 0
+    first, packed, low, high = dr.gather(types.Array4u, geometry.hit_records, found.prim_index, valid)
+    y = (low >> NORMAL_BITS) | (high << 32 - NORMAL_BITS)
+    parts = (low, y, high >> 2 * NORMAL_BITS - 32)
+    normal = types.Array3f(*(Float(Int32(part & NORMAL_MASK) - (NORMAL_ONE + 1)) for part in parts))
+    half = (packed & SECOND_HALF) != 0
     u, v = found.prim_uv.x, found.prim_uv.y
-    return _Hit(
-        valid, record[3], dr.select(half, 1 - u, u), dr.select(half, 1 - v, v), dr.dot(direction, normal) < 0, found.t,
-        record, record[1], normal, dr.reinterpret_array(Float, rest[3]),
-    )  # fmt: skip
+    u, v = dr.select(half, 1 - u, u), dr.select(half, 1 - v, v)
+    return Landing(valid, found.prim_index, u, v, dr.dot(direction, normal) < 0, found.t, first, packed), normal
 
 
 def patch_of(geometry: Geometry, hit: Landing, absorbed: int, escaped: int):
@@ -116,15 +110,19 @@ def patch_of(geometry: Geometry, hit: Landing, absorbed: int, escaped: int):
     types = geometry.device.types
     Float, UInt32 = types.Float, types.UInt32
     columns, rows = hit.packed & MASK, (hit.packed >> COLUMN_BITS) & MASK
-    quad = (hit.packed & QUAD) != 0
     x, y = dr.maximum(hit.u, 0) * Float(columns), dr.maximum(hit.v, 0) * Float(rows)
     row = dr.minimum(UInt32(y), rows - 1)
-    limit = dr.select(quad, columns, columns - row)
-    column = dr.minimum(UInt32(x), limit - 1)
-    inverted = ((x - Float(column)) + (y - Float(row)) > 1) & (column + 1 < limit)
-    cell = dr.select(
-        quad, row * columns + column, row * (2 * columns - row) + 2 * column + dr.select(inverted, UInt32(1), UInt32(0))
-    )
-    first = dr.select(hit.front, hit.record[0], hit.record[2])
-    patch = dr.select(first == ABSORBS, UInt32(absorbed), first + cell)
+    if geometry.all_quads:
+        cell = row * columns + dr.minimum(UInt32(x), columns - 1)
+    else:
+        quad = (hit.packed & QUAD) != 0
+        limit = dr.select(quad, columns, columns - row)
+        column = dr.minimum(UInt32(x), limit - 1)
+        inverted = ((x - Float(column)) + (y - Float(row)) > 1) & (column + 1 < limit)
+        triangle_cell = row * (2 * columns - row) + 2 * column + dr.select(inverted, UInt32(1), UInt32(0))
+        cell = dr.select(quad, row * columns + column, triangle_cell)
+    patch = hit.first + cell
+    if geometry.some_backs_radiate:
+        patch = dr.select(hit.back(Back.RADIATES), patch + columns * rows, patch)
+    patch = dr.select(hit.back(Back.ABSORBS), UInt32(absorbed), patch)
     return dr.select(hit.valid, patch, UInt32(escaped))
