@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.scene.formats import mgf_faces, mgf_filter
+from radiosity.scene.formats.mgf import faces as mgf_faces
+from radiosity.scene.formats.mgf import filter as mgf_filter
 
 pytest.importorskip("pyradiance")
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.scene.formats.mgf_filter import program
+from radiosity.scene.formats.mgf.filter import program
 from radiosity.scene.formats.polygon import vector_area
 
 pytest.importorskip("pyradiance")

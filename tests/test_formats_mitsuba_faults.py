@@ -104,7 +104,7 @@ def test_entities_are_not_read_from_other_files(load, tmp_path):
 
 
 def test_references_that_multiply_are_bounded(load, monkeypatch):
-    from radiosity.scene.formats import mitsuba_xml
+    from radiosity.scene.formats import mitsuba as mitsuba_xml
 
     monkeypatch.setattr(mitsuba_xml, "MOST_SHAPES", 1000)
     groups = "".join(f'<shape type="shapegroup" id="g{i}"><ref id="g{i - 1}"/><ref id="g{i - 1}"/></shape>' for i in range(1, 16))

@@ -13,9 +13,9 @@ OUTSIDE = {"cli", "view", "cluster"}
 EARLY = {"engine", "method", "patches", "scene"}  # what comes before the image on the walk
 PLACES = {
     "drjit": ("engine/", "method/", "llvm.py"),  # llvm.py: only what another package has imported already
-    "mitsuba": ("engine/", "scene/formats/mitsuba_", "image/"),
+    "mitsuba": ("engine/", "scene/formats/mitsuba/", "image/"),
 }
-CLASSES = {"scene/formats/toml_schema.py": {"pydantic"}}  # its classes derive from the package's; loaded by its reader alone
+CLASSES = {"scene/formats/toml/schema.py": {"pydantic"}}  # its classes derive from the package's; loaded by its reader alone
 
 
 def name_of(path: Path) -> str:

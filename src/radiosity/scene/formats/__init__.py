@@ -10,7 +10,7 @@ from ..assemble import ReadOptions
 from ..model import Scene
 
 FORMATS = {
-    ".xml": "mitsuba_xml",
+    ".xml": "mitsuba",
     ".glb": "gltf",
     ".gltf": "gltf",
     ".obj": "obj",

@@ -1,0 +1,137 @@
+"""glTF materials by their diffuse albedo and emitted radiance."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ....errors import shown
+from ...assemble import Material, warn
+from ...model import Back
+from ..textures import linear_image
+from .file import GltfFile
+
+GLOSSY_ROUGHNESS = 0.3  # a material that is explicitly smoother counts as not diffuse
+REPEAT = 10497
+
+
+@dataclass(frozen=True, eq=False)
+class Texture:
+    """An image and how texture coordinates lead to it: set TEXCOORD_n, then scale, rotation (radians), offset."""
+
+    image: np.ndarray
+    coordinates: int = 0
+    offset: tuple[float, ...] = (0.0, 0.0)
+    rotation: float = 0.0
+    scale: tuple[float, ...] = (1.0, 1.0)
+    repeats: bool = True
+
+    def uv(self, given: np.ndarray) -> np.ndarray:
+        """glTF coordinates (origin at the upper left) to those of a paint (lower left)."""
+        c, s = np.cos(self.rotation), np.sin(self.rotation)
+        moved = (given * self.scale) @ np.array([[c, -s], [s, c]]) + self.offset
+        return np.column_stack([moved[:, 0], 1.0 - moved[:, 1]])
+
+
+@dataclass(frozen=True, eq=False)
+class Finish:
+    """A material with its textures."""
+
+    name: str
+    material: Material
+    base: Texture | None = None
+    emissive: Texture | None = None
+
+
+@dataclass(eq=False)
+class Materials:
+    """The materials of a file, read when first asked for; `report` tells once what was not taken as it is."""
+
+    file: GltfFile
+    finishes: dict[int, Finish] = field(default_factory=dict)
+    images: dict[int, np.ndarray] = field(default_factory=dict)
+    transparent: list[str] = field(default_factory=list)
+
+    def __getitem__(self, index) -> Finish:
+        info = self.file.item("materials", index)
+        if index not in self.finishes:
+            self.finishes[index] = self._read(info, str(info.get("name") or f"material {index}"))
+        return self.finishes[index]
+
+    def report(self) -> None:
+        if self.transparent:
+            warn(f"{self.file.path}: transparency is left out, taken as opaque: {shown(self.transparent)}")
+
+    def _read(self, info: dict, name: str) -> Finish:
+        file, what = self.file, f"material '{name}'"
+        extensions = file.dictionary(info.get("extensions", {}), f"extensions of {what}")
+        metal = file.dictionary(info.get("pbrMetallicRoughness", {}), f"pbrMetallicRoughness of {what}")
+        shiny = extensions.get("KHR_materials_pbrSpecularGlossiness")
+        if isinstance(shiny, dict):
+            factor, texture = file.numbers(shiny, "diffuseFactor", (1.0,) * 4, what), shiny.get("diffuseTexture")
+        else:
+            factor, texture = file.numbers(metal, "baseColorFactor", (1.0,) * 4, what), metal.get("baseColorTexture")
+        strength = file.dictionary(extensions.get("KHR_materials_emissive_strength", {}), f"emissive strength of {what}")
+        (power,) = file.numbers({"v": [strength.get("emissiveStrength", 1.0)]}, "v", (1.0,), f"emissiveStrength of {what}")
+        radiance = np.array(file.numbers(info, "emissiveFactor", (0.0,) * 3, what)) * power
+        if info.get("alphaMode", "OPAQUE") != "OPAQUE":
+            self.transparent.append(name)
+        material = Material(
+            reflectance=_unless_grey(factor[:3]),
+            emission=_unless_grey(np.pi * radiance),
+            back=Back.RADIATES if info.get("doubleSided") is True else Back.ABSORBS,
+            diffuse=not self._is_glossy(metal, extensions, what),
+        )
+        emissive = self._texture(info.get("emissiveTexture"), what) if radiance.any() else None
+        return Finish(name, material, self._texture(texture, what), emissive)
+
+    def _is_glossy(self, metal: dict, extensions: dict, what: str) -> bool:
+        """Only what the file says explicitly: the defaults (fully metallic) of files that leave it out mean nothing."""
+        textured = "metallicRoughnessTexture" in metal
+        metallic, rough = (
+            self.file.numbers({"v": [metal.get(key, default)]}, "v", (0.0,), f"{key} of {what}")[0]
+            for key, default in (("metallicFactor", 1.0 if textured else 0.0), ("roughnessFactor", 1.0))
+        )
+        clear = extensions.get("KHR_materials_transmission", {}).get("transmissionFactor", 0)
+        return metallic > 0 or (rough < GLOSSY_ROUGHNESS and not textured) or bool(clear)
+
+    def _texture(self, use, what: str) -> Texture | None:
+        if use is None:
+            return None
+        file = self.file
+        use = file.dictionary(use, f"a texture of {what}")
+        info = file.item("textures", use.get("index"))
+        webp = file.dictionary(info.get("extensions", {}), "extensions of a texture").get("EXT_texture_webp")
+        source = webp.get("source") if isinstance(webp, dict) else info.get("source")
+        if source is None:
+            raise file.fail(
+                f"a texture of {what} has no image that is read (extensions {shown(info.get('extensions', {}))}); use PNG or JPEG"
+            )
+        wraps: set[int] = set()
+        if "sampler" in info:
+            sampler = file.item("samplers", info["sampler"])
+            wraps = {sampler.get(key, REPEAT) for key in ("wrapS", "wrapT")}
+        move = file.dictionary(
+            file.dictionary(use.get("extensions", {}), "extensions").get("KHR_texture_transform", {}), "transform"
+        )
+        return Texture(
+            self._image(source),
+            file.whole(move, "texCoord", what) if "texCoord" in move else file.whole(use, "texCoord", what, 0),
+            file.numbers(move, "offset", (0.0, 0.0), what),
+            file.numbers({"rotation": [move.get("rotation", 0.0)]}, "rotation", (0.0,), what)[0],
+            file.numbers(move, "scale", (1.0, 1.0), what),
+            wraps <= {REPEAT},
+        )
+
+    def _image(self, index) -> np.ndarray:
+        info = self.file.item("images", index)
+        if index not in self.images:
+            what = f"image {index}" + (f" ('{info['name']}')" if info.get("name") else "")
+            data = self.file.view(info["bufferView"])[0] if "bufferView" in info else self.file.resource(info.get("uri"), what)
+            self.images[index] = linear_image(data, f"{self.file.path}: {what}")
+        return self.images[index]
+
+
+def _unless_grey(values) -> tuple[float, ...]:
+    """Three equal numbers are one: a file without colours is a grey scene."""
+    values = tuple(float(v) for v in values)
+    return values[:1] if len(set(values)) == 1 else values

@@ -1,0 +1,101 @@
+"""PLY files as tables of numbers: ASCII or binary, lists of any length.
+
+Read here and not through trimesh, which refuses binary files that mix triangles and quadrilaterals.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ....errors import SceneError
+from .ply_rows import Columns, Property, read_ascii, read_binary
+
+TYPES = {
+    "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",
+    "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "int64": "i8", "uint64": "u8",
+    "float32": "f4", "float64": "f8",
+}  # fmt: skip
+ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+
+
+@dataclass(frozen=True, eq=False)
+class Ply:
+    """Columns by element, and the header's comments."""
+
+    columns: dict[str, Columns]
+    comments: list[str]
+
+
+def read_ply(path: Path) -> Ply:
+    """Read all elements up to ``face``; what follows is not needed.
+
+    Raises:
+        SceneError: not a PLY file, or fewer bytes or numbers than the header announces.
+    """
+    data = path.read_bytes()
+    if not data.startswith(b"ply"):
+        raise SceneError(f"{path}: does not begin with 'ply'; it is damaged or of another format")
+    end = data.find(b"end_header")
+    line_end = data.find(b"\n", end)
+    if end < 0:
+        raise SceneError(f"{path}: the header has no end; the file is truncated")
+    body = data[line_end + 1 :] if line_end >= 0 else b""
+    order, elements, comments = _header(path, data[:end].decode("latin-1"))
+    columns = {}
+    words = np.array([]) if order else _numbers(path, body)
+    at = 0
+    for name, count, properties in elements:
+        kind = f"{count} rows of element '{name}'"
+        least = sum((p.count or p.dtype).itemsize for p in properties) if order else len(properties)
+        have = len(body) - at if order else len(words) - at
+        if count * least > have:
+            raise SceneError(f"{path}: the header announces {kind}, at least {count * least} {'bytes' if order else 'numbers'}; "
+                             f"{have} are left: the file is truncated or damaged")  # fmt: skip
+        try:
+            if order:
+                columns[name], at = read_binary(body, at, count, properties)
+            else:
+                columns[name], at = read_ascii(words, at, count, properties)
+        except (ValueError, IndexError, OverflowError):
+            raise SceneError(f"{path}: the file ends within the {kind}; it is truncated or damaged") from None
+        if name == "face":
+            break
+    return Ply(columns, comments)
+
+
+def _header(path: Path, text: str):
+    elements, comments = [], []
+    kinds = [line.split()[1] for line in text.splitlines() if line.startswith("format ") and len(line.split()) > 1]
+    if not kinds or kinds[0] not in ORDERS:
+        raise SceneError(
+            f"{path}: the header's format is {kinds[0] if kinds else 'missing'}; expected one of {', '.join(ORDERS)}"
+        )
+    order = ORDERS[kinds[0]]
+    for line in text.splitlines()[1:]:
+        words = line.split()
+        try:
+            match words:
+                case [] | ["obj_info" | "format", *_]:
+                    pass
+                case ["comment", *_]:
+                    comments.append(line.split(None, 1)[1] if len(words) > 1 else "")
+                case ["element", name, count] if int(count) >= 0:
+                    elements.append((name, int(count), []))
+                case ["property", "list", count, kind, name] if TYPES[count][0] != "f":
+                    elements[-1][2].append(Property(name, np.dtype(order + TYPES[kind]), np.dtype(order + TYPES[count])))
+                case ["property", kind, name]:
+                    elements[-1][2].append(Property(name, np.dtype(order + TYPES[kind])))
+                case _:
+                    raise ValueError
+        except (ValueError, KeyError, IndexError, TypeError):
+            raise SceneError(f"{path}: header line '{line.strip()[:80]}' is not understood; the file is damaged") from None
+    return order, elements, comments
+
+
+def _numbers(path: Path, body: bytes) -> np.ndarray:
+    words = body.split()
+    try:
+        return np.array(words, dtype=np.float64)
+    except ValueError as error:
+        raise SceneError(f"{path}: the data are no plain numbers ({error})") from None

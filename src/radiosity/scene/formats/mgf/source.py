@@ -1,0 +1,89 @@
+"""An MGF file and those it includes, as one list of statements that know where they come from."""
+
+import os
+from pathlib import Path
+
+from ....errors import SceneError
+from .faults import Faults, Statement, decode
+
+ENTITIES = set(
+    b"o xf i ies c cxy cspec cct cmix m sides rd td ed rs ts ir v p n f fh sph cyl cone prism ring torus".split()
+)  # of the MGF specification 2.0; fh is a face with holes
+DEEPEST = 32  # files that include each other
+LONGEST = 4000  # bytes of a statement that the standard parser takes
+MOST = 20_000_000  # statements
+
+
+def read_source(path: Path, faults: Faults) -> list[Statement]:
+    """All statements in order. ``i file [transform]`` becomes the file's statements, between two ``xf`` if transformed.
+
+    Statements that the standard parser would stop at for their form are faults.
+
+    Raises:
+        SceneError: the file cannot be read or is not text; the includes unfold without end.
+    """
+    result: list[Statement] = []
+    _include(os.fspath(path), (), {}, result, faults)
+    return result
+
+
+def _include(name: str, above: tuple[str, ...], known: dict, result: list[Statement], faults: Faults) -> None:
+    if name not in known:
+        known[name] = _statements(name)
+    for statement in known[name]:
+        words = statement.text.split()
+        if words[0] == b"i":
+            _include_statement(statement, words, (*above, name), known, result, faults)
+        elif words[0] == b"ies":
+            faults.add(statement.place, "the luminaire is not read: IES photometry is no diffuse surface")
+        elif words[0] not in ENTITIES:
+            faults.add(statement.place, f"unknown entity '{decode(words[0])[:40]}'")
+        elif len(statement.text) > LONGEST:
+            faults.add(statement.place, f"the statement has {len(statement.text)} bytes; at most {LONGEST} are read")
+        else:
+            result.append(statement)
+    if len(result) > MOST:
+        raise SceneError(f"{name}: the included files unfold to more than {MOST} statements; split the scene")
+
+
+def _include_statement(statement: Statement, words, above, known, result: list[Statement], faults: Faults) -> None:
+    if len(words) < 2:
+        return faults.add(statement.place, "an include names no file")
+    name = os.path.normpath(Path(statement.file).parent / os.fsdecode(words[1].lstrip(b"/")))
+    if name in above:
+        return faults.add(statement.place, f"'{name}' includes itself")
+    if len(above) >= DEEPEST:
+        return faults.add(statement.place, f"files include each other more than {DEEPEST} deep")
+    if not Path(name).is_file():
+        return faults.add(statement.place, f"included file '{name}' does not exist")
+    transformed = len(words) > 2
+    if transformed:
+        result.append(Statement(b" ".join([b"xf", *words[2:]]), statement.file, statement.line))
+    try:
+        _include(name, above, known, result, faults)
+    except (OSError, ValueError) as error:
+        if isinstance(error, SceneError):
+            raise
+        faults.add(statement.place, f"included file '{name}' cannot be read ({error})")
+    if transformed:
+        result.append(Statement(b"xf", statement.file, statement.line))
+
+
+def _statements(name: str) -> list[Statement]:
+    data = Path(name).read_bytes()
+    if b"\0" in data:
+        raise SceneError(f"{name}: is not an MGF file (it holds binary data)")
+    result: list[Statement] = []
+    parts: list[bytes] = []
+    for number, line in enumerate(data.splitlines(), 1):
+        parts.append(line)
+        if line.endswith(b"\\"):
+            parts[-1] = line[:-1]
+            continue
+        text = b" ".join(parts).strip()
+        if text and not text.startswith(b"#"):
+            result.append(Statement(text, name, number - len(parts) + 1))
+        parts = []
+    if parts and (text := b" ".join(parts).strip()):
+        result.append(Statement(text, name, number - len(parts) + 1))
+    return result

@@ -1,0 +1,141 @@
+"""Read Mitsuba 3 XML scenes: shapes, BSDFs by their diffuse albedo, area emitters and perspective cameras, in metres.
+
+A one-sided BSDF absorbs on the back, ``twosided`` radiates on either side, and an area emitter emits from the front only. A
+radiance L is an exitance of pi L. A radiance that is constant over all wavelengths is grey where the whole scene is, and
+otherwise what Mitsuba makes of it in linear sRGB.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from ....errors import SceneError, shown
+from ...assemble import assemble, warn
+from ...model import Scene
+from ...parts import Part, ReadOptions
+from ..textures import warn_of_means, with_means
+from .bsdf import read_bsdf
+from .camera import read_camera
+from .color import Colors
+from .image import find_file
+from .mesh import read_mesh
+from .node import Node
+from .parse import parse
+from .part import as_srgb, is_equal_energy, make_part
+from .placement import placed, transformation
+from .shapes import ANALYTIC, Geometry
+
+MESHES = ("obj", "ply", "serialized")
+GROUPS = ("instance", "shapegroup", "merge")
+OTHERS = ("bsplinecurve", "ellipsoids", "ellipsoidsmesh", "linearcurve", "sdfgrid")
+MOST_SHAPES = 200_000  # after instancing
+MOST_FACES = 50_000_000
+
+
+def read(path: Path, options: ReadOptions) -> Scene:
+    """Read a Mitsuba scene file.
+
+    Raises:
+        SceneError: malformed XML, a file that is missing or damaged, or no shape that can be used.
+    """
+    root, folders = parse(path)
+    reader = Reader(path, folders)
+    for shape in root.of("Shape"):
+        if shape.plugin != "shapegroup":  # it is seen through its instances
+            reader.add(shape, np.eye(4), "")
+    for emitter in root.of("Emitter"):
+        reader.left_out[f"{emitter.plugin} emitter"] = None
+    cameras = tuple(camera for sensor in root.of("Sensor") if (camera := read_camera(sensor)))
+    return assemble(reader.finished(options), str(path), options, cameras=cameras)
+
+
+class Reader:
+    """Collects the parts of a file.
+
+    Attributes:
+        left_out: what does not take part, by name.
+    """
+
+    def __init__(self, path: Path, folders: list[Path]):
+        self.left_out: dict[str, None] = {}
+        self._path, self._folders = path, folders
+        self._colors = Colors(folders)
+        self._parts: list[Part] = []
+        self._names: dict[str, int] = {}
+        self._geometries: dict[int, Geometry] = {}
+        self._equal_energy: list[int] = []  # parts by number
+        self._averaged: list[str] = []
+        self._shapes = self._faces = 0
+
+    def add(self, node: Node, outer: np.ndarray, prefix: str) -> None:
+        """Add a shape, or the shapes of a group, under the transformation ``outer`` of an instance.
+
+        Raises:
+            SceneError: numbers, files or types that make no shape.
+        """
+        label = prefix + (node.name or Path(str(node.values.get("filename", ""))).stem or node.plugin)
+        inner = transformation(node, label)
+        self._shapes += 1
+        if self._shapes > MOST_SHAPES or self._faces > MOST_FACES:
+            raise SceneError(f"{self._path}: more than {MOST_SHAPES} shapes or {MOST_FACES} faces; split the scene")
+        if node.plugin in GROUPS:
+            if node.plugin == "instance":
+                prefix = f"{self._unique(label)}/"
+            for child in node.of("Shape"):
+                self.add(child, outer @ inner, prefix)
+            return
+        if node.plugin not in (*ANALYTIC, *MESHES, *OTHERS):
+            raise SceneError(f"{node.place}: Mitsuba has no shape of type '{node.plugin}'")
+        sides = read_bsdf(next(iter(node.of("BSDF")), None), self._colors)
+        if sides.invisible or node.plugin in OTHERS:
+            self.left_out[f"{label} ({'null' if sides.invisible else node.plugin})"] = None
+            return
+        geometry = placed(self._geometry(node), inner, outer, flip=bool(node.values.get("flip_normals", False)))
+        area = [emitter for emitter in node.of("Emitter") if emitter.plugin == "area"]
+        self.left_out |= {f"{emitter.plugin} emitter": None for emitter in node.of("Emitter") if emitter not in area}
+        if area and is_equal_energy(area[0]):
+            self._equal_energy.append(len(self._parts))
+        part, averaged = make_part(self._unique(label), geometry, sides, area[0] if area else None, self._colors)
+        self._parts.append(part)
+        self._averaged += [part.name] * averaged
+        self._faces += len(part.faces)
+
+    def finished(self, options: ReadOptions) -> list[Part]:
+        """All parts, with a warning for each kind of thing that was taken differently.
+
+        Raises:
+            SceneError: there are none, or something is left out and ``options.strict``.
+        """
+        text = f"; left out: {shown(self.left_out)}" if self.left_out else ""
+        if not self._parts:
+            raise SceneError(f"{self._path}: the scene holds no shapes that can be used{text}")
+        if text and options.strict:
+            raise SceneError(f"{self._path}: cannot be used as it is{text}; remove that, or read the file without strict")
+        if text:
+            warn(f"{self._path}: only diffuse surfaces and area emitters take part{text}")
+        if self._averaged:
+            warn(f"{self._path}: textures averaged where the two sides differ: {shown(self._averaged)}")
+        if any(part.n_bands == 3 for part in self._parts):
+            for number in self._equal_energy:
+                self._parts[number] = as_srgb(self._parts[number])
+        means = [with_means(part, part.uv is None, part.emission_uv is None) for part in self._parts]
+        warn_of_means(self._parts, means, str(self._path))
+        return means
+
+    def _geometry(self, node: Node) -> Geometry:
+        if id(node) not in self._geometries:
+            if node.plugin in ANALYTIC:
+                self._geometries[id(node)] = ANALYTIC[node.plugin](node)
+            else:
+                file = find_file(self._folders, str(node.values.get("filename", "")), node)
+                self._geometries[id(node)] = read_mesh(node, file)
+        return self._geometries[id(node)]
+
+    def _unique(self, label: str) -> str:
+        name, number = label, self._names.get(label, 1)
+        while name in self._names:
+            number += 1
+            name = f"{label} {number}"
+        self._names[label] = number
+        self._names.setdefault(name, 1)
+        return name

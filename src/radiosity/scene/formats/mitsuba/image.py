@@ -1,0 +1,50 @@
+"""Files that a Mitsuba scene names, and those that are images."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ....errors import SceneError
+from ..textures import decode_srgb, linear_image
+from .node import Node
+from .parse import message
+
+FLOAT_IMAGES = (".exr", ".hdr", ".pfm", ".rgbe")
+
+
+def find_file(folders: list[Path], name: str, node: Node) -> Path:
+    """A file that a plugin names, in one of the folders or beside the XML file that names it.
+
+    Raises:
+        SceneError: there is none.
+    """
+    for folder in (*folders, Path(node.place.rsplit(" (", 1)[0]).parent):
+        for file in (folder / name, folder / name.replace("\\", "/")):
+            if file.is_file():
+                return file
+    raise SceneError(f"{node.place}: the file '{name}' of this '{node.plugin}' does not exist in {folders[0]}")
+
+
+def read_image(file: Path, raw: bool) -> np.ndarray:
+    """(height, width, 1 or 3) float32; linear, or where ``raw`` the values as they are in the file.
+
+    Raises:
+        SceneError: it is no image.
+    """
+    if file.suffix.lower() in FLOAT_IMAGES:
+        return _float_image(file)
+    linear = linear_image(file.read_bytes(), str(file))
+    if not raw:
+        return linear
+    table = decode_srgb(np.linspace(0, 1, 4097))
+    return np.interp(linear, table, np.linspace(0, 1, 4097)).astype(np.float32)
+
+
+def _float_image(file: Path) -> np.ndarray:
+    import mitsuba
+
+    try:
+        bitmap = mitsuba.Bitmap(str(file)).convert(mitsuba.Bitmap.PixelFormat.RGB, mitsuba.Struct.Type.Float32, False)
+    except Exception as error:  # of many classes
+        raise SceneError(f"{file}: the image cannot be decoded ({message(error, file)})") from None
+    return np.array(bitmap)

@@ -1,0 +1,79 @@
+"""One shape of a Mitsuba scene as a part: what its sides reflect, what its front emits, where textures lie."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ....errors import SceneError
+from ...model import Back
+from ...parts import Material, Part
+from .bsdf import Side, Sides
+from .color import Color, Colors, Image, VertexColors, equal_energy_rgb
+from .node import Node, Spectrum
+from .shapes import Geometry
+
+
+def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None, colors: Colors) -> tuple[Part, bool]:
+    """The part, and whether textures were averaged because its two sides differ (a part has one texture)."""
+    front, back = sides.front, sides.back
+    averaged = back is not None and back != front and any(not isinstance(s.albedo, tuple | None) for s in (front, back))
+    if back is not None and averaged:
+        front, back = _mean(front), _mean(back)
+    image = front.albedo if isinstance(front.albedo, Image) else None
+    emission, glow = _emission(emitter, colors)
+    uv = geometry.uv
+    material = Material(
+        reflectance=_base(front, geometry),
+        emission=emission,
+        back=Back.ABSORBS if back is None else Back.RADIATES,
+        back_reflectance=None if back is None or back == front else _base(back, geometry),
+        back_emission=(0.0,),
+        diffuse=front.diffuse and (back is None or back.diffuse),
+    )
+    part = Part(
+        name,
+        geometry.vertices,
+        geometry.faces,
+        material,
+        uv=None if image is None or uv is None else image.coordinates(uv),
+        color=geometry.color if isinstance(front.albedo, VertexColors) else None,
+        texture=image and image.pixels,
+        emission_texture=glow and glow.pixels,
+        emission_uv=None if glow is None or uv is None else glow.coordinates(uv),
+    )
+    return part, averaged
+
+
+def is_equal_energy(emitter: Node | None) -> bool:
+    """Whether the radiance is a spectrum that is constant over all wavelengths: grey to us, reddish in sRGB."""
+    radiance = emitter and emitter.values.get("radiance")
+    return isinstance(radiance, Spectrum) and not radiance.wavelengths
+
+
+def as_srgb(part: Part) -> Part:
+    """A part whose emission is of equal energy, in the colours that Mitsuba gives it."""
+    emission = tuple(float(v) for v in part.material.emission[0] * equal_energy_rgb())
+    return replace(part, material=replace(part.material, emission=emission))
+
+
+def _emission(emitter: Node | None, colors: Colors) -> tuple[Color, Image | None]:
+    """Exitance of the front, and a texture that multiplies it."""
+    if emitter is None:
+        return (0.0,), None
+    radiance = colors.get(emitter, "radiance", 1.0, emission=True)
+    if isinstance(radiance, VertexColors):
+        raise SceneError(f"{emitter.place}: a radiance that is a mesh attribute is not read; give an rgb or a bitmap")
+    if isinstance(radiance, Image):
+        return (np.pi,), radiance
+    return tuple(np.pi * v for v in radiance), None
+
+
+def _mean(side: Side) -> Side:
+    return replace(side, albedo=side.albedo.mean) if isinstance(side.albedo, Image) else side
+
+
+def _base(side: Side, geometry: Geometry) -> Color | None:
+    """What textures and vertex colours multiply, or the reflectance itself."""
+    if isinstance(side.albedo, VertexColors):
+        return None if geometry.color is None else (1.0,)
+    return (1.0,) if isinstance(side.albedo, Image) else side.albedo

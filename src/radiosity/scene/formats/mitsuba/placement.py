@@ -1,0 +1,43 @@
+"""Transformations of Mitsuba's shapes, and which side is the front after them."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ....errors import SceneError
+from .node import Node
+from .shapes import Geometry
+
+
+def transformation(node: Node, label: str) -> np.ndarray:
+    """(4, 4) ``to_world`` of a shape.
+
+    Raises:
+        SceneError: it is not finite, or in perspective.
+    """
+    matrix = np.asarray(node.values.get("to_world", np.eye(4)))
+    if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or not np.allclose(matrix[3], (0, 0, 0, 1)):
+        text = f"{node.place}: the transformation of '{label}' is {matrix.tolist()}"
+        raise SceneError(f"{text}; it must be finite and affine")
+    return matrix
+
+
+def placed(geometry: Geometry, inner: np.ndarray, outer: np.ndarray, *, flip: bool) -> Geometry:
+    """Geometry under its own transformation, then under that of the instance around it.
+
+    Mitsuba takes the side of the shading normal as the front. It transforms normals that are given, and those of an
+    instance, so that a mirror leaves the front where it is; it computes others from mirrored corners, which turn round.
+    """
+    matrix = outer @ inner
+    vertices = geometry.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    turned = geometry.own_normals and np.linalg.det(inner[:3, :3]) < 0
+    turned ^= bool(np.linalg.det(outer[:3, :3]) < 0)
+    faces = geometry.faces if turned == flip else _turned(geometry.faces)
+    return replace(geometry, vertices=vertices, faces=faces)
+
+
+def _turned(faces: np.ndarray) -> np.ndarray:
+    """Faces with their corners in the opposite order."""
+    if faces.shape[1] == 3:
+        return faces[:, ::-1]
+    return np.where(faces[:, [3]] < 0, faces[:, [2, 1, 0, 3]], faces[:, ::-1])

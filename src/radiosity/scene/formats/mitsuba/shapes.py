@@ -1,0 +1,98 @@
+"""Mitsuba's analytic shapes as faces.
+
+Rectangle and cube are exact. Round shapes become flat faces whose total area is that of the shape (of the unit sphere,
+where a sphere is scaled unevenly), so that emitters keep their power; their corners lie a little outside the surface.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .node import Node
+
+AROUND = 32  # faces around a disk, a cylinder or a sphere's equator
+ROWS = 16  # of a sphere
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """Faces in their own coordinates.
+
+    Attributes:
+        vertices: (n, 3).
+        faces: (m, 3) or (m, 4), -1 in the last column of a triangle; counterclockwise seen from the front.
+        uv: (n, 2) Mitsuba's texture coordinates, or None.
+        color: (n, 1 or 3) linear vertex colours, or None.
+        own_normals: a mirror leaves the front where it is, as where normals are given; else it turns with the corners.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    uv: np.ndarray | None = None
+    color: np.ndarray | None = None
+    own_normals: bool = True
+
+
+def rectangle(node: Node) -> Geometry:
+    uv = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
+    return Geometry(np.column_stack([2 * uv - 1, np.zeros(4)]), np.array([[0, 1, 2, 3]]), uv)
+
+
+def cube(node: Node) -> Geometry:
+    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    order = [4, 5, 1, 0, 6, 2, 3, 7, 4, 6, 7, 5, 5, 7, 3, 1, 1, 3, 2, 0, 6, 4, 0, 2]  # Mitsuba's, for the texture
+    uv = np.array([(0, 1), (1, 1), (1, 0), (0, 0)] * 6, float)
+    return Geometry(corners[order], np.arange(24).reshape(6, 4), uv)
+
+
+def disk(node: Node) -> Geometry:
+    angle = np.linspace(0, 2 * np.pi, AROUND + 1)
+    radius = np.sqrt(2 * np.pi / AROUND / np.sin(2 * np.pi / AROUND))
+    rim = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(AROUND + 1)])
+    uv = np.column_stack([np.ones(AROUND + 1), angle / (2 * np.pi)])
+    # each triangle has a centre of its own, whose angle is the triangle's
+    centres = np.column_stack([np.zeros(AROUND), (np.arange(AROUND) + 0.5) / AROUND])
+    i = np.arange(AROUND)
+    vertices = np.concatenate([rim, np.zeros((AROUND, 3))])
+    return Geometry(vertices, np.column_stack([AROUND + 1 + i, i, i + 1]), np.concatenate([uv, centres]))
+
+
+def cylinder(node: Node) -> Geometry:
+    first = node.vector("p0", (0, 0, 0))
+    axis = node.vector("p1", (0, 0, 1)) - first
+    length = np.linalg.norm(axis)
+    axis = axis / length if length > 0 else np.array([0.0, 0.0, 1.0])
+    # the axes of Duff and others, "Building an orthonormal basis, revisited" (2017), as Mitsuba has them
+    sign = np.copysign(1.0, axis[2])
+    a = -1 / (sign + axis[2])
+    b = axis[0] * axis[1] * a
+    across = np.array([(1 + sign * axis[0] ** 2 * a, sign * b, -sign * axis[0]), (b, sign + axis[1] ** 2 * a, -axis[1])])
+    angle = np.linspace(0, 2 * np.pi, AROUND + 1)
+    radius = node.number("radius", 1.0) * (np.pi / AROUND) / np.sin(np.pi / AROUND)
+    rim = first + radius * np.column_stack([np.cos(angle), np.sin(angle)]) @ across
+    vertices = np.concatenate([rim, rim + length * axis])
+    uv = np.concatenate([np.column_stack([angle / (2 * np.pi), np.full(AROUND + 1, v)]) for v in (0.0, 1.0)])
+    i, up = np.arange(AROUND), AROUND + 1
+    return Geometry(vertices, np.column_stack([i, i + 1, i + 1 + up, i + up]), uv)
+
+
+def sphere(node: Node) -> Geometry:
+    u, v = np.meshgrid(np.linspace(0, 1, AROUND + 1), np.linspace(0, 1, ROWS + 1))
+    uv = np.column_stack([u.ravel(), v.ravel()])
+    phi, theta = 2 * np.pi * uv[:, 0], np.pi * uv[:, 1]
+    unit = np.column_stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
+    row, i = (index.ravel() for index in np.meshgrid(np.arange(ROWS), np.arange(AROUND), indexing="ij"))
+    above, below = row * (AROUND + 1) + i, (row + 1) * (AROUND + 1) + i
+    faces = np.column_stack([above, below, below + 1, above + 1])
+    top, bottom = row == 0, row == ROWS - 1
+    faces[top] = np.column_stack([above, below, below + 1, np.full(len(row), -1)])[top]
+    faces[bottom] = np.column_stack([above, below, above + 1, np.full(len(row), -1)])[bottom]
+    p = unit[np.where(faces >= 0, faces, faces[:, [0]])]
+    halves = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), np.cross(p[:, 2] - p[:, 0], p[:, 3] - p[:, 0])
+    area = sum(np.linalg.norm(half, axis=1).sum() / 2 for half in halves)
+    radius = node.number("radius", 1.0) * np.sqrt(4 * np.pi / area)
+    centre = node.vector("center", (0, 0, 0))
+    return Geometry(centre + radius * unit, faces, uv, own_normals=False)
+
+
+ANALYTIC = {"rectangle": rectangle, "cube": cube, "disk": disk, "cylinder": cylinder, "sphere": sphere}

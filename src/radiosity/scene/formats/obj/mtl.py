@@ -1,0 +1,94 @@
+"""Materials of Wavefront MTL files."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ....errors import SceneError, shown
+from ...assemble import Material, ReadOptions, warn
+from ...model import Back
+from .mtl_map import Map, Maps
+from .text import lines
+
+
+@dataclass(frozen=True, eq=False)
+class Finish:
+    """A material with its textures."""
+
+    material: Material
+    base: Map | None = None
+    emissive: Map | None = None
+
+
+def read_library(path: Path, options: ReadOptions) -> dict[str, Finish]:
+    """The materials of a library by name. ``Kd`` is the reflectance, ``Ke`` a radiance.
+
+    Textures that are missing or damaged are left out with one warning (an error where ``options.strict``).
+
+    Raises:
+        SceneError: a value that is no number.
+    """
+    entries: dict[str, dict[str, tuple[int, str]]] = {}
+    current: dict[str, tuple[int, str]] = {}
+    for number, words in lines(path):
+        if words[0].lower() == "newmtl":
+            current = entries.setdefault(" ".join(words[1:]), {})
+        else:
+            current[words[0].lower()] = (number, " ".join(words[1:]))
+    maps = Maps(path, options.strict)
+    result = {name: _finish(path, entry, maps) for name, entry in entries.items()}
+    if maps.lost:
+        warn(f"{path}: textures that cannot be read are left out: {'; '.join(dict.fromkeys(maps.lost))}")
+    see_through = [
+        name for name, entry in entries.items() if _number(path, entry, "d", 1.0) < 1 or _number(path, entry, "tr", 0.0) > 0
+    ]
+    if see_through:
+        warn(f"{path}: transparency is left out, taken as opaque: {shown(see_through)}")
+    return result
+
+
+def _finish(path: Path, entry: dict, maps: Maps) -> Finish:
+    base, emissive = (maps.read(*entry[key]) if key in entry else None for key in ("map_kd", "map_ke"))
+    diffuse = _color(path, entry, "kd")
+    radiance = _color(path, entry, "ke") or (0.0,)
+    if diffuse is None and base is not None:
+        diffuse = (1.0,)
+    specular = max(_color(path, entry, "ks") or (0.0,))
+    illumination = _number(path, entry, "illum", 2.0)
+    # many programs write Ks 0.5 with illum 2 for everything: only what outweighs Kd, or is traced as a mirror, counts
+    glossy = (illumination >= 3 and specular > 0) or (illumination >= 2 and specular > max(diffuse or (1.0,)))
+    material = Material(
+        reflectance=diffuse,
+        emission=tuple(np.pi * v for v in radiance),
+        back=Back.RADIATES,
+        diffuse=not (glossy or _number(path, entry, "pm", 0.0) > 0),
+    )
+    return Finish(material, base, emissive if any(radiance) else None)
+
+
+def _floats(path: Path, entry: dict, key: str) -> list[float] | None:
+    if key not in entry:
+        return None
+    line, rest = entry[key]
+    try:
+        return [float(word) for word in rest.split()]
+    except ValueError:
+        raise SceneError(f"{path}, line {line}: '{key} {rest}' is not understood; expected numbers") from None
+
+
+def _number(path: Path, entry: dict, key: str, default: float) -> float:
+    if key == "d" and key in entry:
+        entry = {key: (entry[key][0], entry[key][1].replace("-halo", ""))}
+    values = _floats(path, entry, key)
+    return values[0] if values else default
+
+
+def _color(path: Path, entry: dict, key: str) -> tuple[float, ...] | None:
+    values = _floats(path, entry, key)
+    if not values:
+        return None
+    values = values[:3] if len(values) >= 3 else values[:1]
+    if not all(0 <= v < np.inf for v in values):
+        raise SceneError(f"{path}, line {entry[key][0]}: {key} is {shown(values)}; values must be finite and not negative")
+    return tuple(values[:1] if len(set(values)) == 1 else values)

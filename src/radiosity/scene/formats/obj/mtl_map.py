@@ -1,0 +1,69 @@
+"""Textures of MTL materials: options, files, images."""
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ....errors import SceneError
+from ..textures import linear_image
+
+# options of map_Kd and map_Ke, and how many values follow (-o, -s, -t: one to three numbers)
+OPTIONS = {"-blendu": 1, "-blendv": 1, "-boost": 1, "-mm": 2, "-texres": 1, "-clamp": 1, "-bm": 1, "-imfchan": 1, "-type": 1,
+           "-cc": 1, "-colorspace": 1, "-o": 3, "-s": 3, "-t": 3}  # fmt: skip
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+@dataclass(frozen=True, eq=False)
+class Map:
+    """An image with scale and offset of the texture coordinates."""
+
+    image: np.ndarray
+    scale: np.ndarray
+    offset: np.ndarray
+
+    def uv(self, given: np.ndarray) -> np.ndarray:
+        return given * self.scale + self.offset
+
+
+@dataclass(eq=False)
+class Maps:
+    """Reads the textures of a library, each image once."""
+
+    path: Path
+    strict: bool
+    images: dict[Path, np.ndarray] = field(default_factory=dict)
+    lost: list[str] = field(default_factory=list)
+
+    def read(self, line: int, text: str) -> Map | None:
+        """The texture of a ``map_`` statement; what cannot be read is noted in ``lost`` (an error where strict)."""
+        words = text.split()
+        moves = {"-o": [0.0, 0.0], "-s": [1.0, 1.0]}
+        while words and words[0].lower() in OPTIONS:
+            option = words.pop(0).lower()
+            for place in range(OPTIONS[option]):
+                if len(words) < 2 or (option in ("-o", "-s", "-t") and not NUMBER.fullmatch(words[0])):
+                    break
+                value = words.pop(0)
+                if option in moves and place < 2:
+                    moves[option][place] = float(value)
+        name = " ".join(words)
+        try:
+            file = self._find(name)
+            if file not in self.images:
+                self.images[file] = linear_image(file.read_bytes(), str(file))
+        except (SceneError, OSError, ValueError) as error:
+            if self.strict:
+                raise SceneError(f"{self.path}, line {line}: texture '{name}': {error}") from None
+            self.lost.append(str(error))
+            return None
+        return Map(self.images[file], np.array(moves["-s"]), np.array(moves["-o"]))
+
+    def _find(self, name: str) -> Path:
+        """As named, or of that name beside the library: names of other machines are common."""
+        plain = name.strip('"').replace("\\", "/")
+        for file in (self.path.parent / plain, self.path.parent / Path(plain).name):
+            if plain and file.is_file():
+                return file
+        raise SceneError(f"'{name}' does not exist beside {self.path.name}")

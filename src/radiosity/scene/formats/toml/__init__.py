@@ -1,0 +1,147 @@
+"""A .toml scene: geometry files, and reflectance, emission, sides and patch size by surface name (docs/scene-toml.md)."""
+
+import tomllib
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import numpy as np
+
+from ....errors import SceneError, shown
+from ...assemble import Part, ReadOptions, warn
+from ...combine import combine
+from ...model import Back, Camera, Scene
+
+BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES}
+SIDES = {1: Back.ABSORBS, 2: Back.RADIATES}
+
+
+def read(path: Path, options: ReadOptions) -> Scene:
+    """Read a .toml scene and its geometry.
+
+    Raises:
+        SceneError: not TOML, a key or value that is not understood, or geometry that cannot be read.
+    """
+    from .schema import UNITS, checked
+
+    try:
+        values = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise SceneError(f"{path}: is no TOML ({error})") from None
+    asked = checked(values, str(path))
+    looks = Looks(asked.surface)
+    scenes, factors = [], []
+    for entry in asked.geometry:
+        factors.append(UNITS[entry.unit or asked.unit] * (entry.scale or asked.scale))
+        scenes.append(_geometry(path.parent / entry.file, factors[-1], entry.name, looks, options, path))
+    names = [name for scene in scenes for name in scene.names]
+    for surface in asked.surface:
+        if not any(_matches(name, surface.name) for name in names):
+            warn(f"{path}: no surface is called '{surface.name}'; there are {shown(sorted(set(names)), 20)}")
+    same = len(set(factors)) == 1 and len({scene.scale for scene in scenes}) == 1
+    photometric = _photometric(asked.photometric, scenes, path)
+    scene = combine(scenes, source=str(path), photometric=photometric, scale=factors[0] * scenes[0].scale if same else 1.0)
+    cameras = tuple(
+        Camera(_times(c.origin, 1), _times(c.target, 1), _times(c.up, 1), c.fov, c.width, c.height) for c in asked.camera
+    )
+    for number, camera in enumerate(cameras, 1):
+        gaze = np.subtract(camera.target, camera.origin)
+        if not np.linalg.norm(np.cross(gaze, camera.up)) > 1e-9 * np.linalg.norm(gaze) * np.linalg.norm(camera.up):
+            raise SceneError(f"{path}: camera {number} looks along its up vector, or nowhere; move target or turn up")
+    return looks.with_powers(replace(scene, cameras=cameras + scene.cameras), str(path))
+
+
+class Looks:
+    """The surface entries of a file: for every property of a surface the last entry that matches and gives it."""
+
+    def __init__(self, entries):
+        self.entries = entries
+        self.powers: dict[str, int] = {}  # entry that gives a surface its power
+
+    def apply(self, part: Part) -> Part:
+        """A part with what the entries say, but for powers: they need the areas of all parts."""
+        material = part.material
+        for number, entry in enumerate(self.entries):
+            if not _matches(part.name, entry.name):
+                continue
+            if entry.reflectance is not None:
+                material = replace(material, reflectance=tuple(entry.reflectance), back_reflectance=None, diffuse=True)
+                part = replace(part, color=None, texture=None)
+            exitance = _exitance(entry)
+            if exitance is not None:
+                material = replace(material, emission=exitance, back_emission=None)
+                part = replace(part, emission_texture=None)
+                self.powers.pop(part.name, None)
+                if entry.power is not None:
+                    self.powers[part.name] = number
+            if entry.sides is not None:
+                material = replace(material, back=SIDES[entry.sides])
+            if entry.back is not None:
+                material = replace(material, back=BACKS[entry.back])
+            if entry.patch_size is not None:
+                part = replace(part, patch_size=entry.patch_size)
+        return replace(part, material=material)
+
+    def with_powers(self, scene: Scene, source: str) -> Scene:
+        """Powers become exitances: spread over the radiating sides of all faces that an entry holds for."""
+        emission, back = scene.emission.copy(), scene.back_emission.copy()
+        areas = scene.area * np.where(scene.back == Back.RADIATES, 2, 1)
+        for number in sorted(set(self.powers.values())):
+            surfaces = [i for i, name in enumerate(scene.names) if self.powers.get(name) == number]
+            faces = np.isin(scene.surface, surfaces)
+            if not faces.any():
+                raise SceneError(f"{source}: surface {number + 1} ('{self.entries[number].name}') has a power but no area")
+            emission[faces] = back[faces] = np.asarray(self.entries[number].power) / areas[faces].sum()
+        return replace(scene, emission=emission, back_emission=back)
+
+
+def _geometry(path: Path, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
+    from .. import read as read_any
+
+    if path.suffix.lower() == ".toml":
+        raise SceneError(f"{source}: geometry '{path.name}' is a .toml file; name its geometry files instead")
+
+    def edit(parts: list[Part]) -> list[Part]:
+        result = []
+        for part in parts:
+            part = replace(part, name=_prefixed(part.name, name, path.stem), vertices=np.asarray(part.vertices) * factor)
+            result.append(looks.apply(part))
+        return result
+
+    scene = read_any(path, replace(options, edit=edit))
+    cameras = [replace(c, origin=_times(c.origin, factor), target=_times(c.target, factor)) for c in scene.cameras]
+    return replace(scene, cameras=tuple(cameras))
+
+
+def _prefixed(name: str, prefix: str | None, stem: str) -> str:
+    """``lamp`` alone for a file that names nothing itself."""
+    if not prefix:
+        return name
+    return prefix if name == stem else f"{prefix}/{name}"
+
+
+def _times(point, factor: float) -> tuple[float, float, float]:
+    x, y, z = point
+    return x * factor, y * factor, z * factor
+
+
+def _matches(name: str, pattern: str) -> bool:
+    return name == pattern or fnmatchcase(name, pattern)
+
+
+def _exitance(entry) -> tuple[float, ...] | None:
+    """W/m²; zeros, as many as there are bands, where the entry gives a power."""
+    if entry.radiance is not None:
+        return tuple(np.pi * v for v in entry.radiance)
+    if entry.power is not None:
+        return tuple(0.0 for _ in entry.power)
+    return None if entry.emission is None else tuple(entry.emission)
+
+
+def _photometric(asked: bool | None, scenes: list[Scene], path: Path) -> bool:
+    if asked is not None:
+        return asked
+    found = {scene.photometric for scene in scenes if (scene.emission > 0).any() or (scene.back_emission > 0).any()}
+    if len(found) > 1:
+        raise SceneError(f"{path}: some geometry files emit in lm/m², others in W/m²; set photometric = true or false")
+    return any(found) if found else any(scene.photometric for scene in scenes)

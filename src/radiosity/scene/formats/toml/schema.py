@@ -1,0 +1,119 @@
+"""What a .toml scene may hold (docs/scene-toml.md), checked by pydantic; its errors become ours."""
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from ....errors import SceneError, shown
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+Unit = Literal["m", "cm", "mm", "in", "ft"]
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+
+
+def _listed(value):
+    """One entry is a list of one."""
+    return [value] if isinstance(value, (int, float, str)) else value
+
+
+def _one_or_three(value: list[float]) -> list[float]:
+    if len(value) not in (1, 3):
+        raise ValueError(f"expected one number or [red, green, blue], not {len(value)} numbers")
+    return value
+
+
+Bands = Annotated[list[NotNegative], BeforeValidator(_listed), AfterValidator(_one_or_three)]
+Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+class Geometry(_Table):
+    """A file of shapes."""
+
+    file: Annotated[str, Field(min_length=1)]
+    unit: Unit | None = None
+    scale: Positive | None = None
+    name: str | None = None
+
+
+def _file(value):
+    """A path alone is a geometry without settings."""
+    return {"file": value} if isinstance(value, str) else value
+
+
+class Surface(_Table):
+    """What surfaces with a matching name get."""
+
+    name: Annotated[str, Field(min_length=1)]
+    reflectance: Bands | None = None
+    emission: Bands | None = None
+    radiance: Bands | None = None
+    power: Bands | None = None
+    sides: Literal[1, 2] | None = None
+    back: Literal["absorbs", "radiates", "passes"] | None = None
+    patch_size: Positive | None = None
+
+    @model_validator(mode="after")
+    def _once(self) -> "Surface":
+        for keys in (("emission", "radiance", "power"), ("sides", "back")):
+            given = [key for key in keys if getattr(self, key) is not None]
+            if len(given) > 1:
+                raise ValueError(f"{' and '.join(given)} say the same thing; give one")
+        return self
+
+
+class View(_Table):
+    """A camera, in metres."""
+
+    origin: Point
+    target: Point
+    up: Point = [0.0, 0.0, 1.0]
+    fov: Annotated[float, Field(gt=0, lt=180)] = 40.0
+    width: Annotated[int, Field(gt=0, le=2**15)] = 800
+    height: Annotated[int, Field(gt=0, le=2**15)] = 600
+
+
+class SceneFile(_Table):
+    """The whole file."""
+
+    geometry: Annotated[list[Annotated[Geometry, BeforeValidator(_file)]], Field(min_length=1), BeforeValidator(_listed)]
+    unit: Unit = "m"
+    scale: Positive = 1.0
+    photometric: bool | None = None
+    surface: list[Surface] = []
+    camera: list[View] = []
+
+
+TABLES = {"surface": Surface, "camera": View, "geometry": Geometry}
+
+
+def checked(values: dict, source: str) -> SceneFile:
+    """The file's values.
+
+    Raises:
+        SceneError: unknown keys (says which exist), missing ones, values out of range.
+    """
+    try:
+        return SceneFile.model_validate(values)
+    except ValidationError as error:
+        faults = dict.fromkeys(_sentence(fault, values) for fault in error.errors())
+        raise SceneError(f"{source}: {'; '.join(list(faults)[:3])}") from None
+
+
+def _sentence(fault, values: dict) -> str:
+    path = fault["loc"]
+    where = ", ".join(f"{step} {path[i + 1] + 1}" if i + 1 < len(path) and isinstance(path[i + 1], int) else str(step)
+                      for i, step in enumerate(path) if isinstance(step, str))  # fmt: skip
+    if path[0] == "surface" and len(path) > 1 and isinstance(values["surface"][path[1]], dict):
+        where = where.replace(",", f" ('{values['surface'][path[1]].get('name', '')}'),", 1)
+    if fault["type"] == "extra_forbidden":
+        table = TABLES.get(str(path[0]), SceneFile) if len(path) > 1 else SceneFile
+        return f"{where}: unknown key; known are {shown(table.model_fields, 20)}"
+    if fault["type"] == "missing":
+        return f"{where} is missing"
+    text = fault["msg"].removeprefix("Value error, ").removesuffix(" or instance of Geometry")
+    return f"{where}: {text}" + (f" (it is {fault['input']!r})" if not isinstance(fault["input"], dict) else "")
