@@ -256,3 +256,13 @@ def test_going_on_with_something_else_is_refused(patches, solution):
     with pytest.raises(rd.MethodError, match="scene"):
         rd.solve(rd.subdivide(rd.load_scene("labyrinth"), cells=1), rays=10**6, resume=rd.solve(
             rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=1), rays=10**6))  # fmt: skip
+
+
+def test_a_coloured_run_goes_on_from_a_rung_only():
+    cut = rd.subdivide(rd.load_scene("cornell-box"), cells=2)
+    done = rd.solve(cut, rays=2_000_000, replicates=2)
+    with pytest.raises(rd.MethodError, match="no power of two"):
+        rd.solve(cut, rays=20_000_000, replicates=2, resume=done)
+    rung = rd.solve(cut, quanta=2**19, replicates=2)
+    more = rd.solve(cut, quanta=3 * 2**18, replicates=2, resume=rung)
+    assert np.array_equal(more.irradiance, rd.solve(cut, quanta=3 * 2**18, replicates=2).irradiance)

@@ -69,6 +69,11 @@ def rung_after(quanta: int, first: int) -> int:
     return first if quanta < first else 1 << (quanta.bit_length())
 
 
+def on_ladder(quanta: int, first: int) -> bool:
+    """N is a rung."""
+    return quanta >= first and quanta & (quanta - 1) == 0
+
+
 @dataclass(frozen=True)
 class Progressed:
     """What is known after a stage: quanta of each replicate, lines of all, seconds, and the error so far (or NaN)."""
@@ -87,7 +92,7 @@ def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, *, 
     bands make the result depend on the stages (``replay``); there a stage between two rungs is the last. Integers alone
     do not depend on stages, and may go on from any N.
     """
-    if replay and (at.quanta < first or at.quanta & (at.quanta - 1)):
+    if replay and not on_ladder(at.quanta, first):
         return None
     rung = rung_after(at.quanta, first)
     wanted = _wanted(budget, replicates, rung, at)

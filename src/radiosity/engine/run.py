@@ -14,7 +14,7 @@ from ..method.order import run as fire_all
 from ..patches import Patches
 from ..solution.model import Solution
 from .bands import BandGroups
-from .budget import LEAST_QUANTA, Budget, Progressed, first_stage, next_quanta
+from .budget import LEAST_QUANTA, Budget, Progressed, first_stage, next_quanta, on_ladder
 from .device import choose
 from .firing import Engine
 from .geometry import Geometry
@@ -63,6 +63,11 @@ class Run:
         else:
             restore(engine, self.resume.state)
             target = engine.quanta
+            if self.groups.n_groups > 1 and "before" not in self.resume.state and not on_ladder(target, self.rung):
+                raise MethodError(
+                    f"a run of {self.groups.n_groups} different bands that ended with {target} quanta cannot go on to the bits of one "
+                    f"longer run: its last stage is no power of two from {self.rung} on; start anew"
+                )
         self.teller.begin(int(engine.counters()[1].sum(dtype=np.uint64)))
         snapshot, status, pending = None, "complete", {}
         while target:

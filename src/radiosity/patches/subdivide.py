@@ -20,7 +20,8 @@ def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = No
         size: metres. A parallelogram's cell edges are at most this long, a triangle's cell has at most half its
             square as area. Surfaces with a patch size of their own in the scene keep it.
         cells: every face into cells x cells instead (1: a patch for each face and radiating side).
-            Neither: a size that gives about 20 000 patches, never fewer than one for each face and side.
+            Neither: a size at which the faces large enough to be cut give about 20 000 patches; the others are one
+            for each side.
 
     Raises:
         SceneError: both or senseless values, or more patches than can be counted.
@@ -52,15 +53,16 @@ def _by_size(scene: Scene, size: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _default_size(scene: Scene) -> float:
+    """A size at which the faces that are cut at all give about 20 000 patches: walls are cut however many tiny faces
+    there are beside them."""
     sides = np.where(scene.back == Back.RADIATES, 2, 1)
-    low, high = 0.0, float(max(edge.max() for edge in _edges(scene)))
-    if sides.sum() >= DEFAULT_PATCHES:
-        return high
+    high = float(max(edge.max() for edge in _edges(scene)))
     low = high * 1e-6
     for _ in range(60):
         middle = np.sqrt(low * high)
         columns, rows = _by_size(scene, middle)
-        low, high = (middle, high) if (columns * rows * sides).sum() > DEFAULT_PATCHES else (low, middle)
+        patches = columns * rows * sides
+        low, high = (middle, high) if patches[columns * rows > 1].sum() > DEFAULT_PATCHES else (low, middle)
     return high
 
 
