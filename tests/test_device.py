@@ -84,3 +84,25 @@ def test_other_seeds_and_scenes_compile_no_new_kernel():
     first = kernels("room", 1)
     assert kernels("room", 2) == first
     assert len(kernels("labyrinth-0.9", 3) - first) <= 2  # sequences of another length, at most
+
+
+@pytest.mark.parametrize("order", ["breadth-first", "depth-first"])
+def test_kernels_stay_within_their_arrays(order):
+    """Dr.Jit's debug mode checks every gather and scatter: open, two-sided, passing and coloured scenes."""
+    code = (
+        "import sys; sys.path.insert(0, 'tests')\n"
+        "import radiosity as rd, drjit as dr\n"
+        "from test_lines import stack, scene_of_all_kinds\n"
+        "dr.set_flag(dr.JitFlag.Debug, True)\n"
+        "scenes = [stack(back) for back in rd.Back] + [scene_of_all_kinds(), rd.load_scene('room'), rd.load_scene('labyrinth')]\n"
+        f"order = {order!r}\n"
+        "if order == 'breadth-first': scenes.append(rd.load_scene('cornell-box'))\n"
+        "for scene in scenes:\n"
+        "    for replicates in (1, 3):\n"
+        "        rd.solve(rd.subdivide(scene, cells=3), quanta=20_000, replicates=replicates, order=order)\n"
+        "print('done')"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parents[1], timeout=600)
+    assert done.stdout.split() == ["done"], done.stderr
+    assert "out-of-bounds" not in done.stderr
+    assert "out of bounds" not in done.stderr
