@@ -55,11 +55,27 @@ def digits_of(base: int, bits: int) -> int:
     return digits
 
 
-def _mirror(rest, base: int, digits: int, places: int):
-    """The lowest ``digits`` digits of ``rest``, mirrored within ``places`` digits."""
+def _mirror(number, base: int, digits: int, places: int):
+    """The lowest ``digits`` digits of ``number`` (which has no more), mirrored within ``places`` digits.
+
+    The two halves of the digits are taken side by side: a chain of dependent instructions half as long.
+    """
+    low = (digits + 1) // 2
+    quotient = _quotient(number, base**low)
+    rest = dr.fma(quotient, -float(base**low), number)
+    mirrored = dr.fma(_mirror_chain(rest, base, low), float(base ** (digits - low)), _mirror_chain(quotient, base, digits - low))
+    return mirrored * float(base ** (places - digits))
+
+
+def _mirror_chain(rest, base: int, digits: int):
     mirrored = type(rest)(0)
     for _ in range(digits):
-        quotient = dr.floor(dr.fma(rest, 1.0 / base, 0.5 / base))
+        quotient = _quotient(rest, base)
         mirrored = dr.fma(mirrored, base, dr.fma(quotient, -base, rest))
         rest = quotient
-    return mirrored * float(base ** (places - digits))
+    return mirrored
+
+
+def _quotient(number, divisor: int):
+    """Whole part of number / divisor, exact below 2^22 for the divisors used here: half a step is more than the rounding."""
+    return dr.floor(dr.fma(number, 1.0 / divisor, 0.5 / divisor))
