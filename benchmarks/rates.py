@@ -54,10 +54,10 @@ def _rays(engine: Engine, lines: int):
     batch, largest = engine.due()
     parts, total = [], 0
     for chunk in batch.chunks(types):
-        number, index = chunk.read(types)
+        number, index, record = chunk.read(types)
         randomisation = dr.gather(types.Array4u, engine.randomisation, dr.zeros(types.UInt32, chunk.width))
         points = engine.numbers.points(index, number, randomisation, engine.numbers.bits_for(largest))
-        ray = local_line(engine.geometry, number, points)
+        ray = local_line(engine.geometry, record, points)
         dr.eval(ray)
         parts.append(ray)
         total += chunk.width

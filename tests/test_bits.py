@@ -103,3 +103,24 @@ def test_coherent_firing_traces_the_same_lines():
     difference = np.abs(plain.state["arrivals"].astype(np.int64) - coherent.state["arrivals"].astype(np.int64)).sum()
     assert difference < 1e-5 * plain.rays  # ties alone
     assert coherent.provenance["choices"]["coherent"]
+
+
+@pytest.mark.parametrize("colored", [False, True])
+def test_launches_may_end_anywhere(monkeypatch, colored):
+    """A sweep's last launch may hold one line: nothing is counted twice, and nothing that was not fired."""
+    from enclosures import cube
+
+    from radiosity.engine import lanes
+
+    emission = np.zeros((6, 3 if colored else 1))
+    emission[0] = 1.0
+    reflectance = [[0.5, 0.4, 0.2]] * 3 + [[0.1, 0.3, 0.6]] * 3 if colored else 0.5
+    cut = rd.subdivide(cube(reflectance, emission), cells=1)
+    for quanta in (2**14, 2**14 + 1, 2**14 + 2, 2**15 - 1, 2**15 + 1):
+        whole = rd.solve(cut, quanta=quanta, replicates=1)
+        with monkeypatch.context() as patched:
+            patched.setattr(lanes, "CHUNK", 2**14)
+            parts = rd.solve(cut, quanta=quanta, replicates=1)
+        assert all(book["closes"] for book in (*whole.books, *parts.books))
+        assert all(np.array_equal(parts.state[key], whole.state[key]) for key in whole.state)
+        assert parts.state["fired"].sum() == parts.state["arrivals"].sum() + parts.state["missed"].sum()

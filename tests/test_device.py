@@ -102,7 +102,9 @@ def test_kernels_stay_within_their_arrays(order):
         "        rd.solve(rd.subdivide(scene, cells=3), quanta=20_000, replicates=replicates, order=order)\n"
         "print('done')"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parents[1], timeout=600)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parents[1], timeout=600
+    )
     assert done.stdout.split() == ["done"], done.stderr
     assert "out-of-bounds" not in done.stderr
     assert "out of bounds" not in done.stderr

@@ -26,8 +26,12 @@ def lines(patches, numbers, patch):
     device = choose("cpu")
     geometry = Geometry(patches, device)
     types = device.types
+    import drjit as dr
+
     origin, direction = local_line(
-        geometry, upload(types.UInt32, patch.astype(np.uint32)), [upload(types.Float, c.astype(np.float32)) for c in numbers.T]
+        geometry,
+        dr.gather(types.Array2u, geometry.patch_records, upload(types.UInt32, patch.astype(np.uint32))),
+        [upload(types.Float, c.astype(np.float32)) for c in numbers.T],
     )
     hit = land(geometry, origin, direction)
     landed = np.array(patch_of(geometry, hit, 2**32 - 2, 2**32 - 1))

@@ -43,7 +43,7 @@ def test_number_place_and_corners_are_inverse(shape, seed):
     weights = np.random.Generator(np.random.Philox(seed)).dirichlet(np.ones(4), len(number))
     u, v = np.einsum("ij,ijk->ki", weights, corners)  # a point inside each cell
     assert (cells.number(u, v, c, r, q) == number).all()
-    assert (cells.count(c, r, q) == len(number)).all()
+    assert (cells.count(c, r) == len(number)).all()
 
 
 @settings(max_examples=60)

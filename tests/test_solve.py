@@ -253,6 +253,13 @@ def test_going_on_with_something_else_is_refused(patches, solution):
         rd.solve(patches, rays=4_000_000, resume=solution, numbers="random")
     with pytest.raises(rd.MethodError, match="patches"):
         rd.solve(rd.subdivide(patches.scene, cells=2), rays=4_000_000, resume=solution)
+    columns = patches.columns.copy()
+    columns[[0, 1]], rows = [1, 25], patches.rows.copy()
+    rows[[0, 1]] = [25, 1]
+    with pytest.raises(rd.MethodError, match="cut"):
+        rd.solve(rd.Patches(patches.scene, columns, rows), rays=4_000_000, resume=solution)
+    with pytest.raises(rd.MethodError, match="takes a Solution"):
+        rd.solve(patches, rays=4_000_000, resume="room.npz")
     with pytest.raises(rd.MethodError, match="scene"):
         rd.solve(rd.subdivide(rd.load_scene("labyrinth"), cells=1), rays=10**6, resume=rd.solve(
             rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=1), rays=10**6))  # fmt: skip
@@ -266,3 +273,40 @@ def test_a_coloured_run_goes_on_from_a_rung_only():
     rung = rd.solve(cut, quanta=2**19, replicates=2)
     more = rd.solve(cut, quanta=3 * 2**18, replicates=2, resume=rung)
     assert np.array_equal(more.irradiance, rd.solve(cut, quanta=3 * 2**18, replicates=2).irradiance)
+
+
+def test_numpy_numbers_may_be_saved(patches, tmp_path):
+    for budget in ({"quanta": np.int64(1000)}, {"rays": np.float32(50_000)}, {"error": np.float64(0.2)}):
+        rd.solve(patches, replicates=np.int64(2), seed=np.uint8(3), **budget).save(tmp_path / "x.npz")
+        assert rd.load_solution(tmp_path / "x.npz").provenance["seed"] == 3
+
+
+def test_nothing_received_is_no_error_to_wait_for():
+    plate = rd.Scene.from_arrays([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)], 0.5, 1.0)
+    solution = rd.solve(plate, error=0.1)
+    assert solution.status == "complete"
+    assert "nan" not in solution.report()
+    assert solution.escaped[0] == pytest.approx(1.0, rel=1e-4)
+
+
+def test_what_counters_cannot_hold_is_refused(patches, monkeypatch):
+    from radiosity.engine import budget, run
+
+    monkeypatch.setattr(run, "FULL", 1e5)
+    monkeypatch.setattr(budget, "FULL", 1e5)
+    with pytest.raises(rd.MethodError, match="counters full"):
+        rd.solve(patches, quanta=10**6, replicates=1)
+    monkeypatch.setattr(run, "FULL", 5e6)
+    monkeypatch.setattr(budget, "FULL", 5e6)
+    stopped = rd.solve(patches, quanta=10**7, replicates=1)
+    assert "counters full" in stopped.status
+    assert stopped.quanta < 10**7
+
+
+def test_too_large_an_emission_is_our_error():
+    with pytest.raises(rd.SceneError, match="too large"):
+        rd.solve(cube(0.5, 1e308), rays=1000)
+
+
+def test_seconds_of_all_legs_are_added(patches, solution):
+    assert rd.solve(patches, rays=2_000_000, resume=solution).seconds > solution.seconds

@@ -7,6 +7,7 @@ from ..errors import MethodError
 from .quanta import LIMIT
 
 FIRST_STAGE = 1 << 20  # quanta of all replicates together in the first stage
+FULL = 0.95 * LIMIT  # lines of a replicate: its counters have 32 bits
 LEAST_QUANTA = 1024
 
 
@@ -44,6 +45,7 @@ class Budget:
             raise MethodError(f"error is {value:g}; give a relative error below 1 (0.01 or, on the command line, 1%)")
         if name in ("rays", "quanta") and (value != int(value) or value < 1):
             raise MethodError(f"{name} is {value!r}; it must be a whole number of 1 or more")
+        object.__setattr__(self, name, int(value) if name in ("rays", "quanta") else float(value))  # numpy's become Python's
 
     def check(self, replicates: int) -> None:
         """Refuse what 32-bit counters could not hold, before anything is traced.
@@ -99,7 +101,7 @@ def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, *, 
     if wanted is None or wanted <= at.quanta * 1.01:
         return None
     target = min(rung, wanted)
-    if budget.quanta is None and at.lines / replicates * target / at.quanta > LIMIT * 0.95:
+    if at.lines / replicates * target / at.quanta > FULL:
         return None  # 32-bit counters hold no more
     return target
 

@@ -107,7 +107,13 @@ class Engine:
         self.owes = dr.width(rows) > 0
         if not self.owes:
             return None, 0
-        return Batch.of(types, *(dr.gather(types.UInt32, column, rows) for column in (numbers, deficit, fired))), int(largest[0])
+        columns = (dr.gather(types.UInt32, column, rows) for column in (numbers, deficit, fired))
+        return Batch.of(types, *columns, self.record), int(largest[0])
+
+    def record(self, number):
+        """Face and place of a patch number, see `Geometry.patch_records`."""
+        patch = number - self.replicate(number) * self.n_opaque
+        return dr.gather(self.types.Array2u, self.geometry.patch_records, patch)
 
     def replicate(self, number):
         """Of a patch number: its quotient by n_patches, from a product by the reciprocal that is one short at most."""
@@ -136,27 +142,27 @@ class Engine:
         dr.eval(self.fired)
 
     def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, dense: bool, mode):
-        number, index = chunk.read(self.types, boxes)
-        landed = self.trace(number, index, bits, coherent=boxes is not None)
-        real = chunk.real(self.types) if few else True
+        number, index, record = chunk.read(self.types, boxes)
+        landed = self.trace(number, index, record, bits, coherent=boxes is not None)
+        real = chunk.real(self.types) if few or chunk.lines < chunk.width else True
         dr.scatter_add(self.arrivals, self.types.UInt32(1), landed, active=real, mode=mode)
         if few:
             dr.schedule(landed)
         elif not dense:
-            dr.scatter(self.touched, self.types.Bool(True), landed)
+            dr.scatter(self.touched, self.types.Bool(True), landed, active=real)
         if self.bands is not None:
             self.bands.deposit(chunk.rank, landed, real, mode)
         dr.eval(self.arrivals, self.touched)
         return landed
 
-    def trace(self, number, index, bits: int, *, coherent: bool = False):
+    def trace(self, number, index, record, bits: int, *, coherent: bool = False):
         """Fire the ``index``-th line (from 1) of each patch number: the slot of ``arrivals`` where it lands."""
         types = self.types
         replicate = types.UInt32(0) if self.replicates == 1 else self.replicate(number)
         patch = number if self.replicates == 1 else number - replicate * self.n_opaque
         randomisation = dr.gather(types.Array4u, self.randomisation, replicate)
         numbers = self.numbers.points(index, patch, randomisation, bits)
-        origin, direction = local_line(self.geometry, patch, numbers)
+        origin, direction = local_line(self.geometry, record, numbers)
         hit = land(self.geometry, origin, direction, coherent=coherent)
         landed = patch_of(self.geometry, hit, LOST, ESCAPED)
         slot = dr.select(landed == ESCAPED, types.UInt32(self.total), types.UInt32(self.total + self.replicates)) + replicate

@@ -21,8 +21,9 @@ class Batch:
         counts: UInt32, lines each of them fires now; a last entry may have none (see `paired`).
         begins: UInt64, lines of all before it.
         fired: UInt32, lines each has fired before.
-        entries: UInt32, in pairs: the number, and what turns the how-manieth lane of all into the how-manieth line of the
-            patch (fired + 1 - begins; 32-bit arithmetic goes round, and the sum is right).
+        entries: UInt32, in fours, all that a lane asks: the number; what turns the how-manieth lane of all into the
+            how-manieth line of the patch (fired + 1 - begins; 32-bit arithmetic goes round, and the sum is right); and the
+            patch's record, see `Geometry.patch_records`.
         total: lines of all.
     """
 
@@ -34,15 +35,17 @@ class Batch:
     total: int
 
     @staticmethod
-    def of(types, numbers, counts, fired) -> "Batch":
-        """From the patches that fire, one or more of them, and how often."""
+    def of(types, numbers, counts, fired, records) -> "Batch":
+        """From the patches that fire, one or more of them, how often they do and did, and ``records`` that gives two words
+        for numbers."""
         if dr.width(numbers) == 1:
             both = paired(types, dr.arange(types.UInt32, 1))
             numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
             counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
         dr.eval(numbers, counts, fired)
         begins = dr.prefix_sum(types.UInt64(counts))
-        entries = dr.ravel(types.Array2u(numbers, fired + 1 - types.UInt32(begins)))
+        face, place = records(numbers)
+        entries = dr.ravel(types.Array4u(numbers, fired + 1 - types.UInt32(begins), face, place))
         dr.eval(begins, entries)
         last = dr.width(numbers) - 1
         return Batch(numbers, counts, begins, fired, entries, int(begins[last]) + int(counts[last]))
@@ -58,7 +61,7 @@ class Batch:
             at = types.UInt32(dr.maximum(self.begins, first) - first)
             dr.scatter(rank, dr.arange(types.UInt32, dr.width(self.numbers)), at, active=here)
             rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, max(width, 2), exclusive=False)
-            yield Chunk(self, rank, first, end, max(width, 2))
+            yield Chunk(self, rank, first, end, width, max(width, 2))
 
 
 def paired(types, rows):
@@ -70,12 +73,14 @@ def paired(types, rows):
 
 @dataclass(frozen=True)
 class Chunk:
-    """Lanes of one launch: the rank of each lane's patch in its batch. A single line has a lane beside it that is not real."""
+    """Lanes of one launch: the rank of each lane's patch in its batch. A single line has a lane beside it that is not real:
+    ``lines`` is less than ``width`` then, and whatever counts must ask `real`."""
 
     batch: Batch
     rank: Any
     first: Any
     end: Any
+    lines: int
     width: int
 
     def real(self, types):
@@ -83,14 +88,16 @@ class Chunk:
         return types.UInt64(dr.arange(types.UInt32, self.width)) + self.first < self.end
 
     def read(self, types, boxes: tuple[int, int] | None = None):
-        """In a kernel of this width: patch number and index (from 1) of each line, ``boxes`` as in `method.numbers.strata`."""
+        """In a kernel of this width: patch number, index (from 1) and patch record of each line; ``boxes`` as in
+        `method.numbers.strata`."""
         batch = self.batch
-        number, ahead = dr.gather(types.Array2u, batch.entries, self.rank)
+        number, ahead, face, place = dr.gather(types.Array4u, batch.entries, self.rank)
         index = dr.arange(types.UInt32, self.width) + types.UInt32(self.first) + ahead
         if boxes is None:
-            return number, index
+            return number, index, (face, place)
         base = dr.gather(types.UInt32, batch.fired, self.rank) + 1
-        return number, base + by_boxes(types, base, index - base, dr.gather(types.UInt32, batch.counts, self.rank), boxes)
+        count = dr.gather(types.UInt32, batch.counts, self.rank)
+        return number, base + by_boxes(types, base, index - base, count, boxes), (face, place)
 
 
 def by_boxes(types, base, within, count, boxes: tuple[int, int]):

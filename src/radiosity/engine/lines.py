@@ -14,11 +14,11 @@ MASK = (1 << COLUMN_BITS) - 1
 NORMAL_MASK = (1 << NORMAL_BITS) - 1
 
 
-def local_line(geometry: Geometry, patch, numbers):
-    """Origin and direction (three floats each, the caster's coordinates) of a local line of a patch (UInt32)."""
+def local_line(geometry: Geometry, record, numbers):
+    """Origin and direction (three floats each, the caster's coordinates) of a local line, from its patch's record."""
     types = geometry.device.types
     Float = types.Float
-    face, place = dr.gather(types.Array2u, geometry.patch_records, patch)
+    face, place = record
     front = face < (1 << 31)
     face = face & 0x7FFFFFFF
     block = dr.gather(types.Array44f, geometry.face_records, face)  # one read of 16 words, not four of four

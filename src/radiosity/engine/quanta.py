@@ -38,7 +38,12 @@ class Source:
             SceneError: nothing emits.
         """
         power = emission * patches.area
-        total = math.fsum(power)
+        try:
+            total = math.fsum(power)
+        except OverflowError:
+            total = math.inf
+        if total == math.inf:
+            raise SceneError(f"{patches.scene.source}: the total power is too large for numbers; check emission and unit")
         if not (math.isfinite(total) and total > 0):
             raise SceneError(
                 f"{patches.scene.source}: no surface emits (total power {total:g} {patches.scene.power_unit}); "

@@ -14,7 +14,7 @@ from ..method.order import run as fire_all
 from ..patches import Patches
 from ..solution.model import Solution
 from .bands import BandGroups
-from .budget import LEAST_QUANTA, Budget, Progressed, first_stage, next_quanta, on_ladder
+from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_stage, next_quanta, on_ladder
 from .device import choose
 from .firing import Engine
 from .geometry import Geometry
@@ -24,6 +24,7 @@ from .snapshot import Snapshot
 from .state import capture, check_same, restore
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
+COUNTERS_FULL = "counters full before the end; take more replicates"
 ENOUGH = 20.0  # times sqrt(patches): quanta from which on a number of rays is met closely
 TRIAL = 1 << 15  # quanta of that measurement, or an eighth of a replicate's budget
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
@@ -36,6 +37,7 @@ class Run:
                  listener: Listener | None, resume: Solution | None):  # fmt: skip
         self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
         self.replicates, self.resume = replicates, resume
+        self.seconds_before = 0.0 if resume is None else resume.seconds
         self.groups = BandGroups.of(patches)
         self.source = Source.of(patches, self.groups.emission.max(axis=1), self.groups.reflectance.max(axis=1))
         if self.groups.n_groups > 1 and method.order != "breadth-first":
@@ -65,8 +67,8 @@ class Run:
             target = engine.quanta
             if self.groups.n_groups > 1 and "before" not in self.resume.state and not on_ladder(target, self.rung):
                 raise MethodError(
-                    f"a run of {self.groups.n_groups} different bands that ended with {target} quanta cannot go on to the bits of one "
-                    f"longer run: its last stage is no power of two from {self.rung} on; start anew"
+                    f"a run of {self.groups.n_groups} different bands that ended with {target} quanta cannot go on to the bits "
+                    f"of one longer run: its last stage is no power of two from {self.rung} on; start anew"
                 )
         self.teller.begin(int(engine.counters()[1].sum(dtype=np.uint64)))
         snapshot, status, pending = None, "complete", {}
@@ -89,11 +91,21 @@ class Run:
             target = next_quanta(self.budget, self.replicates, self.rung, at, replay=self.groups.n_groups > 1)
         if snapshot is None:
             if self.resume is None:
+                if status == COUNTERS_FULL:
+                    raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
                 raise KeyboardInterrupt
             return replace(self.resume, status=status, state=pending)
-        if self.budget.error is not None and status == "complete" and not self.teller.error <= self.budget.error:
-            status = "counters full before the target error was reached; take more replicates"
+        if status == "complete" and not self._reached(snapshot):
+            status = COUNTERS_FULL
         return self._solution(snapshot, status, pending)
+
+    def _reached(self, snapshot: Snapshot) -> bool:
+        """The budget was used up; else the counters were. Where nothing is received there is no error to wait for."""
+        if self.budget.error is not None:
+            return not self.teller.error > self.budget.error
+        if self.budget.quanta is not None:
+            return snapshot.quanta >= self.budget.quanta
+        return self.budget.rays is None or snapshot.lines >= 0.5 * self.budget.rays
 
     def _engine(self) -> Engine:
         return Engine(self.geometry, self.source, self.method, self.seed, self.replicates, self.groups)
@@ -108,6 +120,8 @@ class Run:
         self.teller.tell("tracing")
         if self.stop.asked:
             raise Interrupted("interrupted")
+        if self.teller.lines / self.replicates > FULL:
+            raise Interrupted(COUNTERS_FULL)
         seconds = self.budget.seconds
         if seconds is not None and self.teller.stage and self.teller.elapsed > PATIENCE * seconds + 1:
             raise Interrupted("complete")
@@ -125,7 +139,7 @@ class Run:
         engine = Engine(self.geometry, self.source, self.method, self.seed, 1)
         trial = max(min(math.ceil(rays), LEAST_QUANTA), min(int(rays) // 8, TRIAL))
         engine.set_quanta(trial)
-        fire_all(self.method.order, engine, lambda count: None)
+        fire_all(self.method.order, engine, self._tried)
         lines = int(engine.counters()[1].sum(dtype=np.uint64))
         found = max(1, round(trial * rays / max(lines, 1)))
         enough = ENOUGH * math.sqrt(len(self.patches))
@@ -138,11 +152,16 @@ class Run:
             )
         return min(self.rung, found)
 
+    def _tried(self, count: int) -> None:
+        self.teller.tell("trying")
+        if self.stop.asked:
+            raise KeyboardInterrupt
+
     def _solution(self, snapshot: Snapshot, status: str, pending) -> Solution:
         mean, error = snapshot.irradiance()
         arrivals = snapshot.state["arrivals"].sum(axis=0, dtype=np.int64)
         return Solution(
-            self.patches, mean, error, arrivals, snapshot.lines, self.teller.elapsed, snapshot.quanta, self.replicates,
+            self.patches, mean, error, arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before, snapshot.quanta, self.replicates,
             snapshot.books(), status, self._provenance(), pending or snapshot.state,
         )  # fmt: skip
 
@@ -150,6 +169,6 @@ class Run:
         return {
             "scene": self.patches.scene.hash, "source": self.patches.scene.source, "method": str(self.method),
             "choices": asdict(self.method), "seed": self.seed, "replicates": self.replicates, "device": self.device.name,
-            "patches": len(self.patches), "budget": {k: v for k, v in vars(self.budget).items() if v is not None},
+            "patches": len(self.patches), "cut": self.patches.hash, "budget": {k: v for k, v in vars(self.budget).items() if v is not None},
             "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }  # fmt: skip

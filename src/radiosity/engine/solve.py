@@ -34,7 +34,7 @@ def solve(
         scene: a `Scene` (cut into about 20 000 patches) or the `Patches` of one.
         method: a preset's name or a `Method`; ``equation``, ``lines``, ``order``, ``numbers`` and ``coherent``
             replace its choices.
-        rays, seconds, error, quanta: exactly one: lines traced in all (replicates together); wall time; relative error
+        rays, seconds, error, quanta: exactly one: lines traced in all (replicates together); wall time (one stage is always completed); relative error
             of the scene (`Solution.error`); or N of each replicate, which replays a run bit for bit.
         replicates: independent randomised runs; from 2 on there are standard errors.
         seed: with the same inputs, the same bits.
@@ -59,7 +59,9 @@ def solve(
         scene = subdivide(scene)
     if not isinstance(scene, Patches):
         raise MethodError(f"solve takes a Scene or Patches, not {type(scene).__name__}; load a file with load_scene")
-    if resume is not None and (len(resume.patches) != len(scene)):
+    if resume is not None and not isinstance(resume, Solution):
+        raise MethodError(f"resume takes a Solution, not {type(resume).__name__}; load a file with load_solution")
+    if resume is not None and len(resume.patches) != len(scene):
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
     from .run import Run
 

@@ -5,7 +5,7 @@ import numpy as np
 from ..errors import MethodError
 from .device import frozen, upload
 
-SAME = ("scene", "choices", "seed", "replicates")
+SAME = ("scene", "cut", "choices", "seed", "replicates")
 
 
 def capture(engine) -> dict[str, np.ndarray]:

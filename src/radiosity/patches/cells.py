@@ -10,7 +10,7 @@ import numpy as np
 MOST = 16383  # columns or rows: they are packed into 14 bits
 
 
-def count(columns: np.ndarray, rows: np.ndarray, is_quad: np.ndarray) -> np.ndarray:
+def count(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Cells of a face."""
     return columns.astype(np.int64) * rows.astype(np.int64)  # for a triangle columns == rows == k
 

@@ -1,5 +1,6 @@
 """Patches: the radiating sides of congruent cells of the scene's faces."""
 
+import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -28,9 +29,14 @@ class Patches:
         return int(self.first[-1])
 
     @cached_property
+    def hash(self) -> str:
+        """SHA-256 of how the scene is cut."""
+        return hashlib.sha256(self.columns.tobytes() + self.rows.tobytes()).hexdigest()
+
+    @cached_property
     def cells_per_face(self) -> np.ndarray:
         """(n_faces,) int64, of one side."""
-        return cells.count(self.columns, self.rows, self.scene.is_quad)
+        return cells.count(self.columns, self.rows)
 
     @cached_property
     def first(self) -> np.ndarray:

@@ -26,6 +26,8 @@ def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = No
     Raises:
         SceneError: both or senseless values, or more patches than can be counted.
     """
+    if not isinstance(scene, Scene):
+        raise SceneError(f"subdivide takes a Scene, not {type(scene).__name__}; load a file with load_scene")
     if size is not None and cells is not None:
         raise SceneError("give size or cells, not both")
     if cells is not None:

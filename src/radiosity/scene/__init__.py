@@ -1,7 +1,9 @@
 """file -> Scene"""
 
+import os
 from pathlib import Path
 
+from ..errors import SceneError
 from .assemble import ReadOptions
 from .model import Back, Camera, Scene
 
@@ -22,6 +24,8 @@ def load_scene(name, *, max_reflectance: float = 0.95, strict: bool = False) -> 
     """
     from . import builtin, formats
 
+    if not isinstance(name, str | os.PathLike):
+        raise SceneError(f"load_scene takes a path or the name of a built-in scene, not {type(name).__name__}")
     options = ReadOptions(max_reflectance, strict)
     if str(name) in builtin.SCENES:
         return builtin.SCENES[str(name)]()

@@ -52,7 +52,7 @@ class Scene:
         patch_size: (n_surfaces,) float64 metres, NaN where the scene asks for none.
         reflectance_paint, emission_paint: variation within faces, or None.
         cameras: cameras found in the file.
-        unit, scale: the file's length unit and metres per file unit (already applied).
+        scale: metres per unit of length of the file (already applied).
         source: where the scene comes from, for messages.
     """
 
@@ -178,7 +178,7 @@ class Scene:
             digest.update(str((array.dtype.str, array.shape)).encode())
             digest.update(np.ascontiguousarray(array).tobytes())
         for paint in (self.reflectance_paint, self.emission_paint):
-            for array in () if paint is None else (*paint.images, paint.image, paint.uv, paint.color):
+            for array in () if paint is None else (*paint.images, paint.image, paint.uv, paint.color, np.array(paint.limit)):
                 digest.update(np.ascontiguousarray(array).tobytes())
         digest.update(repr((self.names, self.bands, self.photometric)).encode())
         return digest.hexdigest()

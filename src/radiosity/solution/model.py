@@ -24,7 +24,8 @@ class Solution:
         quanta: N of each replicate; ``solve(..., quanta=N)`` replays the run bit for bit.
         replicates: number of randomised runs.
         escaped: (n_bands,) float64, power that left the scene, W or lm.
-        books: one dict a band: emitted, rounding, absorbed, escaped, lost (W or lm), closes (bool), and the whole numbers.
+        books: one dict a band: emitted, rounding, absorbed, escaped, lost (W or lm); and closes (bool): their sums agree
+            to the last unit as whole numbers, before they became powers.
         status: "complete", "interrupted" or a reason for the early end.
         provenance: scene hash, method, seed, versions.
         state: integers of the run, to go on from.
@@ -97,9 +98,6 @@ class Solution:
 
     def export(self, path, **options) -> None:
         """Write .glb, .ply, .vtp, .csv, .png, .exr or .npz by the path's suffix; see `radiosity.image.export`."""
-        if Path(path).suffix.lower() == ".npz":
-            return self.save(path)
         from ..image import export
 
         export(self, path, **options)
-        return None

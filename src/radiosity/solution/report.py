@@ -11,7 +11,7 @@ def report(solution) -> str:
     """Lines, time, error, books and the surfaces with the largest radiant power."""
     scene, unit = solution.patches.scene, solution.patches.scene.power_unit
     rate = solution.rays / solution.seconds if solution.seconds > 0 else math.nan
-    error = "unknown (one replicate)" if solution.replicates < 2 else f"{solution.error:.2%} of the reflected light"
+    error = _error(solution)
     unvisited = int((solution.arrivals == 0).sum())
     lines = [
         f"scene     {scene.source}: {scene.n_faces} faces, {len(scene.names)} surfaces, {len(solution.patches)} patches",
@@ -31,6 +31,15 @@ def report(solution) -> str:
             f"+ escaped {book['escaped']:.4g} + lost on backs {book['lost']:.4g} ({closed})"
         )
     return "\n".join([*lines, "", *_surfaces(solution)])
+
+
+def _error(solution) -> str:
+    if solution.replicates < 2:
+        return "unknown (one replicate)"
+    if np.isnan(solution.error):
+        return "none: no line landed anywhere"
+    reflected = (solution.patches.reflectance * solution.irradiance).any()
+    return f"{solution.error:.2%} of the {'reflected light' if reflected else 'irradiance (nothing is reflected)'}"
 
 
 def _surfaces(solution) -> list[str]:

@@ -4,7 +4,7 @@ import numpy as np
 
 
 def surface_table(solution) -> list[dict]:
-    """A row for each surface, sums over bands where powers are meant per band: see keys.
+    """A row for each surface.
 
     Keys: surface, patches, area (m²), then for each band (suffix " [band]" where there are several): radiosity and
     irradiance (area means), emitted, received, reflected, absorbed, left (emitted + reflected: the power that leaves),

@@ -30,11 +30,11 @@ def _lines(engine) -> int:
 def walk(engine, chunk) -> None:
     """One lane for each line owed at the start."""
     types = engine.types
-    number, _ = chunk.read(types)
+    number, _, _ = chunk.read(types)
 
     def body(number, going):
         index = dr.scatter_inc(engine.fired, number, going) + 1
-        landed = engine.trace(number, index, 32)
+        landed = engine.trace(number, index, engine.record(number), 32)
         before = dr.scatter_inc(engine.arrivals, landed, going)
         going = going & (landed < engine.total)
         patch = landed - engine.replicate(landed) * engine.n_opaque
