@@ -7,6 +7,7 @@ import sys
 import time
 import warnings
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from rates import LINES, measure
@@ -65,30 +66,45 @@ def coherent() -> None:
 def whole_run(name: str, scene, **cut) -> None:
     """10^7 lines of a real run, replicates and bands as they are by default."""
     patches = rd.subdivide(scene, **cut)
-    for replicates in (1, 8) if not cut else (1,):
-        for again in (False, True):
+    for replicates in (1,) if cut else (1, 8):
+        for again in ("", ", again"):
             told = []
             begun = time.perf_counter()
             solution = rd.solve(
-                patches, rays=10_000_000, replicates=replicates, progress=lambda p, t=told: t.append((time.perf_counter(), p))
+                patches, rays=10_000_000, replicates=replicates, progress=lambda p, t=told: t.append((clock(), p))
             )
-            sweeps = told[-1][0] - next(t for t, p in told if p.message != "compiling") if len(told) > 1 else 0.0
-            before = next(t for t, p in told if p.message != "compiling") - begun
-            print(f"{name}, {len(patches):,} patches, {replicates} replicate(s){', again' if again else ''}: {solution.rays:,} lines; "
-                  f"first sweep after {before:.2f} s, all others {sweeps:.2f} s, in all {time.perf_counter() - begun:.2f} s", flush=True)  # fmt: skip
+            first = next(t for t, p in told if p.message == "tracing") - begun
+            print(
+                f"{name}, {len(patches):,} patches, {replicates} replicate(s){again}: {solution.rays:,} lines; "
+                f"end of the first sweep after {first:.2f} s, of the last after {told[-1][0] - begun:.2f} s, in all {time.perf_counter() - begun:.2f} s",
+                flush=True,
+            )
     print(f"  peak memory so far {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GiB")
+
+
+def remember(told: list, progress) -> None:
+    """A listener."""
+    told.append((time.perf_counter(), progress))
+
+
+START = """
+import time
+begun = time.perf_counter()
+import radiosity as rd
+
+def told(progress):
+    if progress.message == "tracing":
+        print(f"start-up to the end of the first sweep {time.perf_counter() - begun:.2f} s")
+        raise SystemExit
+
+rd.solve(rd.load_scene("room"), rays=10**7, progress=told)
+"""
 
 
 def start_up() -> None:
     """A new process, to the end of its first sweep."""
-    code = (
-        "import time; t = time.perf_counter(); import radiosity as rd\n"
-        "def told(p):\n"
-        "    if p.message == 'tracing': print(f'start-up to the end of the first sweep {time.perf_counter() - t:.2f} s'); raise SystemExit\n"
-        "rd.solve(rd.load_scene('room'), rays=10**7, progress=told)"
-    )
     begun = time.perf_counter()
-    print(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip(), end="; ")
+    print(subprocess.run([sys.executable, "-c", START], capture_output=True, text=True).stdout.strip(), end="; ")
     print(f"the whole process {time.perf_counter() - begun:.2f} s")
 
 

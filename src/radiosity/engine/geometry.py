@@ -1,21 +1,18 @@
-"""The scene as kernels see it: the ray caster's faces, and records to go from a patch to a line and from a hit to a patch.
+"""The scene as kernels see it: records to go from a patch to a line, and from a hit to a patch.
 
-The ray caster holds whole faces (a parallelogram as two triangles); a patch is found from a hit by arithmetic, so that
-finer patches neither grow the tree nor slow a line. Coordinates are moved to the scene's centre in double precision and
-scaled by a power of two before they become single, so that a scene's place and size do not matter.
+A patch is found from a hit by arithmetic, so that finer patches neither grow the tree nor slow a line.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from ..patches import cells
 from ..patches.model import Patches
 from ..scene.model import Back, Scene
-from .device import Device, entered, upload
+from .device import Device, upload
+from .tree import Tree, primitives, tree
 
 EPSILON = float(np.finfo(np.float32).eps)
 OFFSET = 8 * EPSILON  # of a face's largest coordinate: lines begin this far in front of it
@@ -27,61 +24,6 @@ BACK_BIT = 30  # of a hit record's flags: two bits, a `Back`
 NORMAL_BITS = 21  # of each component of a normal in a hit record: only the side that a line comes from is asked of it
 NORMAL_ONE = (1 << NORMAL_BITS - 1) - 1
 HIT_WORDS, FACE_WORDS = 4, 16
-
-_trees: "WeakKeyDictionary[Scene, dict[str, Tree]]" = WeakKeyDictionary()
-
-
-@dataclass(frozen=True, eq=False)
-class Tree:
-    """Embree's (or OptiX's) tree over the faces of a scene.
-
-    Attributes:
-        caster: the Mitsuba scene.
-        centre, scale: a point x in metres is (x - centre) * scale for the caster.
-        vertices: (n_vertices, 3) float32, as the caster has them.
-    """
-
-    caster: Any
-    centre: np.ndarray
-    scale: float
-    vertices: np.ndarray
-
-
-def tree(scene: Scene, device: Device) -> Tree:
-    """The scene's tree on a device; built once."""
-    known = _trees.setdefault(scene, {})
-    if device.name not in known:
-        known[device.name] = _build(scene, device)
-    return known[device.name]
-
-
-def _build(scene: Scene, device: Device) -> Tree:
-    low, high = scene.bounds
-    centre = (low + high) / 2
-    scale = 2.0 ** -np.ceil(np.log2(max((high - low).max() / 2, 1e-300)))
-    vertices = ((scene.vertices - centre) * scale).astype(np.float32)
-    triangles, _ = primitives(scene)
-    with entered(device) as mi:
-        mesh = mi.Mesh("scene", len(vertices), len(triangles))
-        parameters = mi.traverse(mesh)
-        parameters["vertex_positions"] = upload(device.types.Float, vertices)
-        parameters["faces"] = upload(device.types.UInt32, triangles.astype(np.uint32))
-        parameters.update()
-        caster = mi.load_dict({"type": "scene", "embree_use_robust_intersections": True, "mesh": mesh})
-    return Tree(caster, centre, scale, vertices)
-
-
-def primitives(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Triangles of the caster, (n, 3), and the face of each. A parallelogram a b c d gives a b d and c d b, so that
-    coordinates (u, v) in the second half are (1 - u, 1 - v) in the face."""
-    quad = scene.is_quad
-    face = np.repeat(np.arange(scene.n_faces), 1 + quad)
-    second = np.concatenate([[False], face[1:] == face[:-1]])
-    corners = scene.faces[face]
-    triangle = corners[:, :3].copy()
-    triangle[quad[face]] = corners[quad[face]][:, [0, 1, 3]]
-    triangle[second] = corners[second][:, [2, 3, 1]]
-    return triangle, face
 
 
 @dataclass(frozen=True, eq=False)

@@ -161,7 +161,8 @@ class Run:
         mean, error = snapshot.irradiance()
         arrivals = snapshot.state["arrivals"].sum(axis=0, dtype=np.int64)
         return Solution(
-            self.patches, mean, error, arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before, snapshot.quanta, self.replicates,
+            self.patches, mean, error, arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
+            snapshot.quanta, self.replicates,
             snapshot.books(), status, self._provenance(), pending or snapshot.state,
         )  # fmt: skip
 
@@ -169,6 +170,7 @@ class Run:
         return {
             "scene": self.patches.scene.hash, "source": self.patches.scene.source, "method": str(self.method),
             "choices": asdict(self.method), "seed": self.seed, "replicates": self.replicates, "device": self.device.name,
-            "patches": len(self.patches), "cut": self.patches.hash, "budget": {k: v for k, v in vars(self.budget).items() if v is not None},
+            "patches": len(self.patches), "cut": self.patches.hash,
+            "budget": {k: v for k, v in vars(self.budget).items() if v is not None},
             "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }  # fmt: skip

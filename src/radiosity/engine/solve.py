@@ -34,8 +34,9 @@ def solve(
         scene: a `Scene` (cut into about 20 000 patches) or the `Patches` of one.
         method: a preset's name or a `Method`; ``equation``, ``lines``, ``order``, ``numbers`` and ``coherent``
             replace its choices.
-        rays, seconds, error, quanta: exactly one: lines traced in all (replicates together); wall time (one stage is always completed); relative error
-            of the scene (`Solution.error`); or N of each replicate, which replays a run bit for bit.
+        rays, seconds, error, quanta: exactly one: lines traced in all (replicates together); wall time (the first stage is
+            completed whatever it takes); relative error of the scene (`Solution.error`); or N of each replicate, which
+            replays a run bit for bit.
         replicates: independent randomised runs; from 2 on there are standard errors.
         seed: with the same inputs, the same bits.
         device: "auto", "cpu" or "cuda".

@@ -1,7 +1,6 @@
 """A scene: flat diffuse faces with reflectance and self-emitted radiosity, in metres and W/m² (or lm/m²)."""
 
 import hashlib
-import warnings
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
@@ -9,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import RadiosityWarning, SceneError, shown
+from .camera import Camera
 from .paint import Paint
 
 
@@ -19,18 +18,6 @@ class Back(IntEnum):
     ABSORBS = 0
     RADIATES = 1
     PASSES = 2  # invisible from behind: lines go on
-
-
-@dataclass(frozen=True)
-class Camera:
-    """A pinhole camera: ``origin``, ``target`` in metres, ``up``; ``fov`` is the vertical field of view, degrees."""
-
-    origin: tuple[float, float, float]
-    target: tuple[float, float, float]
-    up: tuple[float, float, float] = (0.0, 0.0, 1.0)
-    fov: float = 40.0
-    width: int = 800
-    height: int = 600
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,29 +187,6 @@ class Scene:
         Raises:
             SceneError: no face is left.
         """
-        if self.n_faces == 0:
-            raise SceneError(f"{self.source}: the scene has no faces; add geometry")
-        _, first, second = self.frames
-        longest = np.max([np.linalg.norm(e, axis=1) for e in (first, second, second - first)], axis=0)
-        height = np.linalg.norm(np.cross(first, second), axis=1) / np.where(longest > 0, longest, 1)
-        used = self.vertices[np.unique(self.faces[self.faces >= 0])]
-        centre = (used.min(axis=0) + used.max(axis=0)) / 2
-        reach = np.abs(self.vertices[self.faces[:, :3]] - centre).max(axis=(1, 2))
-        bad = height <= 4 * np.finfo(np.float32).eps * reach
-        if not bad.any():
-            return self
-        counts = np.bincount(self.surface[bad], minlength=len(self.names))
-        where = shown([self.names[s] for s in np.flatnonzero(counts)])
-        total = int(bad.sum())
-        if bad.all():
-            raise SceneError(
-                f"{self.source}: no face is left: all {total} have no area (surfaces {where}); check the unit and the file"
-            )
-        lights = int((self.emission[bad] > 0).any(axis=1).sum())
-        warnings.warn(
-            f"{self.source}: {total} face{'s' if total > 1 else ''} without area left out (first: face "
-            f"{int(np.flatnonzero(bad)[0])}; surfaces {where}{f'; {lights} of them should emit light' if lights else ''})",
-            RadiosityWarning,
-            stacklevel=2,
-        )
-        return self.take(~bad)
+        from .degenerate import leave_out
+
+        return leave_out(self)

@@ -1,0 +1,15 @@
+"""A camera."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera: ``origin``, ``target`` in metres, ``up``; ``fov`` is the vertical field of view, degrees."""
+
+    origin: tuple[float, float, float]
+    target: tuple[float, float, float]
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    fov: float = 40.0
+    width: int = 800
+    height: int = 600

@@ -1,0 +1,44 @@
+"""Faces without area."""
+
+import warnings
+
+import numpy as np
+
+from ..errors import RadiosityWarning, SceneError, shown
+from .model import Scene
+
+RESOLUTION = 4 * float(np.finfo(np.float32).eps)  # of the distance from the scene's centre: what the ray caster can tell apart
+
+
+def leave_out(scene: Scene) -> Scene:
+    """See `Scene.without_degenerate_faces`."""
+    if scene.n_faces == 0:
+        raise SceneError(f"{scene.source}: the scene has no faces; add geometry")
+    bad = without_area(scene)
+    if not bad.any():
+        return scene
+    counts = np.bincount(scene.surface[bad], minlength=len(scene.names))
+    where = shown([scene.names[s] for s in np.flatnonzero(counts)])
+    total = int(bad.sum())
+    if bad.all():
+        raise SceneError(
+            f"{scene.source}: no face is left: all {total} have no area (surfaces {where}); check the unit and the file"
+        )
+    lights = int((scene.emission[bad] > 0).any(axis=1).sum())
+    warnings.warn(
+        f"{scene.source}: {total} face{'s' if total > 1 else ''} without area left out (first: face "
+        f"{int(np.flatnonzero(bad)[0])}; surfaces {where}{f'; {lights} of them should emit light' if lights else ''})",
+        RadiosityWarning,
+        stacklevel=3,
+    )
+    return scene.take(~bad)
+
+
+def without_area(scene: Scene) -> np.ndarray:
+    """(n_faces,) bool: faces whose height over their longest edge is below the resolution where they lie."""
+    _, first, second = scene.frames
+    longest = np.max([np.linalg.norm(e, axis=1) for e in (first, second, second - first)], axis=0)
+    height = np.linalg.norm(np.cross(first, second), axis=1) / np.where(longest > 0, longest, 1)
+    centre = scene.bounds.mean(axis=0)
+    reach = np.abs(scene.vertices[scene.faces[:, :3]] - centre).max(axis=(1, 2))
+    return height <= RESOLUTION * reach
