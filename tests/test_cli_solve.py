@@ -7,12 +7,16 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity import llvm
 from radiosity.cli import main, progress
+from radiosity.cli.options import DeviceName
+from radiosity.engine.device import VARIANTS
 from radiosity.engine.progress import Progress
 from radiosity.image import tables
 
@@ -66,6 +70,53 @@ def test_options_reach_the_library(capsys, tmp_path):
     assert (found.radiosity == expected.radiosity).all()
     assert found.provenance["choices"]["numbers"] == "random"
     assert found.provenance["choices"]["order"] == "depth-first"
+
+
+def test_numbers_of_replicates_and_seeds_are_written_as_rays_are(capsys, tmp_path):
+    few = ("--cells", "1", "--quanta", "10", "-o", tmp_path / "room.npz")
+    assert run(capsys, "solve", "room", *few, "--replicates", "2e1", "--seed", "9007199254740993")[0] == 0
+    found = rd.load_solution(tmp_path / "room.npz")
+    assert found.replicates == 20
+    assert found.provenance["seed"] == 9007199254740993  # no double
+    assert run(capsys, "solve", "room", *few, "--seed", "1k")[0] == 0
+    assert rd.load_solution(tmp_path / "room.npz").provenance["seed"] == 1000
+
+
+def test_the_command_line_knows_the_devices():
+    assert get_args(DeviceName) == ("auto", *VARIANTS)
+
+
+def test_resume(capsys, tmp_path):
+    first, then = tmp_path / "a.npz", tmp_path / "b.npz"
+    assert run(capsys, "solve", "room", "--patch-size", "50cm", "--rays", "300k", "-o", first)[0] == 0
+    status, out, err = run(capsys, "solve", "room", "--resume", first, "--rays", "1M", "-o", then)
+    assert (status, err) == (0, "")
+    assert "status    complete" in out
+    before, after = rd.load_solution(first), rd.load_solution(then)
+    assert before.rays < after.rays
+    assert after.rays == pytest.approx(1e6, rel=0.1)
+    assert len(after.patches) == len(before.patches)
+    whole = rd.solve(rd.subdivide(rd.load_scene("room"), size=0.5), quanta=after.quanta)
+    assert (after.arrivals == whole.arrivals).all()
+    assert (after.radiosity == whole.radiosity).all()
+
+
+@pytest.mark.parametrize("options", [("labyrinth",), ("room", "--cells", "1"), ("room", "--seed", "1")], ids=" ".join)
+def test_resume_refuses_another_run(capsys, tmp_path, options):
+    first = tmp_path / "a.npz"
+    assert run(capsys, "solve", "room", *SMALL, "-o", first)[0] == 0
+    status, out, err = run(capsys, "solve", *options, "--replicates", "2", "--resume", first, "--rays", "40k")
+    assert (status, out) == (2, "")
+    assert err.startswith("radiosity: error: cannot go on from ")
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("content", [b"no archive", b""], ids=["text", "empty"])
+def test_what_is_no_solution_is_said_in_our_words(capsys, tmp_path, content):
+    (tmp_path / "a.npz").write_bytes(content)
+    status, _, err = run(capsys, "render", tmp_path / "a.npz", "-o", tmp_path / "a.png")
+    assert status == 2
+    assert err == f"radiosity: error: {tmp_path / 'a.npz'}: is no solution of this program, or damaged; solve the scene again\n"
 
 
 def test_one_colour_bound_reaches_the_reader(capsys, tmp_path):
@@ -166,6 +217,10 @@ def test_render(capsys, solved, tmp_path):
         (("--fov", "200"), "between 0 and 180"),
         (("--quantity", "sound"), "quantity 'sound' does not exist"),
         (("--band", "violet"), "violet"),
+        (("--width", "0"), "width is 0; it must be a whole number of 1 or more"),
+        (("--height", "0"), "height is 0; it must be a whole number of 1 or more"),
+        (("--width", "-3"), "width is -3"),
+        (("--exposure", "inf"), "'inf' is no exposure"),
     ],
 )
 def test_render_refuses(capsys, solved, tmp_path, options, text):
@@ -208,6 +263,8 @@ def test_doctor_finds_this_machine_well(capsys):
     assert states["solver"] == "ok"
     assert states["LLVM"] == "ok"
     assert "problem" not in states.values()
+    (library,) = [line for line in out.splitlines() if line.split()[1] == "LLVM"]
+    assert library.endswith(f", {llvm.find().origin})")
 
 
 def test_doctor_names_a_bad_llvm(tmp_path):

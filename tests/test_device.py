@@ -49,6 +49,31 @@ def test_the_users_own_library_wins():
     assert llvm.version(Path(chosen.path)) >= llvm.OLDEST
 
 
+def test_the_users_setting_is_told_from_our_own(tmp_path):
+    """The package sets the variable itself as it is imported, and a child process inherits that."""
+    inherited = {llvm.VARIABLE: llvm.POINTED} if llvm.POINTED else {}
+    told = (
+        "import radiosity\nfrom radiosity import llvm\nprint(llvm.prepare().origin)\nimport drjit\nprint(llvm.prepare().origin)"
+    )
+    origins = set(python(told, **inherited).stdout.split())
+    assert len(origins) == 1
+    assert origins == ({llvm.find().origin} if llvm.POINTED else {llvm.VARIABLE})
+    found = llvm.find().path
+    (tmp_path / "mine").symlink_to(found.parent)
+    assert python(told, **{llvm.VARIABLE: str(tmp_path / "mine" / found.name)}).stdout.split() == [llvm.VARIABLE] * 2
+
+
+def test_a_broken_library_that_we_chose_is_not_called_a_setting(tmp_path, monkeypatch):
+    broken = tmp_path / "libLLVM.so.99"
+    broken.write_bytes(b"not a library")
+    monkeypatch.setattr(llvm, "_folders", lambda: [(tmp_path, "system")])
+    monkeypatch.setattr(llvm, "_pattern", lambda: "libLLVM*")
+    monkeypatch.setattr(llvm, "POINTED", str(broken))
+    monkeypatch.setenv(llvm.VARIABLE, str(broken))
+    with pytest.raises(rd.DeviceError, match=r"^no usable libLLVM found"):
+        llvm.find()
+
+
 def test_uploads_are_copies_and_padded():
     types = choose("cpu").types
     for length in (1, PACKET - 1, PACKET, PACKET + 1, 4096):

@@ -8,15 +8,30 @@ solution = solve(patches, rays=10_000_000)   # radiosity and its standard error,
 solution.export("room.glb")
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from . import llvm
-from .engine.solve import solve
 from .errors import DeviceError, MethodError, OutputError, RadiosityError, RadiosityWarning, SceneError
-from .method import PRESETS, Method
-from .patches import Patches, subdivide
-from .scene import Back, Camera, Scene, load_scene
-from .solution import Solution, load_solution
+
+if TYPE_CHECKING:
+    from .engine.solve import solve
+    from .method import PRESETS, Method
+    from .patches import Patches, subdivide
+    from .scene import Back, Camera, Scene, load_scene
+    from .solution import Solution, load_solution
 
 llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
+
+# Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
+_HOMES = {
+    "engine.solve": ("solve",),
+    "method": ("PRESETS", "Method"),
+    "patches": ("Patches", "subdivide"),
+    "scene": ("Back", "Camera", "Scene", "load_scene"),
+    "solution": ("Solution", "load_solution"),
+}
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
     "PRESETS",
@@ -37,3 +52,16 @@ __all__ = [
     "solve",
     "subdivide",
 ]
+
+
+def __getattr__(name: str):
+    if name in _HOME:
+        value = globals()[name] = getattr(import_module(f".{_HOME[name]}", __name__), name)
+        return value
+    if name in ("engine", *_HOMES):
+        return import_module(f".{name}", __name__)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -6,9 +6,18 @@ def main(arguments: list[str] | None = None) -> int:
 
     0: done; 1: it could not be done, or `check` and `doctor` found something serious; 2: the input is wrong;
     130: interrupted, with everything written that was there.
+
+    Without ``arguments`` it is the program itself: it takes those of the command line, and Ctrl-C is of no effect after it.
     """
     import sys
 
-    from .app import run
+    try:
+        from . import interrupts
 
-    return run(sys.argv[1:] if arguments is None else list(arguments))
+        with interrupts.heard(last=arguments is None):
+            from .app import run
+
+            return run(sys.argv[1:] if arguments is None else list(arguments))
+    except KeyboardInterrupt:  # outside of what `run` looks after
+        print("radiosity: interrupted", file=sys.stderr)
+        return 130

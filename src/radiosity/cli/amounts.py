@@ -13,8 +13,8 @@ def _split(text: str) -> tuple[float, str] | None:
     return (float(match.group(1)), match.group(2).lower()) if match else None
 
 
-def count(text: str) -> int:
-    """``10M``, ``500k``, ``1e7``, ``10_000_000``: a whole number of 1 or more.
+def count(text: str, least: int = 1) -> int:
+    """``10M``, ``500k``, ``1e7``, ``10_000_000``: a whole number of ``least`` (0 or 1) or more.
 
     Raises:
         ValueError: it is none; the message says what to write.
@@ -23,9 +23,10 @@ def count(text: str) -> int:
     if parts is None or parts[1] not in COUNT:
         raise ValueError(f"'{text}' is no count; write a whole number such as 10M, 500k or 1e7")
     value = parts[0] * COUNT[parts[1]]
-    if value < 1 or value > LARGEST or abs(value - round(value)) > 1e-9 * value:
-        raise ValueError(f"'{text}' must be a whole number from 1 to {LARGEST:.1e}, such as 10M, 500k or 1e7")
-    return round(value)
+    if value < least or value > LARGEST or abs(value - round(value)) > 1e-9 * value:
+        raise ValueError(f"'{text}' must be a whole number from {least} to {LARGEST:.1e}, such as 10M, 500k or 1e7")
+    plain = text.strip().replace("_", "")
+    return int(plain) if plain.isdecimal() else round(value)  # digits alone are taken to the last one
 
 
 def seconds(text: str) -> float:
@@ -72,6 +73,18 @@ def length(text: str) -> float:
     if not 0 < value < math.inf:
         raise ValueError(f"'{text}' must be a finite length above zero, in metres")
     return value
+
+
+def stops(text: str) -> float:
+    """``1``, ``-0.5``: a finite number of stops of exposure.
+
+    Raises:
+        ValueError: it is none; the message says what to write.
+    """
+    parts = _split(text)
+    if parts is None or parts[1] or not abs(parts[0]) <= 100:
+        raise ValueError(f"'{text}' is no exposure; write a number of stops between -100 and 100, such as 1 or -0.5")
+    return parts[0]
 
 
 def numbers(text: str, many: int) -> tuple[float, ...]:

@@ -9,6 +9,7 @@ from io import TextIOWrapper
 from cyclopts import App, CoercionError, CycloptsError
 
 from ..errors import DeviceError, RadiosityError, RadiosityWarning
+from . import interrupts
 from .check import check
 from .doctor import doctor
 from .render import render
@@ -43,7 +44,7 @@ def run(arguments: list[str]) -> int:
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without m² gets m?, not an error after a long run
     try:
-        with tidy_warnings(debug):
+        with tidy_warnings(debug), interrupts.kept():
             status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
         return status if isinstance(status, int) else 0

@@ -1,12 +1,12 @@
 """``radiosity check``"""
 
-from .options import Flag
+from .options import DeviceName, Flag
 
 COLORS = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 MOST_ROWS = 40
 
 
-def check(scene: str, /, *, max_reflectance: float = 0.95, strict: Flag = False, device: str = "auto") -> int:
+def check(scene: str, /, *, max_reflectance: float = 0.95, strict: Flag = False, device: DeviceName = "auto") -> int:
     """Say what a scene holds and what in it is probably not meant.
 
     Parameters

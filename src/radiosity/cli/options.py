@@ -1,7 +1,7 @@
 """Option types that several commands share."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -25,11 +25,21 @@ def _pair(text: str) -> str:
     return text
 
 
+def _seed(text: str) -> int:
+    return amounts.count(text, least=0)
+
+
 Count = Annotated[int | None, Parameter(converter=_by(amounts.count))]
+Copies = Annotated[int, Parameter(converter=_by(amounts.count))]
+Seed = Annotated[int, Parameter(converter=_by(_seed))]
+Stops = Annotated[float | None, Parameter(converter=_by(amounts.stops))]
+DeviceName = Literal["auto", "cpu", "cuda"]
 Seconds = Annotated[float | None, Parameter(converter=_by(amounts.seconds))]
 Share = Annotated[float | None, Parameter(converter=_by(amounts.share))]
 Length = Annotated[float | None, Parameter(converter=_by(amounts.length))]
 Point = Annotated[str | None, Parameter(converter=_by(_point))]
 Pair = Annotated[str | None, Parameter(converter=_by(_pair))]
 Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
-Outputs = Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], consume_multiple=True, negative=(), show_default=False)]
+Outputs = Annotated[
+    tuple[Path, ...], Parameter(name=["--output", "-o"], consume_multiple=(1, None), negative=(), show_default=False)
+]

@@ -7,7 +7,7 @@ from cyclopts import Parameter
 
 from ..errors import OutputError, SceneError
 from . import amounts, outputs
-from .options import Flag, Outputs, Pair, Point
+from .options import Flag, Outputs, Pair, Point, Stops
 
 
 def render(
@@ -22,14 +22,14 @@ def render(
     fov: float | None = None,
     width: int | None = None,
     height: int | None = None,
-    exposure: float | None = None,
+    exposure: Stops = None,
     smooth: bool = True,
     quantity: str = "radiosity",
     band: str | None = None,
     false_color: Flag = False,
     limits: Annotated[Pair, Parameter(name="--range")] = None,
     log: Flag = False,
-    color_map: str = "viridis",
+    color_map: str | None = None,
 ) -> None:
     """Render a saved solution to pictures.
 
@@ -64,11 +64,11 @@ def render(
     false_color
         Colours for values, with a legend in physical units.
     limits
-        Lowest and highest value of the legend, such as 0,500.
+        Of false colours: lowest and highest value of the legend, such as 0,500.
     log
-        A logarithmic legend.
+        Of false colours: a logarithmic legend.
     color_map
-        One of matplotlib's, for false colours.
+        Of false colours: one of matplotlib's. Default: viridis.
     """
     outputs.check(output)
     for path in output:
@@ -76,6 +76,10 @@ def render(
             raise OutputError(f"{path}: pictures are .png or .exr; meshes and tables come from `radiosity solve`")
     if not output:
         raise OutputError("no output; name a picture with -o, such as -o view.png")
+    given = {"--range": limits is not None, "--log": log, "--color-map": color_map is not None}
+    idle = [name for name, there in given.items() if there]
+    if idle and not false_color:
+        raise OutputError(f"{' and '.join(idle)}: for false colours only; add --false-color")
     low_high = None if limits is None else amounts.numbers(limits, 2)
     interval = None if low_high is None else (low_high[0], low_high[1])
 
@@ -88,7 +92,7 @@ def render(
     for path in output:
         draw(
             loaded, path, camera=view, width=width, height=height, exposure=exposure, smooth=smooth, quantity=quantity,
-            band=band, false_color=false_color, range=interval, log=log, color_map=color_map,
+            band=band, false_color=false_color, range=interval, log=log, color_map=color_map or "viridis",
         )  # fmt: skip
         print(f"wrote {path}")
 

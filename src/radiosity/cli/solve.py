@@ -1,8 +1,10 @@
 """``radiosity solve``"""
 
+from pathlib import Path
+
 from ..errors import MethodError
 from . import outputs
-from .options import Count, Flag, Length, Outputs, Seconds, Share
+from .options import Copies, Count, DeviceName, Flag, Length, Outputs, Seconds, Seed, Share, Stops
 
 DEFAULT_RAYS = 10_000_000
 INTERRUPTED = 130
@@ -24,13 +26,14 @@ def solve(
     numbers: str | None = None,
     patch_size: Length = None,
     cells: Count = None,
-    replicates: int = 8,
-    seed: int = 0,
-    device: str = "auto",
+    replicates: Copies = 8,
+    seed: Seed = 0,
+    device: DeviceName = "auto",
+    resume: Path | None = None,
     coherent: Flag = False,
     max_reflectance: float = 0.95,
     strict: Flag = False,
-    exposure: float | None = None,
+    exposure: Stops = None,
 ) -> int:
     """Solve a scene, print a report and write the outputs.
 
@@ -68,6 +71,9 @@ def solve(
         Of all randomisation; equal seeds give equal results.
     device
         auto, cpu or cuda.
+    resume
+        Go on from this .npz of the same scene, method, seed and replicates, also an interrupted one. Its lines count.
+        Default of the patches: as it has them.
     coherent
         Trace packets of like lines: faster, but not equal bit for bit where a line meets two faces in one point.
     max_reflectance
@@ -88,12 +94,16 @@ def solve(
     from .progress import bar
 
     loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict)
-    patches = rd.subdivide(loaded, size=patch_size, cells=cells)
+    before = None if resume is None else rd.load_solution(resume)
+    if before is not None and patch_size is None and cells is None and before.patches.scene.hash == loaded.hash:
+        patches = before.patches
+    else:
+        patches = rd.subdivide(loaded, size=patch_size, cells=cells)
     with bar() as progress:
         solution = rd.solve(
             patches, method, rays=rays if given else DEFAULT_RAYS, seconds=seconds, error=error, quanta=quanta,
             equation=equation, lines=lines, order=order, numbers=numbers, replicates=replicates, seed=seed, device=device,
-            coherent=coherent or None, progress=progress,
+            coherent=coherent or None, progress=progress, resume=before,
         )  # fmt: skip
     print(solution.report())
     outputs.write(solution, output, exposure=exposure)

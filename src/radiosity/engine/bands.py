@@ -85,18 +85,19 @@ class BandTally:
         """Before a sweep: what the lines of the patches ``numbers[rows]`` carry; ``numbers`` are all that received since the
         last one."""
         types = self.engine.types
-        weights, received, arrivals = self._weights(numbers)
+        weights = self._weights(numbers)
         for g in range(self.n):
-            dr.scatter(self.before, received[g], numbers * self.n + g)
-        dr.scatter(self.arrivals_before, arrivals, numbers)
+            dr.scatter(self.before, dr.gather(types.UInt64, self.received, numbers * self.n + g), numbers * self.n + g)
+        dr.scatter(self.arrivals_before, dr.gather(types.UInt32, self.engine.arrivals, numbers), numbers)
+        dr.eval(self.before, self.arrivals_before)
         rows = paired(types, rows)
         self.weights = [dr.gather(types.UInt32, weight, rows) for weight in weights]
-        dr.eval(self.before, self.arrivals_before, self.weights)
+        dr.eval(self.weights)
         self.quanta_before = self.engine.quanta
 
     def _weights(self, numbers):
-        """Weights of lines, power received and arrivals of patch numbers, evaluated: no expression may still wait to read
-        the arrays that are written next, or Dr.Jit copies them whole."""
+        """What lines of patch numbers carry, evaluated: no expression may still wait to read the arrays that are written
+        next, or Dr.Jit copies them whole."""
         engine, types = self.engine, self.engine.types
         wide = types.Float64
         patch = numbers - engine.replicate(numbers) * engine.n_opaque
@@ -104,16 +105,15 @@ class BandTally:
         arrivals = dr.gather(types.UInt32, engine.arrivals, numbers)
         since = arrivals - dr.gather(types.UInt32, self.arrivals_before, numbers)
         owed = dr.fma(dr.gather(wide, self.share, patch), new, self._fraction(engine.rho, patch) * wide(since))
-        weights, totals = [], []
+        weights = []
         for g, (share, rho) in enumerate(zip(self.shares, self.rhos, strict=True)):
             received = dr.gather(types.UInt64, self.received, numbers * self.n + g)
             since = received - dr.gather(types.UInt64, self.before, numbers * self.n + g)
             power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, self._fraction(rho, patch) * wide(since))
             carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
             weights.append(types.UInt32(dr.floor(carried + 0.5)))
-            totals.append(received)
-        dr.eval(weights, totals, arrivals)
-        return weights, totals, arrivals
+        dr.eval(weights)
+        return weights
 
     def _fraction(self, rho, patch):
         types = self.engine.types

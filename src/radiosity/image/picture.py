@@ -67,11 +67,16 @@ def take(solution, shown: Quantity, camera: Camera, *, smooth=True, samples=4, h
 def choose_camera(solution, camera: Camera | int | None, width, height, hits) -> Camera:
     """The camera asked for (a `Camera`, or the number of one of the scene's), the scene's first, or a fitted one."""
     cameras = solution.patches.scene.cameras
+    for name, value in (("width", width), ("height", height)):
+        if value is not None and not (np.isfinite(value) and int(value) == value >= 1):
+            raise OutputError(f"{name} is {value}; it must be a whole number of 1 or more, in pixels")
     if isinstance(camera, Camera):
         chosen = camera
     elif camera is None and not cameras:
         light = tone.luminance(np.asarray(solution.radiosity, np.float64))
-        return fitted(solution.patches, light, hits, width=width or 800, height=height or 600)
+        return fitted(
+            solution.patches, light, hits, width=800 if width is None else width, height=600 if height is None else height
+        )
     else:
         number = 0 if camera is None else camera
         if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(cameras):
@@ -81,7 +86,7 @@ def choose_camera(solution, camera: Camera | int | None, width, height, hits) ->
         width = max(1, round(height * chosen.width / chosen.height))
     if height is None and width is not None:
         height = max(1, round(width * chosen.height / chosen.width))
-    return replace(chosen, width=width or chosen.width, height=height or chosen.height)
+    return replace(chosen, width=chosen.width if width is None else width, height=chosen.height if height is None else height)
 
 
 def first_hits(scene, origins, directions):

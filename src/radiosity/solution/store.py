@@ -94,7 +94,7 @@ def load_solution(path) -> Solution:
     except (KeyError, ValueError, TypeError, IndexError, EOFError, zipfile.BadZipFile) as error:
         if isinstance(error, SceneError):
             raise
-        raise SceneError(f"{path}: is no solution of this program, or damaged ({error})") from None
+        raise SceneError(f"{path}: is no solution of this program, or damaged; solve the scene again") from None
 
 
 def _restore(arrays: dict, meta: dict) -> Solution:

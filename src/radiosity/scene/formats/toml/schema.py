@@ -90,6 +90,12 @@ class SceneFile(_Table):
 
 TABLES = {"surface": Surface, "camera": View, "geometry": Geometry}
 
+ARRAYS = {
+    "geometry": 'write a list of files, such as geometry = ["room.obj"], or [[geometry]] with two brackets for each',
+    "surface": "write [[surface]] with two brackets, one for each entry",
+    "camera": "write [[camera]] with two brackets, one for each entry",
+}  # what to write where something else than a list is given
+
 
 def checked(values: dict, source: str) -> SceneFile:
     """The file's values.
@@ -115,5 +121,14 @@ def _sentence(fault, values: dict) -> str:
         return f"{where}: unknown key; known are {shown(table.model_fields, 20)}"
     if fault["type"] == "missing":
         return f"{where} is missing"
+    if fault["type"] == "list_type" and str(path[-1]) in ARRAYS:
+        return f"{where}: {ARRAYS[str(path[-1])]} (it is {_kind(fault['input'])})"
+    if fault["type"] in ("dict_type", "model_type"):
+        key = "file" if path[0] == "geometry" else "name"
+        return f'{where}: write a table, such as {{ {key} = "..." }} (it is {fault["input"]!r})'
     text = fault["msg"].removeprefix("Value error, ").removesuffix(" or instance of Geometry")
     return f"{where}: {text}" + (f" (it is {fault['input']!r})" if not isinstance(fault["input"], dict) else "")
+
+
+def _kind(value) -> str:
+    return "one table; with two brackets it is one of a list" if isinstance(value, dict) else repr(value)
