@@ -10,7 +10,8 @@ from .base import AbstractNumbers
 BASES = (2, 3, 5, 7)
 LOW_DIGITS = {3: 13, 5: 9, 7: 7}  # one pass: below base**digits < 2^22 quotients in single precision are exact
 HIGH_DIGITS = {3: 8, 5: 5, 7: 5}  # a second pass for the rest of 32 bits
-STEPS = (16, 19, 32)  # 2^19 is less than the smallest base**digits of one pass
+CHAIN = 3  # digits
+STEPS = (14, 16, 19, 32)  # 2^19 is less than the smallest base**digits of one pass
 
 
 @dataclass(frozen=True)
@@ -56,24 +57,25 @@ def digits_of(base: int, bits: int) -> int:
 
 
 def _mirror(number, base: int, digits: int, places: int):
-    """The lowest ``digits`` digits of ``number`` (which has no more), mirrored within ``places`` digits.
-
-    The two halves of the digits are taken side by side: a chain of dependent instructions half as long.
-    """
-    low = (digits + 1) // 2
-    quotient = _quotient(number, base**low)
-    rest = dr.fma(quotient, -float(base**low), number)
-    mirrored = dr.fma(_mirror_chain(rest, base, low), float(base ** (digits - low)), _mirror_chain(quotient, base, digits - low))
-    return mirrored * float(base ** (places - digits))
+    """The lowest ``digits`` digits of ``number`` (which has no more), mirrored within ``places`` digits."""
+    return _mirror_chains(number, base, digits) * float(base ** (places - digits))
 
 
-def _mirror_chain(rest, base: int, digits: int):
-    mirrored = type(rest)(0)
-    for _ in range(digits):
-        quotient = _quotient(rest, base)
-        mirrored = dr.fma(mirrored, base, dr.fma(quotient, -base, rest))
-        rest = quotient
-    return mirrored
+def _mirror_chains(number, base: int, digits: int):
+    """Mirrored digits; halves are taken side by side until a chain of dependent instructions is short."""
+    if digits > CHAIN:
+        low = (digits + 1) // 2
+        quotient = _quotient(number, base**low)
+        rest = dr.fma(quotient, -float(base**low), number)
+        return dr.fma(
+            _mirror_chains(rest, base, low), float(base ** (digits - low)), _mirror_chains(quotient, base, digits - low)
+        )
+    mirrored = type(number)(0)
+    for _ in range(digits - 1):
+        quotient = _quotient(number, base)
+        mirrored = dr.fma(mirrored, base, dr.fma(quotient, -base, number))
+        number = quotient
+    return dr.fma(mirrored, base, number)
 
 
 def _quotient(number, divisor: int):
