@@ -4,7 +4,8 @@ import math
 import re
 
 COUNT = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9, "b": 10**9}
-TIME = {"": 1, "s": 1, "min": 60, "m": 60, "h": 3600}
+TIME = {"": 1.0, "s": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0}
+LENGTH = {"": 1.0, "m": 1.0, "cm": 0.01, "mm": 0.001}
 LARGEST = 2**62
 
 
@@ -35,13 +36,8 @@ def seconds(text: str) -> float:
     Raises:
         ValueError: it is none; the message says what to write.
     """
-    parts = _split(text)
-    if parts is None or parts[1] not in TIME:
-        raise ValueError(f"'{text}' is no duration; write seconds, or such as 90s, 5min or 1h")
-    value = parts[0] * TIME[parts[1]]
-    if not 0 < value < math.inf:
-        raise ValueError(f"'{text}' must be a finite time above zero, such as 60, 5min or 1h")
-    return value
+    form = f"'{text}' is no duration; write seconds, or such as 90s, 5min or 1h"
+    return _measured(text, TIME, form, f"'{text}' must be a finite time above zero, such as 60, 5min or 1h")
 
 
 def share(text: str) -> float:
@@ -65,13 +61,18 @@ def length(text: str) -> float:
     Raises:
         ValueError: it is none; the message says what to write.
     """
-    units = {"": 1.0, "m": 1.0, "cm": 0.01, "mm": 0.001}
+    form = f"'{text}' is no length; write metres such as 0.1, or 10cm"
+    return _measured(text, LENGTH, form, f"'{text}' must be a finite length above zero, in metres")
+
+
+def _measured(text: str, units: dict[str, float], form: str, bound: str) -> float:
+    """A finite amount above zero in one of the units; else a ValueError with one of the two messages."""
     parts = _split(text)
     if parts is None or parts[1] not in units:
-        raise ValueError(f"'{text}' is no length; write metres such as 0.1, or 10cm")
+        raise ValueError(form)
     value = parts[0] * units[parts[1]]
     if not 0 < value < math.inf:
-        raise ValueError(f"'{text}' must be a finite length above zero, in metres")
+        raise ValueError(bound)
     return value
 
 

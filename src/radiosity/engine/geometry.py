@@ -23,7 +23,7 @@ QUAD, SECOND_HALF, INVERTED = 1 << 28, 1 << 29, 1 << 30
 BACK_BIT = 30  # of a hit record's flags: two bits, a `Back`
 NORMAL_BITS = 21  # of each component of a normal in a hit record: only the side that a line comes from is asked of it
 NORMAL_ONE = (1 << NORMAL_BITS - 1) - 1
-HIT_WORDS, FACE_WORDS = 4, 16
+HIT_WORDS = 4
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,14 +2,14 @@
 
 from importlib import import_module
 
-from .base import DIMENSIONS, INDEX_LIMIT, AbstractNumbers
+from .base import DIMENSIONS, AbstractNumbers
 
 NUMBERS = {
     "halton": "halton:Halton",
     "random": "random:Random",
 }
 
-__all__ = ["DIMENSIONS", "INDEX_LIMIT", "NUMBERS", "AbstractNumbers", "make"]
+__all__ = ["DIMENSIONS", "NUMBERS", "AbstractNumbers", "make"]
 
 
 def make(name: str) -> AbstractNumbers:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 DIMENSIONS = 4
-INDEX_LIMIT = 2**32 - 1
 
 
 @dataclass(frozen=True)
