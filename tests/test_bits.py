@@ -124,3 +124,20 @@ def test_launches_may_end_anywhere(monkeypatch, colored):
         assert all(book["closes"] for book in (*whole.books, *parts.books))
         assert all(np.array_equal(parts.state[key], whole.state[key]) for key in whole.state)
         assert parts.state["fired"].sum() == parts.state["arrivals"].sum() + parts.state["missed"].sum()
+
+
+@pytest.mark.parametrize("two_sided", [False, True])
+def test_faces_that_are_not_cut_take_a_shorter_way_to_the_same_integers(two_sided, monkeypatch):
+    from radiosity.engine.geometry import Geometry
+
+    scene = rd.load_scene("room")
+    tetrahedron = np.array([(0.3, 0.3, 0.2), (0.5, 0.3, 0.2), (0.3, 0.5, 0.2), (0.3, 0.3, 0.4)])
+    corners, first = np.concatenate([scene.vertices, tetrahedron]), len(scene.vertices)
+    faces = np.concatenate([scene.faces, first + np.array([(0, 2, 1, -1), (0, 1, 3, -1), (1, 2, 3, -1), (2, 0, 3, -1)])])
+    faces[: len(scene.faces)][~scene.is_quad, 3] = -1
+    made = rd.Scene.from_arrays(corners, faces, 0.5, np.r_[1.0, np.zeros(len(faces) - 1)], two_sided=two_sided)
+    patches = rd.subdivide(made, cells=1)
+    assert Geometry(patches, None).whole_faces
+    short = counters(patches)
+    monkeypatch.setattr(Geometry, "whole_faces", False)
+    assert equal(short, counters(patches))

@@ -54,6 +54,11 @@ class Geometry:
         return bool(self.scene.is_quad.all())
 
     @cached_property
+    def whole_faces(self) -> bool:
+        """No face is cut: a hit's coordinates are not asked for."""
+        return bool((self.patches.columns == 1).all() and (self.patches.rows == 1).all())
+
+    @cached_property
     def frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Origin and edges of the faces in the caster's coordinates, float64 from its own vertices, and their offset."""
         scene, vertices = self.scene, self.tree.vertices.astype(np.float64)

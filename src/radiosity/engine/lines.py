@@ -29,14 +29,17 @@ def local_line(geometry: Geometry, record, numbers):
     s, t = x, y
     if not geometry.all_quads:
         s, t = triangle(x, y)
-        inverted, quad = (place & INVERTED) != 0, (place & QUAD) != 0
-        s, t = dr.select(inverted, 1 - s, s), dr.select(inverted, 1 - t, t)
+        quad = (place & QUAD) != 0
+        if not geometry.whole_faces:
+            inverted = (place & INVERTED) != 0
+            s, t = dr.select(inverted, 1 - s, s), dr.select(inverted, 1 - t, t)
         s, t = dr.select(quad, x, s), dr.select(quad, y, t)
-    column, row = Float(place & MASK), Float((place >> COLUMN_BITS) & MASK)
+    if not geometry.whole_faces:
+        s, t = s + Float(place & MASK), t + Float((place >> COLUMN_BITS) & MASK)
     dx, dy, dz = hemisphere(numbers[0], numbers[1])
     bitangent = dr.cross(normal, tangent)
     direction = tangent * dx + bitangent * dy + normal * (dz * side)
-    point = origin + first * (column + s) + second * (row + t) + normal * (words[15] * side)
+    point = origin + first * s + second * t + normal * (words[15] * side)
     return point, direction
 
 
@@ -109,6 +112,8 @@ def patch_of(geometry: Geometry, hit: Landing, absorbed: int, escaped: int):
     """The patch that lines land on, as in `patches.cells.number`; or the code for an absorbing back or for none."""
     types = geometry.device.types
     Float, UInt32 = types.Float, types.UInt32
+    if geometry.whole_faces:
+        return _side(geometry, hit, hit.first, types.UInt32(1), absorbed, escaped)
     columns, rows = hit.packed & MASK, (hit.packed >> COLUMN_BITS) & MASK
     x, y = dr.maximum(hit.u, 0) * Float(columns), dr.maximum(hit.v, 0) * Float(rows)
     row = dr.minimum(UInt32(y), rows - 1)
@@ -121,8 +126,13 @@ def patch_of(geometry: Geometry, hit: Landing, absorbed: int, escaped: int):
         inverted = ((x - Float(column)) + (y - Float(row)) > 1) & (column + 1 < limit)
         triangle_cell = row * (2 * columns - row) + 2 * column + dr.select(inverted, UInt32(1), UInt32(0))
         cell = dr.select(quad, row * columns + column, triangle_cell)
-    patch = hit.first + cell
+    return _side(geometry, hit, hit.first + cell, columns * rows, absorbed, escaped)
+
+
+def _side(geometry: Geometry, hit: Landing, patch, cells, absorbed: int, escaped: int):
+    """From the patch in front to that on the side which lines land on."""
+    UInt32 = geometry.device.types.UInt32
     if geometry.some_backs_radiate:
-        patch = dr.select(hit.back(Back.RADIATES), patch + columns * rows, patch)
+        patch = dr.select(hit.back(Back.RADIATES), patch + cells, patch)
     patch = dr.select(hit.back(Back.ABSORBS), UInt32(absorbed), patch)
     return dr.select(hit.valid, patch, UInt32(escaped))

@@ -11,7 +11,7 @@ BASES = (2, 3, 5, 7)
 LOW_DIGITS = {3: 13, 5: 9, 7: 7}  # one pass: below base**digits < 2^22 quotients in single precision are exact
 HIGH_DIGITS = {3: 8, 5: 5, 7: 5}  # a second pass for the rest of 32 bits
 CHAIN = 3  # digits
-STEPS = (14, 16, 19, 32)  # 2^19 is less than the smallest base**digits of one pass
+STEPS = (14, 16, 19, 24, 32)  # 2^19 is less than the smallest base**digits of one pass
 
 
 @dataclass(frozen=True)
