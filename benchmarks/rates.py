@@ -55,7 +55,8 @@ def _rays(engine: Engine, lines: int):
     parts, total = [], 0
     for chunk in batch.chunks(types):
         number, index, record = chunk.read(types)
-        randomisation = dr.gather(types.Array4u, engine.randomisation, dr.zeros(types.UInt32, chunk.width))
+        none = dr.zeros(types.UInt32, chunk.width)
+        randomisation = [word for half in (0, 1) for word in dr.gather(types.Array4u, engine.randomisation, none + half)]
         points = engine.numbers.points(index, number, randomisation, engine.numbers.bits_for(largest))
         ray = local_line(engine.geometry, record, points)
         dr.eval(ray)

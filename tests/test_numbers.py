@@ -6,7 +6,7 @@ from scipy import stats
 
 from radiosity.engine.device import choose, upload
 from radiosity.engine.quanta import stream
-from radiosity.method.numbers import DIMENSIONS, NUMBERS, make
+from radiosity.method.numbers import DIMENSIONS, NUMBERS, WORDS, make
 
 ALPHA = 1e-4  # of each test, divided by the number of its comparisons
 
@@ -14,7 +14,7 @@ ALPHA = 1e-4  # of each test, divided by the number of its comparisons
 def points(name, index, *, patch=0, seed=0, bits=32, zero=False):
     types = choose("cpu").types
     numbers = make(name)
-    drawn = np.zeros(4, np.uint32) if zero else numbers.randomisation(stream(seed, 0, 1))
+    drawn = np.zeros(WORDS, np.uint32) if zero else numbers.randomisation(stream(seed, 0, 1))
     randomisation = [types.UInt32(int(word)) for word in drawn]
     index = np.asarray(index, np.uint32)
     patches = upload(types.UInt32, np.full(len(index), patch, np.uint32))
@@ -66,13 +66,13 @@ def test_a_biased_generator_is_rejected():
 
 
 def test_halton_is_scipys():
-    exact = stats.qmc.Halton(4, scramble=False).random(5000)
+    exact = stats.qmc.Halton(DIMENSIONS, scramble=False).random(5000)
     assert np.abs(points("halton", np.arange(5000), zero=True) - exact).max() < 2e-7
 
 
 def test_halton_at_large_indices():
     index = np.array([2**24 + 12345, 2**31 - 1, 2**32 - 1])
-    for column, base in zip(points("halton", index, zero=True).T, (2, 3, 5, 7), strict=True):
+    for column, base in zip(points("halton", index, zero=True).T, (2, 3, 5, 7, 11), strict=True):
         for i, value in zip(index.tolist(), column, strict=True):
             exact, scale = 0.0, 1.0
             while i:

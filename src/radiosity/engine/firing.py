@@ -160,7 +160,8 @@ class Engine:
         types = self.types
         replicate = types.UInt32(0) if self.replicates == 1 else self.replicate(number)
         patch = number if self.replicates == 1 else number - replicate * self.n_opaque
-        randomisation = dr.gather(types.Array4u, self.randomisation, replicate)
+        randomisation = [*dr.gather(types.Array4u, self.randomisation, replicate * 2),
+                         *dr.gather(types.Array4u, self.randomisation, replicate * 2 + 1)]  # fmt: skip
         numbers = self.numbers.points(index, patch, randomisation, bits)
         origin, direction = local_line(self.geometry, record, numbers)
         hit = land(self.geometry, origin, direction, coherent=coherent)

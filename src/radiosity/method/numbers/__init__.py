@@ -2,14 +2,14 @@
 
 from importlib import import_module
 
-from .base import DIMENSIONS, AbstractNumbers
+from .base import DIMENSIONS, WORDS, AbstractNumbers
 
 NUMBERS = {
     "halton": "halton:Halton",
     "random": "random:Random",
 }
 
-__all__ = ["DIMENSIONS", "NUMBERS", "AbstractNumbers", "make"]
+__all__ = ["DIMENSIONS", "NUMBERS", "WORDS", "AbstractNumbers", "make"]
 
 
 def make(name: str) -> AbstractNumbers:

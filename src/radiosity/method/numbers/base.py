@@ -6,28 +6,34 @@ from typing import Any
 
 import numpy as np
 
-DIMENSIONS = 4
+from ...errors import MethodError
+
+DIMENSIONS = 5
+WORDS = 8  # of randomisation, for a scene and replicate
+LARGEST = 2**32 - 1  # no index is larger in any sequence
 
 
 @dataclass(frozen=True)
 class AbstractNumbers(ABC):
-    """Points of the four-dimensional unit cube, each a function of (index, randomisation) and nothing else.
+    """Points of the five-dimensional unit cube, each a function of (index, randomisation) and nothing else.
 
-    Dimensions 1 and 2 give a line's direction, 3 and 4 its position on the patch. Index 0 is never asked for.
+    Dimensions 1 and 2 give a line's direction, 3 and 4 its position on the patch, 5 a choice, such as absorption. A dimension
+    that a kernel does not use costs nothing. Walks that need more take shuffled copies, see `shuffle`. Index 0 is never
+    asked for.
     """
 
     @abstractmethod
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
-        """(4,) uint32 drawn on the host from a strong generator: one for the scene and replicate."""
+        """(8,) uint32 drawn on the host from a strong generator: one for the scene and replicate."""
 
     @abstractmethod
     def points(self, index: Any, patch: Any, randomisation: Any, bits: int) -> list[Any]:
-        """Four Dr.Jit floats in [0, 1), in a kernel.
+        """Five Dr.Jit floats in [0, 1), in a kernel.
 
         Args:
-            index: UInt32, 1 and up, below 2**bits.
+            index: UInt32, 1 and up, below 2**bits and not beyond `largest`.
             patch: UInt32, the patch that asks (low discrepancy sequences are shared and ignore it).
-            randomisation: four UInt32.
+            randomisation: eight UInt32.
             bits: a compile-time bound; a few steps only, so that few kernels are compiled.
         """
 
@@ -35,6 +41,19 @@ class AbstractNumbers(ABC):
     def steps(self) -> tuple[int, ...]:
         """The values that ``bits`` may take, increasing; the last is 32."""
 
+    @abstractmethod
+    def largest(self) -> int:
+        """The greatest index, at most 2**32 - 1."""
+
     def bits_for(self, largest_index: int) -> int:
-        """The smallest step that holds an index."""
+        """The smallest step that holds an index.
+
+        Raises:
+            MethodError: the sequence has no point of this index.
+        """
+        if largest_index > self.largest():
+            raise MethodError(
+                f"{type(self).__name__} numbers end at index {self.largest()}, but a patch would fire line {largest_index}; "
+                "take fewer lines a replicate, and more replicates"
+            )
         return next(step for step in self.steps() if largest_index < 2**step)

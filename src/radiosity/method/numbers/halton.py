@@ -1,15 +1,15 @@
-"""The Halton sequence (J. H. Halton, Numerische Mathematik 2, 1960) in bases 2, 3, 5, 7."""
+"""The Halton sequence (J. H. Halton, Numerische Mathematik 2, 1960) in bases 2, 3, 5, 7, 11."""
 
 from dataclasses import dataclass
 
 import drjit as dr
 import numpy as np
 
-from .base import AbstractNumbers
+from .base import LARGEST, WORDS, AbstractNumbers
 
-BASES = (2, 3, 5, 7)
-LOW_DIGITS = {3: 13, 5: 9, 7: 7}  # one pass: below base**digits < 2^22 quotients in single precision are exact
-HIGH_DIGITS = {3: 8, 5: 5, 7: 5}  # a second pass for the rest of 32 bits
+BASES = (2, 3, 5, 7, 11)
+LOW_DIGITS = {3: 13, 5: 9, 7: 7, 11: 6}  # one pass: below base**digits < 2^22 quotients in single precision are exact
+HIGH_DIGITS = {3: 8, 5: 5, 7: 5, 11: 4}  # a second pass for the rest of 32 bits
 CHAIN = 3  # digits
 STEPS = (14, 16, 19, 24, 32)  # 2^19 is less than the smallest base**digits of one pass
 
@@ -19,16 +19,19 @@ class Halton(AbstractNumbers):
     """Radical inverses, each moved by a seeded shift modulo 1 (Cranley and Patterson 1976), one for the whole scene."""
 
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
-        return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, 4, dtype=np.uint32)
+        return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
 
     def points(self, index, patch, randomisation, bits):
         Float = dr.float32_array_t(type(index))
         values = [Float(dr.brev(index) >> 8) * 2.0**-24, *(radical_inverse(index, base, bits) for base in BASES[1:])]
-        moved = [value + Float(shift >> 8) * 2.0**-24 for value, shift in zip(values, randomisation, strict=True)]
+        moved = [value + Float(shift >> 8) * 2.0**-24 for value, shift in zip(values, randomisation, strict=False)]
         return [value - dr.floor(value) for value in moved]
 
     def steps(self):
         return STEPS
+
+    def largest(self):
+        return LARGEST
 
 
 def radical_inverse(index, base: int, bits: int):

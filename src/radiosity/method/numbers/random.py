@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import drjit as dr
 import numpy as np
 
-from .base import AbstractNumbers
+from .base import LARGEST, WORDS, AbstractNumbers
 
 MULTIPLIERS = (0xD2511F53, 0xCD9E8D57)
 WEYL = (0x9E3779B9, 0xBB67AE85)
@@ -20,14 +20,19 @@ class Random(AbstractNumbers):
     """The counter is (index, patch), the key and the rest of the counter come from the seed and replicate."""
 
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
-        return stream.generate_state(4, np.uint32)
+        return stream.generate_state(WORDS, np.uint32)
 
     def points(self, index, patch, randomisation, bits):
         Float = dr.float32_array_t(type(index))
-        return [Float(word >> 8) * 2.0**-24 for word in philox([index, patch, *randomisation[2:]], randomisation[:2])]
+        words = philox([index, patch, *randomisation[2:4]], randomisation[:2])
+        more = philox([index, patch, *randomisation[6:8]], randomisation[4:6])
+        return [Float(word >> 8) * 2.0**-24 for word in [*words, more[0]]]
 
     def steps(self):
         return (32,)
+
+    def largest(self):
+        return LARGEST
 
 
 def philox(counter, key):
