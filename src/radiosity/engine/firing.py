@@ -105,10 +105,21 @@ class Engine:
         if self.bands is not None:
             self.bands.weigh(numbers, rows)
         self.owes = dr.width(rows) > 0
-        if not self.owes:
+        return self._batch(numbers, rows, deficit, fired, largest)
+
+    def due_between(self, low: int, high: int) -> tuple[Batch | None, int]:
+        """As `due`, of the patch numbers from ``low`` to below ``high`` alone; grey scenes only."""
+        numbers = dr.arange(self.types.UInt32, high - low) + dr.opaque(self.types.UInt32, low)
+        owed, fired = self.owed(numbers), dr.gather(self.types.UInt32, self.fired, numbers)
+        deficit, largest = owed - fired, dr.max(owed)
+        dr.eval(numbers, owed, fired, deficit, largest)
+        return self._batch(numbers, dr.compress(deficit > 0), deficit, fired, largest)
+
+    def _batch(self, numbers, rows, deficit, fired, largest) -> tuple[Batch | None, int]:
+        if dr.width(rows) == 0:
             return None, 0
-        columns = (dr.gather(types.UInt32, column, rows) for column in (numbers, deficit, fired))
-        return Batch.of(types, *columns, self.record), int(largest[0])
+        columns = (dr.gather(self.types.UInt32, column, rows) for column in (numbers, deficit, fired))
+        return Batch.of(self.types, *columns, self.record), int(largest[0])
 
     def record(self, number):
         """Face and place of a patch number, see `Geometry.patch_records`."""

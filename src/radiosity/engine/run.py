@@ -6,22 +6,18 @@ import warnings
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
-import numpy as np
-
 from ..errors import MethodError, RadiosityWarning
 from ..method import Method
-from ..method.order import run as fire_all
 from ..patches import Patches
 from ..solution.model import Solution
-from .bands import BandGroups
 from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_stage, next_quanta, on_ladder
 from .device import choose
-from .firing import Engine
 from .geometry import Geometry
+from .problem import Problem
+from .process import AbstractProcess, make
 from .progress import Interrupted, Listener, Stop, Teller
-from .quanta import Source
 from .snapshot import Snapshot
-from .state import capture, check_same, restore
+from .state import check_same
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
@@ -38,11 +34,11 @@ class Run:
         self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
         self.replicates, self.resume = replicates, resume
         self.seconds_before = 0.0 if resume is None else resume.seconds
-        self.groups = BandGroups.of(patches)
-        self.source = Source.of(patches, self.groups.emission.max(axis=1), self.groups.reflectance.max(axis=1))
-        if self.groups.n_groups > 1 and method.order != "breadth-first":
+        self.problem = Problem.of(patches)
+        bands = self.problem.groups.n_groups
+        if bands > 1 and method.machine == "firing" and method.order == "depth-first":
             raise MethodError(
-                f"order '{method.order}' cannot carry {self.groups.n_groups} different bands: "
+                f"order '{method.order}' cannot carry {bands} different bands: "
                 "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
             )
         self.rung = first_stage(replicates, len(patches))
@@ -59,36 +55,36 @@ class Run:
             return self._stages()
 
     def _stages(self) -> Solution:
-        engine, target = self._engine(), 0
+        process, target = self._process(self.problem, self.replicates), 0
         if self.resume is None:
             target = self._first_quanta()
         else:
-            restore(engine, self.resume.state)
-            target = engine.quanta
-            if self.groups.n_groups > 1 and "before" not in self.resume.state and not on_ladder(target, self.rung):
+            process.restore(self.resume.state)
+            target = process.quanta
+            if not process.nested and not process.unfinished(self.resume.state) and not on_ladder(target, self.rung):
                 raise MethodError(
-                    f"a run of {self.groups.n_groups} different bands that ended with {target} quanta cannot go on to the bits "
-                    f"of one longer run: its last stage is no power of two from {self.rung} on; start anew"
+                    f"a run of {self.problem.groups.n_groups} different bands, by {self.method}, that ended with {target} quanta "
+                    "cannot go on to the bits of one longer run: its last stage is no power of two from "
+                    f"{self.rung} on; start anew"
                 )
-        self.teller.begin(int(engine.counters()[1].sum(dtype=np.uint64)))
+        self.teller.begin(0 if self.resume is None else process.tally.lines(self.problem, process.capture()))
         snapshot, status, pending = None, "complete", {}
         while target:
             started = time.perf_counter()
-            if target != engine.quanta:
-                engine.set_quanta(target)
             try:
-                fire_all(self.method.order, engine, self._swept)
+                process.advance(target, self._swept)
             except Interrupted as reason:
-                status, pending = str(reason), capture(engine)
+                status, pending = str(reason), process.capture()
                 break
-            snapshot = Snapshot(self.patches, self.source, self.groups, capture(engine))
+            snapshot = Snapshot(self.problem, process.tally, process.capture())
             error = snapshot.error() if self.replicates > 1 and self._error_matters else math.nan
-            self.teller.complete(snapshot.lines, target, error)
+            lines = snapshot.lines
+            self.teller.complete(lines, target, error)
             if self.stop.asked:
                 status = "interrupted"
                 break
-            at = Progressed(target, snapshot.lines, self.teller.elapsed, time.perf_counter() - started, error)
-            target = next_quanta(self.budget, self.replicates, self.rung, at, replay=self.groups.n_groups > 1)
+            at = Progressed(target, lines, self.teller.elapsed, time.perf_counter() - started, error)
+            target = next_quanta(self.budget, self.replicates, self.rung, at, replay=not process.nested)
         if snapshot is None:
             if self.resume is None:
                 if status == COUNTERS_FULL:
@@ -107,8 +103,8 @@ class Run:
             return snapshot.quanta >= self.budget.quanta
         return self.budget.rays is None or snapshot.lines >= 0.5 * self.budget.rays
 
-    def _engine(self) -> Engine:
-        return Engine(self.geometry, self.source, self.method, self.seed, self.replicates, self.groups)
+    def _process(self, problem: Problem, replicates: int) -> AbstractProcess:
+        return make(self.geometry, problem, self.method, self.seed, replicates)
 
     @property
     def _error_matters(self) -> bool:
@@ -136,11 +132,10 @@ class Run:
 
     def _few_quanta(self, rays: float) -> int:
         """For a small number of rays a replicate: how many a quantum takes is measured in a run that is thrown away."""
-        engine = Engine(self.geometry, self.source, self.method, self.seed, 1)
+        process = self._process(self.problem.scalar, 1)
         trial = max(min(math.ceil(rays), LEAST_QUANTA), min(int(rays) // 8, TRIAL))
-        engine.set_quanta(trial)
-        fire_all(self.method.order, engine, self._tried)
-        lines = int(engine.counters()[1].sum(dtype=np.uint64))
+        process.advance(trial, self._tried)
+        lines = process.tally.lines(process.problem, process.capture())
         found = max(1, round(trial * rays / max(lines, 1)))
         enough = ENOUGH * math.sqrt(len(self.patches))
         if found < enough:
@@ -159,9 +154,8 @@ class Run:
 
     def _solution(self, snapshot: Snapshot, status: str, pending) -> Solution:
         mean, error = snapshot.irradiance()
-        arrivals = snapshot.state["arrivals"].sum(axis=0, dtype=np.int64)
         return Solution(
-            self.patches, mean, error, arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
+            self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
             snapshot.quanta, self.replicates,
             snapshot.books(), status, self._provenance(), pending or snapshot.state,
         )  # fmt: skip

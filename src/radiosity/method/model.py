@@ -3,12 +3,15 @@
 from dataclasses import dataclass
 
 from ..errors import MethodError
+from .combinations import machine
 from .equation import EQUATIONS
+from .estimator import ABSORPTIONS, ESTIMATORS
 from .lines import LINES
 from .numbers import NUMBERS
 from .order import ORDERS
 
 AXES = {"equation": tuple(EQUATIONS), "lines": tuple(LINES), "order": tuple(ORDERS), "numbers": tuple(NUMBERS)}
+CHOICES = AXES | {"estimator": tuple(ESTIMATORS), "absorption": ("auto", *ABSORPTIONS)}
 
 
 @dataclass(frozen=True)
@@ -20,6 +23,12 @@ class Method:
         lines: what carries it?
         order: which line is fired next?
         numbers: which points of the unit cube?
+        estimator: what is scored?
+        absorption: how does a walk end? "auto" is "rounded" where patches can round, else "drawn".
+        first_shot: global lines: the share of all lines that sends the lights' own power by local lines first; 0 is none.
+        control_variate: iterations: a constant radiosity is taken out of what lines carry, and put back exactly.
+        warm_up: regular iterations: begin with incremental ones, whose bias is small.
+        reconstruction: "patches" counts what lands on each; "local-linear" fits planes to the landings about each point.
         coherent: trace lines in packets of like directions with Embree's coherent flag. Faster where patches fire
             thousands of lines, but at an exact tie of two faces the winner depends on the packet: outside contract 2.
 
@@ -31,17 +40,30 @@ class Method:
     lines: str = "local"
     order: str = "breadth-first"
     numbers: str = "halton"
+    estimator: str = "collision"
+    absorption: str = "auto"
+    first_shot: float = 0.0
+    control_variate: bool = False
+    warm_up: bool = False
+    reconstruction: str = "patches"
     coherent: bool = False
 
     def __post_init__(self):
-        for axis, known in AXES.items():
-            value = getattr(self, axis)
+        for choice, known in CHOICES.items():
+            value = getattr(self, choice)
             if value not in known:
-                raise MethodError(f"{axis} '{value}' does not exist; known are {', '.join(known)}")
-        if self.coherent and self.numbers != "halton":
-            raise MethodError(f"coherent firing needs strata of the Halton sequence, not '{self.numbers}' numbers; leave one out")
-        if self.coherent and self.order != "breadth-first":
-            raise MethodError(f"coherent firing needs whole sweeps, not order '{self.order}'; take breadth-first")
+                raise MethodError(f"{choice} '{value}' does not exist; known are {', '.join(known)}")
+        machine(self)
+
+    @property
+    def machine(self) -> str:
+        """The process that runs it, a name of `engine.process.PROCESSES`."""
+        return machine(self)
 
     def __str__(self) -> str:
-        return "/".join(getattr(self, axis) for axis in AXES) + ("/coherent" if self.coherent else "")
+        extras = [] if self.estimator == "collision" else [self.estimator]
+        extras += [] if self.absorption == "auto" else [self.absorption]
+        extras += [f"first-shot={self.first_shot:g}"] if self.first_shot else []
+        extras += [self.reconstruction] if self.reconstruction != "patches" else []
+        extras += [name.replace("_", "-") for name in ("control_variate", "warm_up", "coherent") if getattr(self, name)]
+        return "/".join([*(getattr(self, axis) for axis in AXES), *extras])

@@ -36,6 +36,17 @@ class Books:
     def closes(self) -> bool:
         return self.emitted + self.rounding == self.absorbed + self.escaped + self.lost
 
+    def powers(self) -> dict:
+        """The columns in W or lm, and ``closes``."""
+        return {name: getattr(self, name) * self.watts for name in self.COLUMNS} | {"closes": self.closes}
+
+
+def by_difference(emitted: float, absorbed: float, escaped: float, lost: float) -> dict:
+    """The books of a method that does not carry power line by line: what does not balance is its statistical error, shown
+    as rounding, and ``closes`` is None."""
+    rounding = absorbed + escaped + lost - emitted
+    return {"emitted": emitted, "rounding": rounding, "absorbed": absorbed, "escaped": escaped, "lost": lost, "closes": None}
+
 
 def exact_dot(long: np.ndarray, short: np.ndarray) -> int:
     """Sum of uint64 times uint32 without rounding or overflow, by 16-bit limbs."""

@@ -25,7 +25,7 @@ def report(solution) -> str:
         lines.append(f"unvisited {unvisited} patches that no line reached (their zero is no measurement)")
     for name, book in zip(scene.bands, solution.books, strict=True):
         label = f"power [{name}]" if len(scene.bands) > 1 else "power"
-        closed = "closes exactly" if book["closes"] else "DOES NOT CLOSE"
+        closed = {True: "closes exactly", False: "DOES NOT CLOSE", None: "rounding is what does not balance"}[book["closes"]]
         lines.append(
             f"{label}: emitted {book['emitted']:.6g} {unit} + rounding {book['rounding']:.3g} = absorbed {book['absorbed']:.6g} "
             f"+ escaped {book['escaped']:.4g} + lost on backs {book['lost']:.4g} ({closed})"

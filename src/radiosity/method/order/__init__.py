@@ -1,13 +1,25 @@
-"""Which line is fired next? Each module runs the engine until no patch owes a line."""
+"""Which line is fired next? For the firing engine each module runs it until no patch owes a line."""
 
 from importlib import import_module
 
 ORDERS = {
-    "breadth-first": "breadth_first",
+    "depth-first": "each walk is followed to its end",
+    "breadth-first": "sweep after sweep: all light reflected k times before any reflected k + 1 times",
+    "staged": "breadth-first in stages of ever more, weaker lines; a picture after each",
+    "well-distributed": "in stages of half the quantum each; a patch fires what it lacks to its share",
+    "incremental": "iterations that send the light not sent yet, in ever fewer lines",
+    "regular": "iterations that send all light anew, averaged",
+    "multipath": "each line carries on what earlier lines left on the patches it crosses",
+    "matrix": "lines give form factors first; the equation is solved afterwards",
+}
+FIRED = {
     "depth-first": "depth_first",
+    "breadth-first": "breadth_first",
+    "staged": "breadth_first",
+    "well-distributed": "well_distributed",
 }
 
 
 def run(name: str, engine, progress) -> None:
     """Fire every line owed in the order called ``name``."""
-    import_module(f".{ORDERS[name]}", __package__).run(engine, progress)
+    import_module(f".{FIRED[name]}", __package__).run(engine, progress)

@@ -1,0 +1,105 @@
+"""What runs a method from stage to stage, and how its state is read."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+
+import numpy as np
+
+from ..method import Method
+from .geometry import Geometry
+from .problem import Problem
+
+PROCESSES = {
+    "firing": "firing_process:Firing",
+    "walks": "walks:Walks",
+    "iteration": "iteration:Iteration",
+    "multipath": "multipath:Multipath",
+    "pooling": "pooling:Pooling",
+    "matrix": "matrix:Matrix",
+}
+
+State = dict[str, np.ndarray]
+Swept = Callable[[int], None]
+
+
+@dataclass(eq=False)
+class AbstractProcess(ABC):
+    """The counters of all replicates of a method, on the device or the host.
+
+    Attributes:
+        geometry: the scene on the device.
+        problem: what is solved.
+        method: how.
+        seed: of all randomisation.
+        replicates: independent randomised runs.
+    """
+
+    geometry: Geometry
+    problem: Problem
+    method: Method
+    seed: int
+    replicates: int
+
+    @property
+    @abstractmethod
+    def quanta(self) -> int:
+        """N of the stage that was begun last; 0 at first. Lines grow in proportion to it."""
+
+    @property
+    @abstractmethod
+    def nested(self) -> bool:
+        """The state after N depends on N alone, not on the stages that led there."""
+
+    @abstractmethod
+    def advance(self, quanta: int, swept: Swept) -> None:
+        """Complete the stage of N quanta a replicate. ``swept(lines)`` is called where the state is whole, with the lines traced
+        since; what it raises ends the stage early, and `capture` then holds what is there."""
+
+    @abstractmethod
+    def capture(self) -> State:
+        """All that is needed to go on, and to read the result."""
+
+    @abstractmethod
+    def restore(self, state: State) -> None:
+        """Put a captured state back.
+
+        Raises:
+            MethodError: the state is empty or of another shape.
+        """
+
+    @abstractmethod
+    def unfinished(self, state: State) -> bool:
+        """The state was captured within a stage."""
+
+    @property
+    @abstractmethod
+    def tally(self) -> "AbstractTally":
+        """How states are read."""
+
+
+class AbstractTally(ABC):
+    """What a process's state means."""
+
+    @abstractmethod
+    def lines(self, problem: Problem, state: State) -> int:
+        """Lines of all replicates, as the paper counts them: a local line 1, a span of a global line 2."""
+
+    @abstractmethod
+    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
+        """(n_patches,) int64: lines that landed on each patch, replicates together."""
+
+    @abstractmethod
+    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
+        """(replicates, n_patches) values of a group of bands, and their unit: irradiance times area is value times unit."""
+
+    @abstractmethod
+    def books(self, problem: Problem, state: State, group: int) -> dict:
+        """Emitted, rounding, absorbed, escaped and lost power of a group, and ``closes`` (see `Solution.books`)."""
+
+
+def make(geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int) -> AbstractProcess:
+    """The process that runs a method."""
+    module, cls = PROCESSES[method.machine].split(":")
+    return getattr(import_module(f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)

@@ -1,0 +1,89 @@
+"""Which choices go together, which process runs them, and why the others do not."""
+
+from ..errors import MethodError
+
+FIRING_ORDERS = ("depth-first", "breadth-first", "staged", "well-distributed")
+WALK_ORDERS = ("depth-first", "breadth-first", "staged")
+ITERATIONS = ("incremental", "regular")
+RECONSTRUCTIONS = ("patches", "local-linear")
+
+
+def machine(method) -> str:
+    """The process that runs a method.
+
+    Raises:
+        MethodError: the combination makes no sense, with the reason.
+    """
+    found = _local(method) if method.lines == "local" else _global(method)
+    _refuse_options(method, found)
+    return found
+
+
+def _local(method) -> str:
+    if method.order == "multipath":
+        raise MethodError("order 'multipath' carries power along lines that cross many patches; take --lines global")
+    if method.order in (*ITERATIONS, "matrix"):
+        if method.equation != "discrete":
+            raise MethodError(
+                f"order '{method.order}' sends the power of whole patches, wherever on them it landed: "
+                "it solves the discrete equation only"
+            )
+        return "matrix" if method.order == "matrix" else "iteration"
+    fires = method.equation == "discrete" and method.estimator == "collision" and method.absorption in ("auto", "rounded")
+    if fires:
+        return "firing"
+    if method.order not in WALK_ORDERS:
+        raise MethodError(f"order '{method.order}' belongs to patches that fire what they owe: equation discrete, estimator "
+                          f"collision, absorption rounded; walks of other kinds take {', '.join(WALK_ORDERS)}")  # fmt: skip
+    if method.estimator == "bidirectional":
+        raise MethodError("estimator 'bidirectional' weighs the two ends of single lines: it needs an iteration "
+                          f"({', '.join(ITERATIONS)}), not walks")  # fmt: skip
+    if method.absorption == "rounded":
+        raise MethodError(f"absorption 'rounded' is for counted landings (equation discrete, estimator collision), not for "
+                          f"equation {method.equation} with estimator {method.estimator}; take drawn or fractional")  # fmt: skip
+    if method.absorption == "fractional" and method.estimator != "collision":
+        raise MethodError(f"absorption 'fractional' has no probability of its own at a landing, which estimator "
+                          f"'{method.estimator}' divides by; take collision")  # fmt: skip
+    return "walks"
+
+
+def _global(method) -> str:
+    if method.equation != "discrete":
+        raise MethodError("a global line leaves each patch where it happens to cross it, which is a fresh uniform point: "
+                          "global lines solve the discrete equation only")  # fmt: skip
+    if method.order in (*WALK_ORDERS, "well-distributed", "incremental"):
+        raise MethodError(f"order '{method.order}' chooses the patch that fires next, but global lines cross patches as they "
+                          "come; take multipath, matrix or regular")  # fmt: skip
+    if method.order == "multipath":
+        if method.lines == "bundles":
+            raise MethodError("the lines of a bundle are parallel: what one leaves on a patch cannot turn within the bundle; "
+                              "take --order regular or matrix with bundles")  # fmt: skip
+        return "multipath"
+    return "matrix" if method.order == "matrix" else "pooling"
+
+
+def _refuse_options(method, found: str) -> None:
+    if method.estimator != "collision" and found not in ("walks", "iteration"):
+        raise MethodError(f"estimator '{method.estimator}' is for walks and iterations of local lines, not for "
+                          f"{method.lines}/{method.order}; leave it out")  # fmt: skip
+    if found == "iteration" and method.estimator not in ("collision", "bidirectional"):
+        raise MethodError(f"estimator '{method.estimator}' is for walks; iterations take collision or bidirectional")
+    if method.absorption != "auto" and found not in ("firing", "walks"):
+        raise MethodError(f"absorption '{method.absorption}': nothing is absorbed on the way in {method.lines}/{method.order}, "
+                          "power is weighed instead; leave it out")  # fmt: skip
+    if method.first_shot and found not in ("multipath", "pooling"):
+        raise MethodError("a first shot is for global lines of order multipath or regular: other methods begin at the lights")
+    if not 0 <= method.first_shot < 1:
+        raise MethodError(f"first_shot is {method.first_shot:g}; it is the share of all lines, at least 0 and below 1")
+    if method.control_variate and found != "iteration":
+        raise MethodError("a constant control variate is taken out of what iterations send; take --order incremental or regular")
+    if method.warm_up and method.order != "regular":
+        raise MethodError("only regular iterations can begin with incremental ones (warm_up)")
+    if method.reconstruction not in RECONSTRUCTIONS:
+        raise MethodError(f"reconstruction '{method.reconstruction}' does not exist; known are {', '.join(RECONSTRUCTIONS)}")
+    if method.reconstruction == "local-linear" and (found != "walks" or method.equation != "continuous"
+                                                    or method.estimator == "gathering"):  # fmt: skip
+        raise MethodError("density estimation needs landing points of particles: equation continuous, local lines, shooting")
+    if method.coherent and (found != "firing" or method.order != "breadth-first" or method.numbers != "halton"):
+        raise MethodError("coherent firing needs strata of the Halton sequence and whole sweeps: discrete/local/breadth-first/"
+                          f"halton, not {method.lines}/{method.order}/{method.numbers}; leave one out")  # fmt: skip
