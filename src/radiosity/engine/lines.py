@@ -1,46 +1,18 @@
-"""In a kernel: from a patch and four numbers to a line, and from a line to the patch it lands on."""
+"""In a kernel: from a line to the patch it lands on."""
 
 from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
 
-from ..method.lines.local import hemisphere, triangle
 from ..scene.model import Back
+from .departure import BACK, MASK, local_line
 from .device import entered
-from .geometry import BACK_BIT, COLUMN_BITS, INVERTED, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, Geometry
+from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, Geometry
 
-MASK = (1 << COLUMN_BITS) - 1
 NORMAL_MASK = (1 << NORMAL_BITS) - 1
 
-
-def local_line(geometry: Geometry, record, numbers):
-    """Origin and direction (three floats each, the caster's coordinates) of a local line, from its patch's record."""
-    types = geometry.device.types
-    Float = types.Float
-    face, place = record
-    front = face < (1 << 31)
-    face = face & 0x7FFFFFFF
-    block = dr.gather(types.Array44f, geometry.face_records, face)  # one read of 16 words, not four of four
-    words = [block[i // 4][i % 4] for i in range(16)]
-    origin, first, second, normal, tangent = (types.Array3f(*words[at : at + 3]) for at in range(0, 15, 3))
-    side = dr.select(front, Float(1), Float(-1))
-    x, y = numbers[2], numbers[3]
-    s, t = x, y
-    if not geometry.all_quads:
-        s, t = triangle(x, y)
-        quad = (place & QUAD) != 0
-        if not geometry.whole_faces:
-            inverted = (place & INVERTED) != 0
-            s, t = dr.select(inverted, 1 - s, s), dr.select(inverted, 1 - t, t)
-        s, t = dr.select(quad, x, s), dr.select(quad, y, t)
-    if not geometry.whole_faces:
-        s, t = s + Float(place & MASK), t + Float((place >> COLUMN_BITS) & MASK)
-    dx, dy, dz = hemisphere(numbers[0], numbers[1])
-    bitangent = dr.cross(normal, tangent)
-    direction = tangent * dx + bitangent * dy + normal * (dz * side)
-    point = origin + first * s + second * t + normal * (words[15] * side)
-    return point, direction
+__all__ = ["Landing", "land", "local_line", "patch_of", "place_of"]
 
 
 @dataclass(frozen=True)
@@ -136,3 +108,17 @@ def _side(geometry: Geometry, hit: Landing, patch, cells, absorbed: int, escaped
         patch = dr.select(hit.back(Back.RADIATES), patch + cells, patch)
     patch = dr.select(hit.back(Back.ABSORBS), UInt32(absorbed), patch)
     return dr.select(hit.valid, patch, UInt32(escaped))
+
+
+def place_of(geometry: Geometry, hit: Landing):
+    """Where on its face a line landed: the face (top bit: its back), and face coordinates in cells, as `departure.leave` takes
+    them."""
+    types = geometry.device.types
+    Float, UInt32 = types.Float, types.UInt32
+    face = dr.gather(UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
+    if geometry.some_backs_radiate:
+        face = dr.select(hit.back(Back.RADIATES), face | BACK, face)
+    s, t = dr.clip(hit.u, 0, 1), dr.clip(hit.v, 0, 1)
+    if not geometry.whole_faces:
+        s, t = s * Float(hit.packed & MASK), t * Float((hit.packed >> COLUMN_BITS) & MASK)
+    return face, s, t
