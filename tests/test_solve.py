@@ -102,7 +102,7 @@ def test_black_scene_has_known_radiosity_and_an_error_of_irradiance():
         ({"rays": 1000, "equation": "cubic"}, "equation 'cubic' does not exist; known are discrete"),
         ({"rays": 1000, "lines": "curved"}, "lines 'curved' does not exist; known are local"),
         ({"rays": 1000, "order": "sideways"}, "order 'sideways' does not exist; known are depth-first, breadth-first"),
-        ({"rays": 1000, "numbers": "lucky"}, "numbers 'lucky' does not exist; known are halton, random"),
+        ({"rays": 1000, "numbers": "lucky"}, "numbers 'lucky' does not exist; known are faure, generalized-faure, halton"),
         ({"rays": 1000, "numbers": "random", "coherent": True}, "coherent"),
         ({"rays": 1000, "order": "depth-first", "coherent": True}, "coherent"),
     ],

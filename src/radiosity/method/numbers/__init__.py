@@ -5,8 +5,13 @@ from importlib import import_module
 from .base import DIMENSIONS, WORDS, AbstractNumbers
 
 NUMBERS = {
+    "faure": "faure:faure",
+    "generalized-faure": "generalized_faure:generalized_faure",
     "halton": "halton:Halton",
+    "niederreiter": "niederreiter:niederreiter",
     "random": "random:Random",
+    "scrambled-halton": "scrambled_halton:ScrambledHalton",
+    "sobol": "sobol:sobol",
 }
 
 __all__ = ["DIMENSIONS", "NUMBERS", "WORDS", "AbstractNumbers", "make"]
@@ -14,5 +19,5 @@ __all__ = ["DIMENSIONS", "NUMBERS", "WORDS", "AbstractNumbers", "make"]
 
 def make(name: str) -> AbstractNumbers:
     """The sequence called ``name``. Its module is imported here, since it imports Dr.Jit."""
-    module, cls = NUMBERS[name].split(":")
-    return getattr(import_module(f".{module}", __package__), cls)()
+    module, maker = NUMBERS[name].split(":")
+    return getattr(import_module(f".{module}", __package__), maker)()
