@@ -76,6 +76,17 @@ class TestContract:
         else:
             assert ratio < 0.25
 
+    def test_other_indices_and_replicates_need_no_other_kernel(self, name):
+        import drjit as dr
+
+        points(name, np.arange(1, 1001))
+        with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
+            dr.kernel_history_clear()
+            points(name, np.arange(5001, 6001), seed=9, patch=3)
+            history = [kernel for kernel in dr.kernel_history() if kernel["type"] == dr.KernelType.JIT]
+        assert history
+        assert all(kernel["cache_hit"] for kernel in history)
+
     def test_indices_beyond_the_last_are_refused(self, name):
         numbers = make(name)
         assert numbers.bits_for(1) == numbers.steps()[0]
@@ -90,36 +101,6 @@ def test_a_biased_generator_is_rejected():
     x = points("random", np.arange(1, 40_001))
     assert stats.kstest(x[:, 0] ** 1.05, "uniform").pvalue < ALPHA / DIMENSIONS
     assert stats.chisquare(np.histogram2d(x[:, 0], x[:, 0], bins=10, range=[[0, 1], [0, 1]])[0].ravel()).pvalue < ALPHA
-
-
-def test_halton_is_scipys():
-    exact = stats.qmc.Halton(DIMENSIONS, scramble=False).random(5000)
-    assert np.abs(points("halton", np.arange(5000), zero=True) - exact).max() < 2e-7
-
-
-def mirrored(index: int, base: int, digits) -> float:
-    """Digits of an index, permuted and mirrored at the point, in whole numbers up to the last division."""
-    value, scale = 0, 1
-    while index:
-        value, scale, index = value * base + digits[index % base], scale * base, index // base
-    return value / scale
-
-
-@pytest.mark.parametrize("name", ["halton", "scrambled-halton"])
-def test_halton_at_any_index(name):
-    """Faure's permutations of 1992, from other programs' tables for bases 5 and 7."""
-    orders = [range(2), range(3), (0, 3, 2, 1, 4), (0, 2, 5, 3, 1, 4, 6), (0, 7, 4, 2, 9, 5, 1, 8, 6, 3, 10)]
-    index = np.r_[1:3000, np.random.default_rng(3).integers(1, 2**32, 3000), 2**31 - 1, 2**32 - 1]
-    for column, base, order in zip(points(name, index, zero=True).T, (2, 3, 5, 7, 11), orders, strict=True):
-        exact = [mirrored(i, base, range(base) if name == "halton" else order) for i in index.tolist()]
-        error = np.abs(exact - column)
-        assert np.minimum(error, 1 - error).max() < 2e-7  # a number next to one may become zero, as under a shift
-
-
-def test_halton_digits_are_exact_wherever_quotients_are_rounded():
-    """All indices of a first pass in base 11: their numbers are whole multiples of 11^-6, each once."""
-    x = points("halton", np.arange(11**6), zero=True)[:, 4]
-    assert np.array_equal(np.sort(np.rint(x * 11.0**6)), np.arange(11**6))
 
 
 def test_patches_share_one_sequence_unless_it_is_random():

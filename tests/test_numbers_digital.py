@@ -71,11 +71,9 @@ def test_wrong_matrices_are_rejected(kind):
     assert not is_net(x, base, DIGITS[base], m, t)
 
 
-@pytest.mark.parametrize("name", T)
-def test_t_is_not_understated(name):
-    """The bounds of the literature are sharp for these sequences but for a net size or two: t - 2 is too little."""
-    if T[name][DIMENSIONS] < 2:
-        pytest.skip("t = 0 cannot be less")
+@pytest.mark.parametrize("name", ["sobol", "niederreiter"])
+def test_a_smaller_t_is_rejected(name):
+    """Five in theory; with three, some block is no net."""
     blocks = [(m, top_digits(name, 1 + np.arange(2**m), 16)) for m in range(4, 13)]
     assert not all(is_net(x, 2, 16, m, T[name][DIMENSIONS] - 2) for m, x in blocks)
 
@@ -86,61 +84,6 @@ def test_sobol_is_scipys_but_for_the_order():
     assert np.array_equal(top_digits("sobol", (n ^ (n >> 1)) + 1, 32), exact)
     block = top_digits("sobol", 2**10 + 1 + np.arange(2**10), 32)
     assert {tuple(p) for p in block.tolist()} == {tuple(p) for p in exact[2**10 : 2**11].tolist()}
-
-
-def times(a: int, b: int) -> int:
-    """Product modulo 2 of polynomials, or of the first coefficients of series."""
-    return sum_xor(a << k for k in range(b.bit_length()) if b >> k & 1)
-
-
-def sum_xor(values) -> int:
-    total = 0
-    for value in values:
-        total ^= value
-    return total
-
-
-def remainder(a: int, b: int) -> int:
-    while a.bit_length() >= b.bit_length():
-        a ^= b << (a.bit_length() - b.bit_length())
-    return a
-
-
-def gcd(a: int, b: int) -> int:
-    while b:
-        a, b = b, remainder(a, b)
-    return a
-
-
-def test_niederreiters_rows_are_laurent_series_as_his_theorem_asks():
-    """A row times p^(Q + 1) is a polynomial g: nothing is left below x^0. And g has no factor p."""
-    for d, p in enumerate((0b10, 0b11, 0b111, 0b1011, 0b1101)):
-        degree, first = p.bit_length() - 1, 1
-        rows = niederreiter.matrices()[d].tolist()
-        for row, values in enumerate(rows):
-            series = int("".join(map(str, values)), 2)  # bit 31 is the coefficient of x^-1
-            power = 1
-            for _ in range(row // degree + 1):
-                power = times(power, p)
-            length = power.bit_length() - 1
-            if length > 24:
-                continue  # too few coefficients are left to look at
-            product = times(series, power)
-            assert (product >> length) % 2 ** (32 - length) == 0  # what the cut of the series does not reach
-            g = product >> 32
-            assert gcd(g, p) == 1
-            if row % degree == 0:
-                first = g
-            assert g == remainder(first << row % degree, power)
-
-
-def test_niederreiter_and_sobol_begin_alike():
-    """x gives the identity, x + 1 Pascal's matrix modulo 2."""
-    rows = np.arange(32)
-    pascal = np.array([[comb(c, r) % 2 for c in rows] for r in rows])
-    for matrices in (niederreiter.matrices(), sobol.matrices()):
-        assert np.array_equal(matrices[0], np.eye(32))
-        assert np.array_equal(matrices[1], pascal)
 
 
 @pytest.mark.parametrize("name", ["sobol", "niederreiter"])

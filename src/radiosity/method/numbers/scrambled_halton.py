@@ -3,8 +3,8 @@
 The permutations are those of H. Faure, "Good permutations for extreme discrepancy", J. Number Theory 42, 1992: one for each base,
 and 0 stays 0. They leave bases 2 and 3 as they are, and part the larger bases, whose first points lie on a line.
 
-RenderPark adds its place m to each digit up to the leading one instead, modulo the base. That is not used here: in base 2 its
-numbers 1 and 3 are equal, and beyond the leading digit it is the plain sequence, moved.
+RenderPark adds its place m = 0, 1, ... to each digit up to the leading one instead, modulo the base. That is not used here: in
+base 2 its numbers 1 and 3 are equal, and without the cut at the leading digit it would be one digital shift.
 """
 
 from dataclasses import dataclass
