@@ -27,7 +27,7 @@ class Engine:
 
     def __init__(self, geometry: Geometry, source: contract.Source, method: Method, seed: int, replicates: int,
                  groups: BandGroups | None = None):  # fmt: skip
-        self.geometry, self.source, self.method = geometry, source, method
+        self.geometry, self.source, self.method, self.seed = geometry, source, method, seed
         self.n, self.replicates = len(geometry.patches), replicates
         self.total = self.n * replicates
         if self.total + 2 * replicates > 2**31:
@@ -170,12 +170,21 @@ class Engine:
         """Fire the ``index``-th line (from 1) of each patch number: the slot of ``arrivals`` where it lands."""
         types = self.types
         replicate = types.UInt32(0) if self.replicates == 1 else self.replicate(number)
+        numbers = self.points(number, index, replicate, bits)
+        origin, direction = local_line(self.geometry, record, numbers)
+        return self.slot(land(self.geometry, origin, direction, coherent=coherent), replicate)
+
+    def points(self, number, index, replicate, bits: int):
+        """The numbers of the ``index``-th line of each patch number."""
+        types = self.types
         patch = number if self.replicates == 1 else number - replicate * self.n_opaque
         randomisation = [*dr.gather(types.Array4u, self.randomisation, replicate * 2),
                          *dr.gather(types.Array4u, self.randomisation, replicate * 2 + 1)]  # fmt: skip
-        numbers = self.numbers.points(index, patch, randomisation, bits)
-        origin, direction = local_line(self.geometry, record, numbers)
-        hit = land(self.geometry, origin, direction, coherent=coherent)
+        return self.numbers.points(index, patch, randomisation, bits)
+
+    def slot(self, hit, replicate):
+        """The slot of ``arrivals`` for lines of a replicate, from where they land."""
+        types = self.types
         landed = patch_of(self.geometry, hit, LOST, ESCAPED)
         slot = dr.select(landed == ESCAPED, types.UInt32(self.total), types.UInt32(self.total + self.replicates)) + replicate
         return dr.select(landed >= LOST, slot, landed + replicate * self.n_opaque)

@@ -14,6 +14,7 @@ from .problem import Problem
 PROCESSES = {
     "firing": "firing_process:Firing",
     "walks": "walks:Walks",
+    "gathering": "gathering:Gathering",
     "iteration": "iteration:Iteration",
     "multipath": "multipath:Multipath",
     "pooling": "pooling:Pooling",

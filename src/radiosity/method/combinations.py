@@ -44,6 +44,12 @@ def _local(method) -> str:
     if method.absorption == "fractional" and method.estimator != "collision":
         raise MethodError(f"absorption 'fractional' has no probability of its own at a landing, which estimator "
                           f"'{method.estimator}' divides by; take collision")  # fmt: skip
+    if method.order == "depth-first" and method.absorption == "fractional":
+        raise MethodError("absorption 'fractional' lets a share of all walks go on together; take --order breadth-first")
+    if method.estimator == "gathering":
+        if method.order == "depth-first":
+            raise MethodError("estimator 'gathering' goes back along walks whose landings sweeps have kept; take breadth-first")
+        return "gathering"
     return "walks"
 
 
@@ -63,12 +69,12 @@ def _global(method) -> str:
 
 
 def _refuse_options(method, found: str) -> None:
-    if method.estimator != "collision" and found not in ("walks", "iteration"):
+    if method.estimator != "collision" and found not in ("walks", "gathering", "iteration"):
         raise MethodError(f"estimator '{method.estimator}' is for walks and iterations of local lines, not for "
                           f"{method.lines}/{method.order}; leave it out")  # fmt: skip
     if found == "iteration" and method.estimator not in ("collision", "bidirectional"):
         raise MethodError(f"estimator '{method.estimator}' is for walks; iterations take collision or bidirectional")
-    if method.absorption != "auto" and found not in ("firing", "walks"):
+    if method.absorption != "auto" and found not in ("firing", "walks", "gathering"):
         raise MethodError(f"absorption '{method.absorption}': nothing is absorbed on the way in {method.lines}/{method.order}, "
                           "power is weighed instead; leave it out")  # fmt: skip
     if method.first_shot and found not in ("multipath", "pooling"):
