@@ -1,7 +1,8 @@
 """Stochastic Jacobi iterations of local lines as a process.
 
-L. Neumann, W. Purgathofer, R. F. Tobler, A. Neumann, P. Elias, M. Feda and X. Pueyo, "The stochastic ray method for radiosity",
-Eurographics Rendering Workshop 1995; P. Bekaert, "Hierarchical and stochastic algorithms for radiosity", thesis, K. U. Leuven 1999.
+L. Neumann, W. Purgathofer, R. F. Tobler, A. Neumann, P. Elias, M. Feda and X. Pueyo, "The stochastic ray method for
+radiosity", Eurographics Rendering Workshop 1995; P. Bekaert, "Hierarchical and stochastic algorithms for radiosity", thesis,
+K. U. Leuven 1999.
 """
 
 import numpy as np

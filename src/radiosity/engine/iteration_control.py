@@ -41,7 +41,7 @@ class Control:
         carried[-2 * replicates : -replicates], carried[-replicates:] = 1, LINE
         ends = Ends(dr.opaque(types.Float, 0.5, slots), upload(types.Float, carried))
         fired = exchange.shooter.shoot(counts, ends=ends)
-        seen = np.array(exchange.arrived()).reshape(replicates, exchange.n, groups)[..., 0]
+        seen = np.array(exchange.patches(exchange.shooter.received)).reshape(replicates, exchange.n, groups)[..., 0]
         self.missed += [seen % LINE, seen >> BITS]
         self.probed += np.array(counts, np.int64).reshape(replicates, exchange.n)
         return fired

@@ -45,6 +45,9 @@ class Exchange:
         self.rho = self._tiled(Source.fixed(groups.reflectance) * 2.0**-32)
         self.emitted = self._tiled(groups.emission * problem.patches.area[:, None] / problem.source.power)
         self.replicate = self.shooter.engine.replicate(dr.arange(self.types.UInt32, self.total))
+        every = np.arange(replicates)
+        slots = np.concatenate([np.repeat(every, self.n), every, every])
+        self.slot_replicate = upload(self.types.UInt32, np.repeat(slots, self.groups).astype(np.uint32))
         dr.eval(self.replicate)
         self.step = 0
 
@@ -58,6 +61,10 @@ class Exchange:
     def by_replicate(self, values: np.ndarray):
         """(replicates,) float64 spread over patches: (total,) Float64."""
         return dr.gather(self.types.Float64, upload(self.types.Float64, np.append(values, 0.0)), self.replicate)
+
+    def by_slot(self, values: np.ndarray):
+        """(replicates,) float64 spread over slots and groups."""
+        return dr.gather(self.types.Float64, upload(self.types.Float64, np.append(values, 0.0)), self.slot_replicate)
 
     def largest(self, values):
         """(total * groups,) to the largest magnitude of the groups, (total,)."""
@@ -119,6 +126,6 @@ class Exchange:
         dr.eval(density, carried)
         return Ends(density, carried)
 
-    def arrived(self):
-        """(total * groups,) Int64, what patches received in the last step."""
-        return dr.gather(self.types.Int64, self.shooter.received, dr.arange(self.types.UInt32, self.total * self.groups))
+    def patches(self, received):
+        """Of an array over slots and groups the part of the patches, (total * groups,)."""
+        return dr.gather(type(received), received, dr.arange(self.types.UInt32, self.total * self.groups))

@@ -8,6 +8,7 @@ Rounding ends the iterations: when less than a line is left it is sent with its 
 off has no bias, and no threshold is needed.
 """
 
+import drjit as dr
 import numpy as np
 
 from .device import upload
@@ -60,8 +61,6 @@ class Incremental:
 
     def step(self) -> int:
         """One iteration, and its lines; none when all is sent."""
-        import drjit as dr
-
         if self.probing:
             lines, self.probing = self.probing, 0
             return lines
@@ -69,7 +68,7 @@ class Incremental:
         lines, fired = exchange.send(self.unsent, types.UInt64(exchange.largest(self.unsent)))
         self.fired += 0 if fired is None else fired
         self.received += exchange.shooter.received
-        self.unsent = dr.round(exchange.rho * types.Float64(exchange.arrived()))
+        self.unsent = dr.round(exchange.rho * types.Float64(exchange.patches(exchange.shooter.received)))
         dr.eval(self.received, self.unsent)
         return lines
 

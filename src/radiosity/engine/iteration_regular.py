@@ -1,163 +1,147 @@
 """Regular stochastic Jacobi iterations: each sends the total power anew, and results are averaged (Neumann et al. 1995).
 
-Iteration k sends P = Pe + rho A_(k-1) with N_k lines and receives R_k. The result is the mean of all R_k, weighted by N_k. The
-source A takes R_k with weight N_k / sum N too, but never with less than 1/2: a source that remembers all would keep the error of
-its first iterations, which falls as slowly as L^-(1-lambda) with all lines L (docs/iterations.md).
+Iteration k sends P = Pe + rho A_(k-1) with N_k lines and receives R_k. The result is the mean of all R_k, weighted by N_k; with a
+control variate by N_k / T_k^2, T_k being the power sent, since that is what their variances go with. The source A takes R_k with
+its weight in the result too, but never with less than 1/2: a source that remembers all would keep the error of its first
+iterations, which falls as slowly as L^-(1-lambda) with all lines L (docs/iterations.md).
 
 Iterations begin at the light alone, whose image is too dark by lambda^k after k of them. With ``warm_up`` they begin at an
 incremental solution instead, which has no bias, and neither have they (Bekaert 1999). Without it, the first iterations, until
 lambda^k is 1/1000 or less, are a start-up that the result leaves out (RenderPark has such an option).
 """
 
-import math
-
+import drjit as dr
 import numpy as np
 
 from .device import upload
-from .iteration_control import SHARE, Control
+from .iteration_control import Control
 from .iteration_exchange import LINE, Exchange
 from .iteration_incremental import Incremental
+from .iteration_plan import START, Plan
 from .problem import Problem
 from .process import State, Swept
 
-START = 4  # one line in so many of the first stage is for the start
 FORGET = 0.5  # least weight of the last iteration in the source
-DARK = 1e-3  # share of the light that may be missing when the start-up ends
-UNIT = 2.0**27  # of received power: a line that carries Phi / (1 - rho_max)
-TOTAL = 2.0**58  # of sums of power, likewise
-FEWEST = 1024  # lines of an iteration, and one a patch
+UNIT = 2.0**27  # of received power: the mean of what a line carries
+TOTAL = 2.0**58  # of sums of power: Phi / (1 - rho_max)
 
 
 class Regular:
-    """Sums of the iterations of all replicates.
+    """Means over the iterations of all replicates.
 
     Attributes:
-        received: (slots * groups,) Int64, sum of N_k R_k in units of ``unit``.
+        received: (slots * groups,) Float64, the mean of R_k over Phi.
         source: (total * groups,) Float64, A over Phi.
-        summed: sum of N_k over the iterations that the result holds.
-        constants: (replicates, groups) float64, sum of N_k beta_k.
-        quanta, done: lines of a replicate, to be traced in this stage and traced.
-        starting, start_lines: iterations of the start-up that are left, and the lines of each.
-        begin_left: lines of this stage that are to be fired for the control variate.
+        weights: (replicates,) float64, the sum of the weights of all R_k in the mean.
+        constants: (replicates, groups) float64, the mean of beta_k.
+        plan: how many lines are fired when.
     """
 
     def __init__(self, exchange: Exchange, problem: Problem, control: Control | None, warm_up: bool):
         self.exchange, self.control, types = exchange, control, exchange.types
         rho, area = problem.groups.reflectance.max(axis=1), problem.patches.area
-        self.mean = min(float(rho @ area / area.sum()), 0.99)
-        self.bound = 1 - float(rho.max())
-        self.unit = UNIT * self.bound
+        self.plan = Plan(exchange.n, min(float(rho @ area / area.sum()), 0.99))
+        self.total = TOTAL * (1 - float(rho.max()))
         self.warm = Incremental(exchange, problem, None) if warm_up else None
-        self.received = upload(types.Int64, np.zeros(exchange.shooter.slots * exchange.groups, np.int64))
+        self.received = upload(types.Float64, np.zeros(exchange.shooter.slots * exchange.groups))
         self.source = upload(types.Float64, np.zeros(exchange.total * exchange.groups))
-        self.constants = np.zeros((exchange.replicates, exchange.groups))
-        self.quanta = self.done = self.summed = self.count = self.starting = self.start_lines = self.begin_left = 0
+        self.weights, self.constants = np.zeros(exchange.replicates), np.zeros((exchange.replicates, exchange.groups))
 
     def advance(self, quanta: int, swept: Swept) -> None:
         """Iterate until a replicate has traced N lines."""
-        if quanta > self.quanta:
+        if quanta > self.plan.quanta:
             self._begin(quanta)
-        while self.done < self.quanta:
+        while self.plan.done < quanta:
             swept(self._next())
 
+    @property
+    def quanta(self) -> int:
+        return self.plan.quanta
+
     def _begin(self, quanta: int) -> None:
-        if self.quanta == 0:
-            budget = max(quanta // START, 1)
-            if self.warm is not None:
-                self.warm.begin(max(round(budget * (1 - self.mean)), 1))
-                self.starting = 1
-            else:
-                self.starting = max(1, math.ceil(math.log(DARK) / math.log(max(self.mean, DARK))))
-                self.start_lines = max(1, min(budget // self.starting, 10 * self.exchange.n))
-        self.begin_left = max((quanta - self.quanta) // SHARE, 1) if self.control is not None else 0
-        self.quanta = quanta
+        plan = self.plan
+        if plan.quanta == 0 and self.warm is not None:
+            plan.starting = 1
+            self.warm.begin(max(round(quanta / START * (1 - plan.mean)), 1))
+        plan.begin(quanta, probes=self.control is not None)
 
     def _next(self) -> int:
-        if self.begin_left and self.control is not None:
-            lines, self.begin_left = self.begin_left, 0
-            self.done += lines
+        plan = self.plan
+        if plan.probing and self.control is not None:
+            lines, plan.probing = plan.probing, 0
+            plan.done += lines
             return self.control.probe(lines)
-        if self.starting and self.warm is not None:
+        if plan.starting and self.warm is not None:
             lines = self.warm.step()
             if lines == 0:
                 self._take_over(self.warm)
             return lines
-        if self.starting:
-            self.starting -= 1
-            self.done += self.start_lines
-            return self._iterate(self.start_lines, kept=False)
-        lines = self._lines()
-        self.done += lines
-        return self._iterate(lines, kept=True)
-
-    def _lines(self) -> int:
-        """Of the next iteration: one a patch at least, then a share of all so far, so that between L and 2 L lines there are
-        enough iterations for an error of the source to die out, and few enough to be cheap."""
-        wanted = max(self.exchange.n, FEWEST, self.summed // min(max(8, round(4 / (1 - self.mean))), 128))
-        left = self.quanta - self.done
-        return left if left < 1.5 * wanted else wanted
+        return self._iterate(plan.lines())
 
     def _take_over(self, warm: Incremental) -> None:
         """The incremental solution becomes the source, and part of the result, with the weight of its lines."""
-        import drjit as dr
-
-        types, self.starting = self.exchange.types, 0
-        lines = round(warm.quanta / (1 - self.mean))  # not the lines traced: these depend on the solution
-        self.source = types.Float64(self._patches(warm.received)) * warm.scale
-        self.received = types.Int64(dr.round(types.Float64(warm.received) * (warm.scale * lines * self.unit)))
+        types, plan = self.exchange.types, self.plan
+        lines = round(warm.quanta / (1 - plan.mean))  # not the lines traced: these depend on the solution
+        self.received = types.Float64(warm.received) * warm.scale
+        self.source = self.exchange.patches(self.received)
         dr.eval(self.source, self.received)
-        self.done, self.summed = self.done + lines, lines
+        sent = self._sent(self._largest(self.exchange.emitted + self.exchange.rho * self.source))
+        self.weights = self._weight(lines, sent)
+        plan.starting, plan.done, plan.summed = 0, plan.done + lines, lines
 
-    def _patches(self, received):
-        import drjit as dr
+    def _largest(self, power):
+        """(total,) UInt64: the largest band of each patch."""
+        types = self.exchange.types
+        largest = types.UInt64(self.exchange.largest(power) * dr.opaque(types.Float64, self.total))
+        dr.eval(largest)
+        return largest
 
-        return dr.gather(self.exchange.types.Int64, received, dr.arange(self.exchange.types.UInt32, dr.width(self.source)))
+    def _sent(self, largest) -> np.ndarray:
+        """(replicates,) float64: T over Phi, from whole numbers, so that no order matters."""
+        return np.maximum(self.exchange.sums(largest), 1).astype(np.float64) / self.total
 
-    def _iterate(self, lines: int, *, kept: bool) -> int:
-        import drjit as dr
+    def _weight(self, lines: int, sent: np.ndarray) -> np.ndarray:
+        """(replicates,) float64, of an iteration in the mean."""
+        return np.full(len(sent), float(lines)) if self.control is None else lines / sent**2
 
+    def _iterate(self, lines: int) -> int:
         exchange, control, types = self.exchange, self.control, self.exchange.types
         power = exchange.emitted + exchange.rho * self.source
         if control is not None:
-            if self.count & (self.count - 1) == 0:  # a median costs a sort
+            if self.plan.count & (self.plan.count - 1) == 0:  # a median costs a sort
                 control.adapt(power)
             power -= control.constant()
-        largest = types.UInt64(exchange.largest(power) * dr.opaque(types.Float64, TOTAL * self.bound))
-        total = np.maximum(exchange.sums(largest), 1).astype(np.float64)
-        expected = types.UInt64(types.Float64(largest) * exchange.by_replicate(float(lines) * LINE / total))
-        fired, _ = exchange.send(power * dr.opaque(types.Float64, lines * self.unit), expected)
-        arrived = types.Float64(exchange.arrived()) * dr.opaque(types.Float64, 1 / (lines * self.unit))
-        if control is not None:
-            arrived += control.received()
-        self.count += 1
-        weight = 1.0
-        if kept:
-            self.summed += lines
-            weight = max(lines / self.summed, FORGET)
-            self.received += exchange.shooter.received
-            self.constants += 0 if control is None else lines * control.beta
-        self.source = dr.lerp(self.source, arrived, dr.opaque(types.Float64, weight))
+        largest = self._largest(power)
+        sent = self._sent(largest)
+        expected = types.UInt64(types.Float64(largest) * exchange.by_replicate(lines * LINE / (sent * self.total)))
+        fired, _ = exchange.send(power * exchange.by_patch(exchange.by_replicate(lines * UNIT / sent)), expected)
+        arrived = types.Float64(exchange.shooter.received) * exchange.by_slot(sent / (lines * UNIT))
+        dr.eval(arrived)
+        weight = np.ones(exchange.replicates)
+        if self.plan.count_iteration(lines):
+            weight = self._weight(lines, sent)
+            self.weights += weight
+            weight /= self.weights
+            self.received = dr.lerp(self.received, arrived, exchange.by_slot(weight))
+            if control is not None:
+                self.constants += weight[:, None] * (control.beta - self.constants)
+        fresh = self.exchange.patches(arrived) + (0 if control is None else control.received())
+        self.source = dr.lerp(self.source, fresh, exchange.by_patch(exchange.by_replicate(np.maximum(weight, FORGET))))
         dr.eval(self.source, self.received)
         return fired
 
-    @property
-    def scale(self) -> float:
-        """Of the received power: one unit over Phi."""
-        return 1.0 / (max(self.summed, 1) * self.unit)
-
     def capture(self) -> State:
-        numbers = [self.quanta, self.done, self.summed, self.count, self.starting, self.start_lines, self.begin_left]
-        state = {"received": np.array(self.received), "source": np.array(self.source), "scale": np.array(self.scale)}
-        state |= {"constants": self.constants / max(self.summed, 1), "progress": np.array(numbers)}
-        if self.warm is not None and self.starting:
+        state = {"received": np.array(self.received), "source": np.array(self.source), "scale": np.array(1.0)}
+        state |= {"constants": self.constants.copy(), "weights": self.weights.copy()}
+        state["progress"] = self.plan.capture()
+        if self.warm is not None and self.plan.starting:
             state |= {f"warm_{key}": value for key, value in self.warm.capture().items()}
         return state
 
     def restore(self, state: State) -> None:
-        types, numbers = self.exchange.types, (int(x) for x in state["progress"])
-        self.quanta, self.done, self.summed, self.count, self.starting, self.start_lines, self.begin_left = numbers
-        self.received = upload(types.Int64, state["received"])
-        self.source = upload(types.Float64, state["source"])
-        self.constants = state["constants"] * max(self.summed, 1)
-        if self.warm is not None and self.starting:
+        types = self.exchange.types
+        self.plan.restore(state["progress"])
+        self.received, self.source = (upload(types.Float64, state[key]) for key in ("received", "source"))
+        self.constants, self.weights = state["constants"].copy(), state["weights"].copy()
+        if self.warm is not None and self.plan.starting:
             self.warm.restore({key.removeprefix("warm_"): value for key, value in state.items() if key.startswith("warm_")})
