@@ -84,14 +84,14 @@ def test_a_wrong_line_is_rejected(monkeypatch):
     """Lines that are uniform over the hemisphere, not cosine distributed, fail the same comparison."""
     import drjit as dr
 
-    from radiosity.engine import lines
+    from radiosity.engine import departure
 
     def uniform(first, second):
         sine = dr.sqrt(1 - second * second)
         y, x = dr.sincos(first * (2 * np.pi))
         return x * sine, y * sine, second
 
-    monkeypatch.setattr(lines, "hemisphere", uniform)
+    monkeypatch.setattr(departure, "hemisphere", uniform)
     scene, exact = parallel_squares()
     patches = rd.subdivide(scene, cells=3)
     solution = rd.solve(patches, rays=200_000, replicates=16)

@@ -24,6 +24,10 @@ def solve(
     lines: str | None = None,
     order: str | None = None,
     numbers: str | None = None,
+    estimator: str | None = None,
+    absorption: str | None = None,
+    first_shot: Share = None,
+    control_variate: Flag = False,
     patch_size: Length = None,
     cells: Count = None,
     replicates: Copies = 8,
@@ -52,7 +56,7 @@ def solve(
     quanta
         Or: exactly so many quanta of power in each replicate; the report of a run names its number.
     method
-        A named method.
+        A named method; `radiosity methods` lists them.
     equation
         Another choice for the method's part of this name: where a particle leaves the patch that it hit.
     lines
@@ -61,6 +65,14 @@ def solve(
         Likewise: which line is fired next.
     numbers
         Likewise: which points of the unit cube the lines are made from.
+    estimator
+        Likewise: what is scored of a walk or line: collision, absorption, survival, gathering, bidirectional.
+    absorption
+        Likewise: how a walk ends: rounded, drawn, fractional.
+    first_shot
+        Of global lines: the share of all lines that sends the lights' own power by local lines first, such as 25%.
+    control_variate
+        Of iterations: take a constant radiosity out of what lines carry.
     patch_size
         Longest edge of a patch, in metres. Default: what gives about 20 000 patches.
     cells
@@ -103,6 +115,7 @@ def solve(
         solution = rd.solve(
             patches, method, rays=rays if given else DEFAULT_RAYS, seconds=seconds, error=error, quanta=quanta,
             equation=equation, lines=lines, order=order, numbers=numbers, replicates=replicates, seed=seed, device=device,
+            estimator=estimator, absorption=absorption, first_shot=first_shot, control_variate=control_variate or None,
             coherent=coherent or None, progress=progress, resume=before,
         )  # fmt: skip
     print(solution.report())

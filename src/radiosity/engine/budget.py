@@ -66,6 +66,18 @@ def first_stage(replicates: int, n_patches: int) -> int:
     return max(LEAST_QUANTA, 1 << round(math.log2(max(FIRST_STAGE / replicates, 2 * n_patches))))
 
 
+def first_rung(order: str, replicates: int, share) -> int:
+    """N of the first rung for an order: staged ones begin with few lines, to show something soon; well distributed ones with a
+    quantum no larger than the power of the weakest light, so that none is silent (``share`` of power, (n_patches,)).
+    """
+    usual = first_stage(replicates, len(share))
+    if order == "staged":
+        return LEAST_QUANTA
+    if order == "well-distributed":
+        return min(usual, max(LEAST_QUANTA, 1 << math.ceil(math.log2(1 / share[share > 0].min()))))
+    return usual
+
+
 def rung_after(quanta: int, first: int) -> int:
     """The rung above N on the ladder of doubling powers of two that begins at ``first``."""
     return first if quanta < first else 1 << (quanta.bit_length())

@@ -10,7 +10,7 @@ from ..errors import MethodError, RadiosityWarning
 from ..method import Method
 from ..patches import Patches
 from ..solution.model import Solution
-from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_stage, next_quanta, on_ladder
+from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder
 from .device import choose
 from .geometry import Geometry
 from .problem import Problem
@@ -41,7 +41,7 @@ class Run:
                 f"order '{method.order}' cannot carry {bands} different bands: "
                 "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
             )
-        self.rung = first_stage(replicates, len(patches))
+        self.rung = first_rung(method.order, replicates, self.problem.source.share)
         self.teller, self.stop = Teller(budget, listener), Stop()
         self.teller.tell("compiling")
         self.device = choose(device)

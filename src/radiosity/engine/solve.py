@@ -24,6 +24,10 @@ def solve(
     lines: str | None = None,
     order: str | None = None,
     numbers: str | None = None,
+    estimator: str | None = None,
+    absorption: str | None = None,
+    first_shot: float | None = None,
+    control_variate: bool | None = None,
     coherent: bool | None = None,
     progress: Listener | None = None,
     resume: Solution | None = None,
@@ -32,8 +36,9 @@ def solve(
 
     Args:
         scene: a `Scene` (cut into about 20 000 patches) or the `Patches` of one.
-        method: a preset's name or a `Method`; ``equation``, ``lines``, ``order``, ``numbers`` and ``coherent``
-            replace its choices.
+        method: a preset's name or a `Method`.
+        equation, lines, order, numbers, estimator, absorption, first_shot, control_variate, coherent: replace its choices;
+            see `Method`.
         rays, seconds, error, quanta: exactly one: lines traced in all (replicates together); wall time (the first stage is
             completed whatever it takes); relative error of the scene (`Solution.error`); or N of each replicate, which
             replays a run bit for bit.
@@ -53,7 +58,10 @@ def solve(
             resumed. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C before the first stage was complete.
     """
     budget = Budget(rays, seconds, error, quanta)
-    chosen = resolve(method, equation=equation, lines=lines, order=order, numbers=numbers, coherent=coherent)
+    chosen = resolve(
+        method, equation=equation, lines=lines, order=order, numbers=numbers, estimator=estimator, absorption=absorption,
+        first_shot=first_shot, control_variate=control_variate, coherent=coherent,
+    )  # fmt: skip
     replicates, seed = _whole(replicates, "replicates", 1), _whole(seed, "seed", 0)
     budget.check(replicates)
     if isinstance(scene, Scene):

@@ -1,0 +1,94 @@
+"""``radiosity methods``"""
+
+
+def methods(name: str | None = None, /) -> int:
+    """List the methods, or say what one is, when to take it, its parameters and whom to cite.
+
+    Parameters
+    ----------
+    name
+        Of a method, or of one of the four axes: equation, lines, order, numbers.
+    """
+    from ..errors import MethodError
+    from ..method import PRESETS
+    from ..method.model import AXES
+
+    if name is None:
+        _list()
+    elif name in AXES:
+        _axis(name)
+    elif name in PRESETS:
+        _explain(name)
+    else:
+        raise MethodError(f"method '{name}' does not exist; known are {', '.join(PRESETS)}; and the axes {', '.join(AXES)}")
+    return 0
+
+
+def _list() -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from ..method import PRESETS
+    from ..method.model import AXES
+
+    table = Table(box=None, pad_edge=False)
+    for head in ("method", *AXES, "more", "from"):
+        table.add_column(head, no_wrap=True)
+    for name, preset in PRESETS.items():
+        axes = [getattr(preset.method, axis) for axis in AXES]
+        more = ", ".join(str(preset.method).split("/")[len(AXES) :])
+        fields = dict(preset.source.fields)
+        table.add_row(name, *axes, more, f"{_family(fields['author'])} {fields['year']}")
+    Console(highlight=False, width=1000).print(table)
+    print("\n`radiosity methods NAME` explains one; `radiosity methods numbers` (equation, lines, order) the choices of an axis,")
+    print("which replace a method's own: radiosity solve room --method particle-tracing --numbers sobol")
+
+
+def _family(authors: str) -> str:
+    names = [author.split()[-1] for author in _plain(authors).split(" and ")]
+    return f"{names[0]} et al." if len(names) > 2 else " and ".join(names)
+
+
+def _plain(text: str) -> str:
+    import re
+
+    text = re.sub(r"{\\'a}", "á", text)
+    return re.sub(r"{\\v{s}}", "š", text)
+
+
+def _axis(axis: str) -> None:
+    from ..method.equation import EQUATIONS
+    from ..method.lines import LINES
+    from ..method.numbers import NUMBERS
+    from ..method.order import ORDERS
+
+    texts = {"equation": EQUATIONS, "lines": LINES, "order": ORDERS}.get(axis) or {name: _numbers(name) for name in NUMBERS}
+    width = max(map(len, texts))
+    for value, text in texts.items():
+        print(f"{value:<{width}}  {text}")
+
+
+def _numbers(name: str) -> str:
+    from importlib import import_module
+
+    from ..method.numbers import NUMBERS
+
+    module = import_module(f"radiosity.method.numbers.{NUMBERS[name].split(':')[0]}")
+    return " ".join((module.__doc__ or "").split("\n\n")[0].split())
+
+
+def _explain(name: str) -> None:
+    import textwrap
+
+    from ..method import PRESETS
+
+    preset = PRESETS[name]
+    print(f"{name}: {preset.method}\n")
+    for text in (preset.about, f"When: {preset.when}"):
+        print(textwrap.fill(text, 100) + "\n")
+    if preset.parameters:
+        print("Its own parameters, besides equation, lines, order and numbers:")
+        for parameter, meaning in preset.parameters:
+            print(f"  {parameter:<16} {meaning}")
+        print()
+    print(preset.source.bibtex)

@@ -1,0 +1,35 @@
+"""What a named algorithm is."""
+
+from dataclasses import dataclass
+
+from ..model import Method
+from .citations import CITATIONS, Citation
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A named algorithm: a `Method`, and what a user should know of it.
+
+    Attributes:
+        method: the choices.
+        about: what it is, in a few sentences.
+        when: when to take it.
+        key: of its citation.
+        parameters: options of `Method` that are its own, each with its meaning.
+    """
+
+    method: Method
+    about: str
+    when: str
+    key: str
+    parameters: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def source(self) -> Citation:
+        """The publication."""
+        return CITATIONS[self.key]
+
+    @property
+    def citation(self) -> str:
+        """The publication in one line."""
+        return self.source.text
