@@ -1,0 +1,60 @@
+"""Sparse counts of lines between patches, kept as sorted 64-bit keys."""
+
+import numpy as np
+
+LEAST = 1 << 20  # keys that are gathered before they are merged into the rest
+CODE = np.uint64(0xFFFFFFFF)
+WORD = np.uint64(32)
+
+
+class PairCounts:
+    """How many lines of each row end at each column; each row and column is a number below 2^32.
+
+    Keys are row * 2^32 + column. What comes in is sorted and counted launch by launch, and merged when there is half as much of
+    it as of what is there, so that a key is moved a few times only.
+    """
+
+    def __init__(self, keys: np.ndarray | None = None, counts: np.ndarray | None = None):
+        self._keys = np.zeros(0, np.uint64) if keys is None else keys
+        self._counts = np.zeros(0, np.uint32) if counts is None else counts
+        self._new: list[tuple[np.ndarray, np.ndarray]] = []
+
+    def add(self, rows: np.ndarray, columns: np.ndarray) -> None:
+        """(m,) whole numbers each, one line an entry."""
+        keys = np.sort((rows.astype(np.uint64) << WORD) | columns.astype(np.uint64))
+        self._new.append(_merged(keys, None))
+        if sum(len(keys) for keys, _ in self._new) > max(LEAST, len(self._keys) // 2):
+            self._merge()
+
+    def _merge(self) -> None:
+        if self._new:
+            keys = np.concatenate([self._keys, *(keys for keys, _ in self._new)])
+            counts = np.concatenate([self._counts, *(counts for _, counts in self._new)])
+            order = np.argsort(keys, kind="stable")  # runs that are sorted already are merged
+            self._keys, self._counts = _merged(keys[order], counts[order])
+            self._new = []
+
+    @property
+    def arrays(self) -> tuple[np.ndarray, np.ndarray]:
+        """Keys, (m,) uint64 ascending, and counts, (m,) uint32."""
+        self._merge()
+        return self._keys, self._counts
+
+    def __len__(self) -> int:
+        """Entries, or somewhat more: what was not merged yet may hold some twice."""
+        return len(self._keys) + sum(len(keys) for keys, _ in self._new)
+
+
+def _merged(keys: np.ndarray, counts: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    """Equal neighbours become one; ``counts`` None are ones."""
+    if len(keys) == 0:
+        return keys, np.zeros(0, np.uint32)
+    first = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
+    if counts is None:
+        return keys[first], np.diff(first, append=len(keys)).astype(np.uint32)
+    return keys[first], np.add.reduceat(counts, first, dtype=np.uint32)
+
+
+def split(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns of keys, (m,) int64 each."""
+    return (keys >> WORD).astype(np.int64), (keys & CODE).astype(np.int64)
