@@ -1,11 +1,11 @@
 """Spans that exchange power one after the other: the sequential heart of multipath.
 
-A span between i and j takes what both have not sent yet, and its share of what they emit, from each to the other, which keeps what
-it reflects for its next span. The order of spans is part of the method, so a lane follows all spans of a replicate; lanes run
-side by side.
+A span between i and j takes what both have not sent yet, and what they emit at each of their ends, from each to the other,
+which keeps what it reflects for its next span. The order of spans is part of the method, so a lane follows all spans of a
+replicate; lanes run side by side.
 
-Dr.Jit lets a loop's body touch an array that it also changes once, by an atomic exchange. So a span takes three steps, at i, at j and
-at i again: each step hands in what the step before took out, and takes out what lies there.
+Dr.Jit lets a loop's body touch an array that it also changes only once, by an atomic exchange. So a span takes three steps, at i,
+at j and at i again: each hands in what the step before took out, and takes out what lies there.
 """
 
 from dataclasses import dataclass

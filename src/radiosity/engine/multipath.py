@@ -16,6 +16,7 @@ from . import first_shot
 from .device import frozen, upload
 from .exchange import LEDGER, Exchange
 from .first_shot import FirstShot
+from .mixing import Mixed
 from .problem import Problem
 from .process import AbstractProcess, AbstractTally, State, Swept
 from .quanta import Source
@@ -23,15 +24,16 @@ from .spans import ONE_WAY, Spans
 
 HIGHEST = 34  # bits of the largest power that a span can carry
 FULLEST = 63  # bits of a sum
+WARM_UP, MOST_WARM_UP = 4, 64  # ends of a mean patch, the first times 1 / (1 - mean reflectance)
 BATCH = 1 << 21  # spans of all replicates between two looks at the clock
 
 
 class Multipath(AbstractProcess):
-    """N is the number of global lines of a replicate (of spans, where they are drawn one by one). All lines (`AbstractTally.lines`)
+    """N is the number of global lines of a replicate (of spans, where they are drawn one by one). All lines, as they are counted,
     are proportional to it: each line has a fixed expected number of ends, and a first shot has its share of all.
 
-    Without a first shot the state after N lines depends on N alone. With one, the first shot is made finer at each stage, from N/2 to
-    N for example, and the global lines of that stage start from what it has left by then: an average, weighted by
+    Without a first shot the state after N lines depends on N alone. With one, the first shot is made finer at each stage, from
+    N/2 to N for example, and the global lines of that stage start from what it has left by then: an average, weighted by
     lines, of unbiased results.
     """
 
@@ -39,6 +41,7 @@ class Multipath(AbstractProcess):
         super().__init__(*arguments)
         patches, groups, types = self.geometry.patches, self.problem.groups, self.geometry.device.types
         self.spans = Spans(self.geometry, self.method, self.seed, self.replicates)
+        self.mixed = Mixed(self.spans)
         self.shot = None
         if self.method.first_shot:
             self.shot = FirstShot(self.geometry, self.problem, self.method.numbers, self.seed, self.replicates)
@@ -67,15 +70,43 @@ class Multipath(AbstractProcess):
     def advance(self, quanta: int, swept: Swept) -> None:
         most = float(self.spans.ends_per_line.max()) * quanta
         if most > 2.0 ** (FULLEST - HIGHEST):
-            raise MethodError(f"{quanta} lines a replicate cross a patch {most:.3g} times, more than its 64-bit sums hold; take fewer "
-                              "lines a replicate and more replicates, or smaller patches")  # fmt: skip
+            raise MethodError(f"{quanta} lines a replicate cross a patch {most:.3g} times, more than its 64-bit sums hold; "
+                              "take fewer lines a replicate and more replicates, or smaller patches")  # fmt: skip
         self._quanta = quanta
         if self.shot is not None:
             self._shoot(quanta, swept)
-        a_line = float(self.spans.ends_per_line.sum()) / 2
-        batch = max(1, ceil(BATCH / max(a_line, 1e-3) / self.replicates))
+        if self.done == 0:
+            self._begin()
         while self.done < quanta:
-            swept(self._carry(min(batch, quanta - self.done)))
+            swept(self._carry(min(self._batch - self.done % self._batch, quanta - self.done)))
+
+    @property
+    def _batch(self) -> int:
+        """Lines of a replicate between two looks at the clock: whole blocks."""
+        spans_a_line = max(float(self.spans.ends_per_line.sum()) / 2, 1e-3)
+        return max(1, round(BATCH / spans_a_line / self.replicates / self.mixed.block)) * self.mixed.block
+
+    def _begin(self) -> None:
+        """Put the power on the patches that waits there in the long run: what they reflect of a uniform irradiance that
+        balances what is emitted, and then what the first lines make of that.
+
+        From nothing, the power that waits would be missing from all sums: that is about 1 / (1 - rho) of the ends that a patch
+        has had, three standard errors in the labyrinth of reflectance 0.9.
+        """
+        types, groups, area = self.geometry.device.types, self.problem.groups, self.geometry.patches.area
+        for g, exchange in enumerate(self.exchanges):
+            rho = groups.reflectance[:, g]
+            source = frozen(exchange.source).reshape(self.replicates, self.n).astype(float)
+            mean = source @ area / float((1 - rho) @ area)
+            exchange.unshot = upload(types.UInt64, np.floor(mean[:, None] * rho).astype(np.uint64))
+        visits = WARM_UP / (1 - float(np.average(groups.reflectance.max(axis=1), weights=area)))
+        lines = ceil(min(visits, MOST_WARM_UP) / float(self.spans.ends_per_line.mean()) / self.mixed.block) * self.mixed.block
+        while self.done < lines:
+            self._carry(min(self._batch, lines - self.done))
+        self.done, self.ends[:] = 0, 0
+        for exchange, ledger in zip(self.exchanges, self.ledger, strict=True):
+            exchange.landed = dr_zeros(types, self.total)
+            ledger.update({name: [0] * self.replicates for name in LEDGER})
 
     def _shoot(self, quanta: int, swept: Swept) -> None:
         """Refine the first shot, and let patches emit what it lets them reflect."""
@@ -90,14 +121,14 @@ class Multipath(AbstractProcess):
 
     def _carry(self, count: int) -> int:
         """The next lines of each replicate: how many ends they have, all together."""
-        drawn = [self.spans.draw(replicate, self.done, count) for replicate in range(self.replicates)]
+        drawn = [self.mixed.draw(replicate, self.done, count) for replicate in range(self.replicates)]
         UInt32 = self.geometry.device.types.UInt32
-        both = [np.concatenate([getattr(pairs, end) for pairs in drawn]) for end in ("one", "other")]
+        both = [np.concatenate(ends) for ends in zip(*drawn, strict=True)]
         before = int(self.ends.sum())
-        for row, pairs in zip(self.ends, drawn, strict=True):
-            for end in (pairs.one, pairs.other):
+        for row, pair in zip(self.ends, drawn, strict=True):
+            for end in pair:
                 row += np.bincount(end[end < ONE_WAY], minlength=self.n)
-        lengths = np.array([len(pairs.one) for pairs in drawn])
+        lengths = np.array([len(one) for one, _ in drawn])
         if lengths.any():
             one, other = (upload(UInt32, np.append(end, end[-1:])) for end in both)  # never of one entry
             for exchange, ledger in zip(self.exchanges, self.ledger, strict=True):

@@ -1,0 +1,155 @@
+"""Stochastic iteration on global lines (after L. Neumann, "Monte Carlo radiosity", Computing 55, 1995).
+
+In an iteration every span end gathers the radiosity that its partner has at that time. What a patch receives is the mean over its
+ends; not of one iteration alone, in which small patches may have none, but pooled over iterations. `docs/global-lines.md` says
+why the result is consistent.
+"""
+
+import numpy as np
+
+from ..errors import MethodError
+from . import first_shot
+from .ends import Ends, of_lines
+from .first_shot import FirstShot
+from .pooled import Pooled
+from .process import AbstractProcess, State, Swept
+from .spans import ESCAPED, LOST, Pairs, Spans
+
+ENDS = 2  # of a mean patch in an iteration, at least
+LEAST = 1 << 10  # lines of an iteration
+MEMORY = 16  # iterations that the radiosity which lines carry remembers
+BATCH = 1 << 20  # spans of all replicates between two looks at the clock
+SWEEPS, SETTLED = 200, 1e-4  # of the warm-up: at most, or until all change together is this share of 1 - rho
+ARRAYS = ("carried", "recent", "recent_ends", "received", "ends", "escaped", "lost")
+
+
+class Pooling(AbstractProcess):
+    """N is the number of global lines of a replicate (of spans, where they are drawn one by one). An iteration is one bundle;
+    or, of other lines, a power of two, such that a mean patch has ENDS ends or more.
+
+    Arrays, replicates side by side, (n_groups, replicates * n_patches) or (replicates * n_patches):
+        carried: radiosity that lines carry, W/m²: all of it, or what is reflected where there was a first shot.
+        recent, recent_ends: radiosity of partners, and ends, in the last iterations, each counting less than the next.
+        received, ends: the same of all iterations, alike: the result.
+        escaped, lost: ends that see nothing, or an absorbing back.
+
+    Without a first shot the state after N lines depends on N alone; with one, see `Multipath`.
+    """
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.spans = Spans(self.geometry, self.method, self.seed, self.replicates)
+        self.shot = None
+        if self.method.first_shot:
+            self.shot = FirstShot(self.geometry, self.problem, self.method.numbers, self.seed, self.replicates)
+        groups = self.problem.groups
+        self.n, self.n_groups, total = len(self.geometry.patches), groups.n_groups, len(self.geometry.patches) * self.replicates
+        self._quanta, self.done = 0, 0
+        self.rho, self.emission = (np.tile(x.T, self.replicates) for x in (groups.reflectance, groups.emission))
+        self.direct = np.zeros((self.n_groups, total)) if self.shot is not None else None
+        self.carried, self.recent, self.received = (np.zeros((self.n_groups, total)) for _ in range(3))
+        self.recent_ends = np.zeros(total)
+        self.ends, self.escaped, self.lost = (np.zeros(total, np.int64) for _ in range(3))
+
+    @property
+    def iteration(self) -> int:
+        """Lines of an iteration."""
+        if self.method.lines == "bundles":
+            return self.spans.bundle
+        return max(LEAST, 1 << int(np.ceil(np.log2(ENDS / float(self.spans.ends_per_line.mean())))))
+
+    @property
+    def quanta(self) -> int:
+        return self._quanta
+
+    @property
+    def nested(self) -> bool:
+        return self.shot is None
+
+    def advance(self, quanta: int, swept: Swept) -> None:
+        self._quanta = quanta
+        if self.shot is not None:
+            self.shot.fire(first_shot.lines_for(self.method.first_shot, quanta * float(self.spans.ends_per_line.sum())), swept)
+            state, area = self.shot.capture(), self.geometry.patches.area
+            landed = [first_shot.landed(self.problem, state, g)[0] / area for g in range(self.n_groups)]
+            self.direct = np.stack([power.ravel() for power in landed])
+        if self.done == 0:
+            self._warm_up()
+        step = self.iteration
+        batch = max(1, round(BATCH / self.replicates / step / max(float(self.spans.ends_per_line.sum()) / 2, 1e-3))) * step
+        while self.done < quanta:
+            swept(self._gather(min(batch - self.done % batch, quanta - self.done)))
+
+    @property
+    def source(self) -> np.ndarray:
+        """(n_groups, replicates * n_patches): radiosity before any reflection along global lines."""
+        return self.emission if self.direct is None else self.rho * self.direct
+
+    def _warm_up(self) -> None:
+        """Solve for what the first lines see, which the iteration uses again: begun at nothing it would take
+        1 / (1 - reflectance) times MEMORY iterations to forget that."""
+        ends = Ends.of(self._drawn(0, MEMORY * self.iteration), self.n)
+        self.recent_ends = ends.number(self.recent_ends.size).astype(float)
+        known, area = np.maximum(self.recent_ends, 1), np.tile(self.geometry.patches.area, self.replicates)
+        # of each group: the total power that a radiosity in proportion to reflectance would still have to send and absorb
+        balance = ((self.rho - self.rho * (ends.received(self.rho) / known)) @ area)[:, None]
+        settled = SETTLED * (1 - np.average(self.rho, axis=1, weights=area))
+        self.carried = self.source.copy()
+        for _ in range(SWEEPS):
+            self.recent = ends.received(self.carried)
+            change = self.source + self.rho * (self.recent / known) - self.carried
+            # and as much of it as makes the power balance, at once: what is left to the sweeps is how it is spread
+            change += self.rho * ((change @ area)[:, None] / np.maximum(balance, 1e-300))
+            self.carried = self.carried + change
+            if (np.abs(change) @ area <= settled * (self.carried @ area)).all():
+                break
+
+    def _drawn(self, first: int, count: int) -> list[Pairs]:
+        return [self.spans.draw(replicate, first, count) for replicate in range(self.replicates)]
+
+    def _gather(self, count: int) -> int:
+        """The next lines of each replicate: how many ends they have, all together."""
+        drawn, step, ends_before, at = self._drawn(self.done, count), self.iteration, int(self.ends.sum()), 0
+        for pairs, row in zip(drawn, range(self.replicates), strict=True):
+            here = slice(row * self.n, (row + 1) * self.n)
+            for near, far in ((pairs.one, pairs.other), (pairs.other, pairs.one)):
+                for code, counts in ((ESCAPED, self.escaped), (LOST, self.lost)):
+                    counts[here] += np.bincount(near[far == code], minlength=self.n)
+        while at < count:
+            length = min(step - (self.done + at) % step, count - at)
+            batch = Ends.of([of_lines(pairs, at, at + length) for pairs in drawn], self.n)
+            ends, received = batch.number(self.ends.size), batch.received(self.carried)
+            self.ends += ends
+            self.received += received
+            # what is not a whole iteration yet waits with the rest of it
+            self.recent += received
+            self.recent_ends += ends
+            at += length
+            if (self.done + at) % step == 0:
+                self.carried = self.source + self.rho * (self.recent / np.maximum(self.recent_ends, 1e-9))
+                self.recent *= 1 - 1 / MEMORY
+                self.recent_ends *= 1 - 1 / MEMORY
+        self.done += count
+        return int(self.ends.sum()) - ends_before
+
+    def capture(self) -> State:
+        state = {name: getattr(self, name).copy() for name in ARRAYS}
+        state |= {"quanta": np.array(self._quanta), "done": np.array(self.done), "replicates": np.array(self.replicates)}
+        return state if self.shot is None else state | self.shot.capture()
+
+    def restore(self, state: State) -> None:
+        wanted = {"quanta", "done", *ARRAYS}
+        if wanted - set(state) or state["ends"].shape != self.ends.shape:
+            raise MethodError("the solution to go on from lacks the sums of its iterations; start anew")
+        for name in ARRAYS:
+            setattr(self, name, state[name].copy())
+        self._quanta, self.done = int(state["quanta"]), int(state["done"])
+        if self.shot is not None:
+            self.shot.restore(state)
+
+    def unfinished(self, state: State) -> bool:
+        return int(state["done"]) < int(state["quanta"])
+
+    @property
+    def tally(self) -> Pooled:
+        return Pooled()
