@@ -9,13 +9,14 @@ import numpy as np
 
 from ..errors import MethodError
 from .births import Births
+from .density import DensityTally
 from .device import upload
 from .firing import DENSE, Engine
 from .flock import Flock, Legs
 from .fractions import Fractions
 from .lanes import Batch, Chunk
 from .launches import AbstractLaunches
-from .process import State
+from .process import AbstractTally, State
 from .scores import Scores
 from .walk_tally import WalkTally
 
@@ -128,5 +129,6 @@ class Walks(AbstractLaunches):
         self.scores.restore(state)
 
     @property
-    def tally(self) -> WalkTally:
-        return WalkTally(self.method.estimator == "collision", self.fractions is not None)
+    def tally(self) -> AbstractTally:
+        counted = WalkTally(self.method.estimator == "collision", self.fractions is not None)
+        return DensityTally(counted) if self.method.reconstruction == "local-linear" else counted

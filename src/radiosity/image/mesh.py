@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import display_mesh, tone
+from . import density_mesh, display_mesh, tone
 from .look import Look
 from .quantity import choose
 from .view import up_axis
@@ -79,11 +79,14 @@ def coloured(solution, look: Look) -> ColouredMesh:
     shown = choose(solution, look.quantity, look.band)
     dark = ~shown.own_light if not shown.own_light.all() else np.ones(len(patches), bool)
     scale = tone.chosen_scale(look, lambda: tone.automatic_scale(shown.values[dark], patches.area[dark]))
-    mesh = display_mesh.build(patches)
-    if look.smooth:
+    fitted = look.smooth and look.band is None and look.quantity in ("radiosity", "irradiance")
+    if fitted and density_mesh.estimated(solution):
+        mesh, values, _ = density_mesh.display(solution, look.quantity)
+    elif look.smooth:
+        mesh = display_mesh.build(patches)
         values = mesh.smoothed(shown.values)
     else:
-        mesh, owner = mesh.flat()
+        mesh, owner = display_mesh.build(patches).flat()
         values = shown.values[owner]
     triangles, patch = mesh.triangles()
     return ColouredMesh(

@@ -1,0 +1,119 @@
+"""Local linear density estimation: power that landed on cells to irradiance at points (B. Walter, P. M. Hubbard, P. Shirley and
+D. P. Greenberg, "Global illumination using local linear density estimation", ACM Transactions on Graphics 16(3), 1997).
+
+About each point x of a flat region a plane is fitted to power over area, weighted by a kernel K: with t = x_q - x the place of
+landing q of power phi_q, E(x) = sum_q phi_q K(t) [1 0 0] M^-1 [1 t], M = integral of K(t) [1 t]^T [1 t] over the region. M is
+taken over the region as it is, up to its rim: that takes the bias at boundaries away, which a kernel alone has. Landings are
+binned to the region's cells first, which are smaller than the kernel: a sum over cells for each integral.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..patches.model import Patches
+
+WIDTH = 0.5  # bandwidth over the root of a region's area, times landings^(1/6)
+FLAT = 1e-4  # normals and offsets that agree to this, relative to the scene, are one plane
+SINGULAR = 1e-9  # of M's determinant, in units of the kernel's width: cells about the point lie on one line
+
+
+@dataclass(frozen=True, eq=False)
+class Regions:
+    """Flat regions: patches of one surface and one plane, facing one way.
+
+    Attributes:
+        patches: all of them.
+        of: (n_patches,) int64, the region of each.
+    """
+
+    patches: Patches
+    of: np.ndarray
+
+    @staticmethod
+    def find(patches: Patches) -> "Regions":
+        """Compare surfaces, normals and distances to the origin."""
+        low, high = patches.scene.bounds
+        size = float((high - low).max()) or 1.0
+        offset = np.einsum("ij,ij->i", patches.normal, patches.centroid - (low + high) / 2) / size
+        keys = np.column_stack([patches.surface, np.rint(np.column_stack([patches.normal, offset]) / FLAT)])
+        return Regions(patches, np.unique(keys, axis=0, return_inverse=True)[1].ravel())
+
+    @property
+    def count(self) -> int:
+        return int(self.of.max()) + 1
+
+    @cached_property
+    def area(self) -> np.ndarray:
+        """(count,) m²."""
+        return np.bincount(self.of, self.patches.area, self.count)
+
+    @cached_property
+    def members(self) -> list[np.ndarray]:
+        """Patch numbers of each."""
+        order = np.argsort(self.of, kind="stable")
+        return np.split(order, np.cumsum(np.bincount(self.of, minlength=self.count))[:-1])
+
+    def bandwidth(self, arrivals: np.ndarray) -> np.ndarray:
+        """(count,) metres: falls as landings^(-1/6), where bias squared and variance fall alike."""
+        landed = np.maximum(np.bincount(self.of, arrivals, self.count), 1)
+        return WIDTH * np.sqrt(self.area) * landed ** (-1 / 6)
+
+    def plane(self, region: int, points: np.ndarray) -> np.ndarray:
+        """(m, 2) coordinates of points in a region's plane, metres."""
+        normal = self.patches.normal[self.members[region][0]]
+        first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+        first /= np.linalg.norm(first)
+        return points @ np.column_stack([first, np.cross(normal, first)])
+
+
+def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.ndarray):
+    """(m, n_patches) sparse matrix W: W times power over area of the patches is the estimate at m points, each in the plane of
+    the region ``of`` it. Rows sum to one.
+
+    Args:
+        arrivals: (n_patches,) landings of the run, which set the bandwidth.
+        points: (m, 3) metres; of: (m,) region numbers.
+    """
+    from scipy.sparse import csr_matrix
+    from scipy.spatial import KDTree
+
+    rows, columns, values = [], [], []
+    width = regions.bandwidth(arrivals)
+    order = np.argsort(of, kind="stable")
+    for region, at in enumerate(np.split(order, np.cumsum(np.bincount(of, minlength=regions.count))[:-1])):
+        members = regions.members[region]
+        if not len(at):
+            continue
+        cells = regions.plane(region, regions.patches.centroid[members])
+        here = regions.plane(region, points[at])
+        tree = KDTree(cells)
+        nearest = tree.query(here)[0]
+        reach = np.maximum(width[region], nearest * 1.01 + 1e-300)  # a cell larger than the kernel stands alone
+        lists = tree.query_ball_point(here, reach)
+        row = np.repeat(np.arange(len(at)), [len(found) for found in lists])
+        column = np.concatenate([np.asarray(found, np.int64) for found in lists])
+        value = _fit((cells[column] - here[row]) / reach[row, None], regions.patches.area[members[column]], row, len(at))
+        rows.append(at[row])
+        columns.append(members[column])
+        values.append(value)
+    shape = (len(points), len(regions.patches))
+    return csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
+
+
+def _fit(t: np.ndarray, area: np.ndarray, row: np.ndarray, m: int) -> np.ndarray:
+    """The weight of each cell of each row in the plane fitted at t = 0; the kernel's mean where cells lie on a line."""
+    kernel = area * np.maximum(1 - (t * t).sum(axis=1), 1e-6)
+
+    def total(values):
+        return np.bincount(row, values, m)
+
+    s, u, v = total(kernel), total(kernel * t[:, 0]), total(kernel * t[:, 1])
+    uu, uv, vv = total(kernel * t[:, 0] ** 2), total(kernel * t[:, 0] * t[:, 1]), total(kernel * t[:, 1] ** 2)
+    minors = uu * vv - uv * uv, uv * v - u * vv, u * uv - uu * v  # of M's first row
+    determinant = s * minors[0] + u * minors[1] + v * minors[2]
+    planar = determinant > SINGULAR * s**3
+    scale = np.where(planar, 1 / np.where(planar, determinant, 1), 0)
+    a, b, c = (np.where(planar, minor * scale, default) for minor, default in zip(minors, (1 / s, 0, 0), strict=True))
+    return kernel * (a[row] + b[row] * t[:, 0] + c[row] * t[:, 1])
