@@ -7,7 +7,7 @@ import numpy as np
 from .iteration_control import SHARE
 
 START = 4  # one line in so many of the first stage is for the start
-DARK = 1e-3  # share of the light that may be missing when the start-up ends
+DARK = 1e-4  # share of the light that may be missing when the start-up ends
 FEWEST = 1024  # lines of an iteration, and one a patch
 COUNTERS = ("quanta", "done", "summed", "count", "starting", "start_lines", "probing")
 

@@ -7,7 +7,7 @@ iterations, which falls as slowly as L^-(1-lambda) with all lines L (docs/iterat
 
 Iterations begin at the light alone, whose image is too dark by lambda^k after k of them. With ``warm_up`` they begin at an
 incremental solution instead, which has no bias, and neither have they (Bekaert 1999). Without it, the first iterations, until
-lambda^k is 1/1000 or less, are a start-up that the result leaves out (RenderPark has such an option).
+lambda^k is 1/10 000 or less, are a start-up that the result leaves out (RenderPark has such an option).
 """
 
 import drjit as dr

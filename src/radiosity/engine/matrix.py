@@ -64,7 +64,7 @@ class Matrix(AbstractProcess):
             return
         reason = (
             f"the form factors of {self.n} patches in {self.replicates} replicates may come to {expected:.2g} pairs after {end} "
-            f"lines each, and {LIMIT:.2g} are kept at most; take fewer replicates, fewer patches, or an order that keeps no factors"
+            f"lines each, and {LIMIT:.2g} are kept at most; take fewer replicates, fewer patches, or an order without factors"
         )
         raise Interrupted(reason) if self.reached else MethodError(reason)
 
