@@ -1,0 +1,91 @@
+"""Every method, named or combined, solves the same problems within its own error bars: furnaces, the room, and an open scene of
+two-sided faces.
+
+Differences are per surface, in combined standard errors of 16 replicates; bounds are Student's at alpha = 1e-4 for all surfaces
+of a test together, so that a false alarm among its some hundred cases has a chance of 1 %. Seeds are fixed.
+"""
+
+import numpy as np
+import pytest
+from methods import METHODS, critical, differences, surface_powers
+
+import radiosity as rd
+
+RAYS, REPLICATES = 1_500_000, 16
+SMOOTHING = 0.05  # density estimation alone: what smoothing may move between surfaces' patches, which its error bars leave out
+
+
+@pytest.fixture(scope="module")
+def room():
+    return rd.subdivide(rd.load_scene("room"), cells=2)
+
+
+@pytest.fixture(scope="module")
+def plates():
+    """No enclosure: a lit floor, a shelf and two crossing walls, radiating on both sides, the backs duller."""
+    scene = rd.load_scene("room")
+    keep = np.isin(scene.surface, [scene.names.index(name) for name in ("floor", "west wall", "light")])
+    lit = scene.take(keep)
+    return rd.subdivide(
+        rd.Scene.from_arrays(
+            lit.vertices, lit.faces, lit.reflectance, lit.emission, two_sided=True, back_reflectance=0.3,
+            back_emission=np.zeros((1, 1)), surface=lit.surface, names=lit.names,
+        ),
+        cells=4,
+    )  # fmt: skip
+
+
+REFERENCES = {"discrete": rd.Method(), "continuous": rd.Method(equation="continuous")}
+
+
+@pytest.fixture(scope="module")
+def reference(room, plates):
+    scenes = {"room": room, "plates": plates}
+    known = {}
+
+    def get(name, equation):
+        if (name, equation) not in known:
+            solution = rd.solve(scenes[name], REFERENCES[equation], rays=40_000_000, replicates=REPLICATES, seed=77)
+            known[name, equation] = surface_powers(solution)
+        return known[name, equation]
+
+    return get
+
+
+@pytest.mark.parametrize("mean_reflectance", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_furnace(method, mean_reflectance):
+    patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean_reflectance}"), cells=1)
+    solution = rd.solve(patches, method, rays=RAYS, replicates=REPLICATES)
+    exact = np.bincount(patches.surface, patches.area)
+    power = surface_powers(solution)
+    error = np.maximum(power.std(axis=0, ddof=1) / REPLICATES**0.5, 1e-6 * exact)
+    assert np.abs((power.mean(axis=0) - exact) / error).max() < critical(REPLICATES, len(exact))
+    assert np.average(np.abs(solution.radiosity[:, 0] - 1), weights=patches.area) < 0.1
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_room(method, room, reference):
+    compare(method, room, reference("room", method.equation))
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_open_scene_of_two_sided_faces(method, plates, reference):
+    compare(method, plates, reference("plates", method.equation))
+
+
+def compare(method, patches, expected):
+    solution = rd.solve(patches, method, rays=RAYS, replicates=REPLICATES)
+    power = surface_powers(solution)
+    spread = power.std(axis=0, ddof=1) / REPLICATES**0.5 / expected.mean(axis=0)
+    assert np.median(spread) < 0.05  # an error bar as wide as the room would agree with anything
+    if method.reconstruction == "local-linear":
+        assert np.abs(power.mean(axis=0) / expected.mean(axis=0) - 1).max() < SMOOTHING
+    else:
+        assert np.abs(differences(power, expected)).max() < critical(REPLICATES, power.shape[1])
+
+
+def test_the_two_equations_differ_and_the_program_knows(room, reference):
+    """On large patches the continuous solution is another one: each method fits its own reference and not the other's."""
+    between = differences(reference("room", "discrete"), reference("room", "continuous"))
+    assert np.abs(between).max() > 5 * critical(REPLICATES, len(between))
