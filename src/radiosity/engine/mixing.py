@@ -1,8 +1,8 @@
-"""In which order a replicate's global lines are taken: blocks of lines one after the other, each in an order of its own.
+"""In which order a replicate's spans are taken: blocks of lines one after the other, the spans of a block in an order drawn anew.
 
-Multipath reads a path out of lines that follow each other on a patch. Neighbours in a low discrepancy sequence are made to
-differ, so such paths would turn in regular ways: on the labyrinth with a first shot that gave errors of three standard errors.
-Within a block the order is drawn anew (Philox); the set of lines stays what it is.
+Multipath reads a path out of spans that follow each other on a patch, and an iteration carries on what the ones before it left.
+That is right if a span is independent of the spans before it. Neighbours in a low discrepancy sequence are not, they are made to
+differ; nor are the spans of one line, or a span that counts twice. The set of spans in a block stays what it is.
 """
 
 from dataclasses import dataclass
@@ -14,41 +14,57 @@ from .spans import Pairs, Spans
 
 VISITS = 64  # of a mean patch within a block, where that is not too long
 LEAST, MOST = 1 << 10, 1 << 18  # lines of a block
+BUNDLES, MOST_BUNDLED = 256, 1 << 19  # bundles of a block, and their lines
 ORDER = 2  # purpose of the stream (`quanta.stream`), which has the block as a child
 
 
 @dataclass(frozen=True, eq=False)
 class Mixed:
-    """Spans of a replicate's lines in the mixed order."""
+    """Spans of the replicates' lines in the mixed order."""
 
     spans: Spans
 
     @property
     def block(self) -> int:
         """Lines of a block, a power of two."""
+        if self.bundled:
+            return min(BUNDLES * self.spans.bundle, max(MOST_BUNDLED, self.spans.bundle))
         wanted = VISITS / float(self.spans.ends_per_line.mean())
         return int(np.clip(2.0 ** np.ceil(np.log2(wanted)), LEAST, MOST))
 
-    def draw(self, replicate: int, first: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Both ends of the spans of the lines that come ``first`` to ``first + count`` in the mixed order."""
-        ones, others, at = [], [], first
-        while at < first + count:
-            number, begin = divmod(at, self.block)
-            length = min(self.block - begin, first + count - at)
-            seed = stream(self.spans.seed, replicate, ORDER)
-            child = np.random.SeedSequence(seed.entropy, spawn_key=(number,))
-            order = np.random.Generator(np.random.Philox(child)).permutation(self.block)[begin : begin + length]
-            one, other = rearranged(self.spans.draw(replicate, number * self.block, self.block), order, self.block)
-            ones.append(one)
-            others.append(other)
-            at += length
-        return np.concatenate(ones), np.concatenate(others)
+    @property
+    def bundled(self) -> bool:
+        return self.spans.method.lines == "bundles"
+
+    def draw(self, replicate: int, first: int, count: int) -> Pairs:
+        """As `Spans.draw`, of the lines ``first`` to below ``first + count`` in the mixed order. Its lines are not those of the
+        sequence: a block's spans are spread over as many lines as the block has."""
+        block, parts = self.block, []
+        blocks = range(first // block, (first + count - 1) // block + 1)
+        drawn = self.spans.draw(replicate, blocks.start * block, len(blocks) * block)  # all at once: launches have their cost
+        cuts = np.searchsorted(drawn.line, np.arange(len(blocks) + 1) * block)
+        for number, begin, end in zip(blocks, cuts[:-1], cuts[1:], strict=True):
+            own = np.uint32((number - blocks.start) * block)
+            rows, line = self._order(replicate, number, drawn.line[begin:end] - own)
+            line = line.astype(np.int64) + (number * block - first)
+            within = slice(*np.searchsorted(line, (0, count)))
+            parts.append((line[within].astype(np.uint32), *(x[begin:end][rows[within]] for x in (drawn.one, drawn.other))))
+        line, one, other = (np.concatenate(column) for column in zip(*parts, strict=True))
+        return Pairs(line, one, other, self.spans.ends_per_line)
+
+    def _order(self, replicate: int, number: int, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """From the lines of a block's spans: the spans in their new order, and the lines that they belong to then."""
+        seed = np.random.SeedSequence(stream(self.spans.seed, replicate, ORDER).entropy, spawn_key=(number,))
+        generator = np.random.Generator(np.random.Philox(seed))
+        if self.bundled:
+            return _bundle_by_bundle(line, generator.permutation(self.block // self.spans.bundle), self.spans.bundle)
+        spread = np.arange(len(line), dtype=np.uint64) * np.uint64(self.block) // np.uint64(max(len(line), 1))
+        return generator.permutation(len(line)), spread
 
 
-def rearranged(pairs: Pairs, order: np.ndarray, lines: int) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of the spans of some of a number of lines, line by line in the order given."""
-    counts = np.bincount(pairs.line, minlength=lines)
-    begins = np.cumsum(counts) - counts
-    taken = counts[order]
-    rows = np.repeat(begins[order] - (np.cumsum(taken) - taken), taken) + np.arange(taken.sum())
-    return pairs.one[rows], pairs.other[rows]
+def _bundle_by_bundle(line: np.ndarray, order: np.ndarray, lines: int) -> tuple[np.ndarray, np.ndarray]:
+    """Whole bundles of so many lines in another order."""
+    cuts = np.searchsorted(line, np.arange(len(order) + 1) * lines)
+    counts = np.diff(cuts)[order]
+    rows = np.repeat(cuts[:-1][order] - (np.cumsum(counts) - counts), counts) + np.arange(len(line))
+    return rows, line[rows].astype(np.int64) + np.repeat((np.arange(len(order)) - order) * lines, counts)

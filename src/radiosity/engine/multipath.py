@@ -123,12 +123,12 @@ class Multipath(AbstractProcess):
         """The next lines of each replicate: how many ends they have, all together."""
         drawn = [self.mixed.draw(replicate, self.done, count) for replicate in range(self.replicates)]
         UInt32 = self.geometry.device.types.UInt32
-        both = [np.concatenate(ends) for ends in zip(*drawn, strict=True)]
+        both = [np.concatenate([getattr(pairs, end) for pairs in drawn]) for end in ("one", "other")]
         before = int(self.ends.sum())
-        for row, pair in zip(self.ends, drawn, strict=True):
-            for end in pair:
+        for row, pairs in zip(self.ends, drawn, strict=True):
+            for end in (pairs.one, pairs.other):
                 row += np.bincount(end[end < ONE_WAY], minlength=self.n)
-        lengths = np.array([len(one) for one, _ in drawn])
+        lengths = np.array([len(pairs.one) for pairs in drawn])
         if lengths.any():
             one, other = (upload(UInt32, np.append(end, end[-1:])) for end in both)  # never of one entry
             for exchange, ledger in zip(self.exchanges, self.ledger, strict=True):

@@ -11,13 +11,15 @@ from ..errors import MethodError
 from . import first_shot
 from .ends import Ends, of_lines
 from .first_shot import FirstShot
+from .mixing import Mixed
 from .pooled import Pooled
 from .process import AbstractProcess, State, Swept
-from .spans import ESCAPED, LOST, Pairs, Spans
+from .spans import ESCAPED, LOST, Spans
 
 ENDS = 2  # of a mean patch in an iteration, at least
 LEAST = 1 << 10  # lines of an iteration
-MEMORY = 16  # iterations that the radiosity which lines carry remembers
+MEMORY, BUNDLES = 16, 64  # iterations, or bundles, that the radiosity which lines carry remembers at least
+SHARE = 8  # and one in so many of all iterations so far
 BATCH = 1 << 20  # spans of all replicates between two looks at the clock
 SWEEPS, SETTLED = 200, 1e-4  # of the warm-up: at most, or until all change together is this share of 1 - rho
 ARRAYS = ("carried", "recent", "recent_ends", "received", "ends", "escaped", "lost")
@@ -39,7 +41,7 @@ class Pooling(AbstractProcess):
     def __init__(self, *arguments):
         super().__init__(*arguments)
         self.spans = Spans(self.geometry, self.method, self.seed, self.replicates)
-        self.shot = None
+        self.mixed, self.shot = Mixed(self.spans), None
         if self.method.first_shot:
             self.shot = FirstShot(self.geometry, self.problem, self.method.numbers, self.seed, self.replicates)
         groups = self.problem.groups
@@ -59,6 +61,11 @@ class Pooling(AbstractProcess):
         return max(LEAST, 1 << int(np.ceil(np.log2(ENDS / float(self.spans.ends_per_line.mean())))))
 
     @property
+    def memory(self) -> int:
+        """Iterations that count for what lines carry, at least."""
+        return BUNDLES if self.method.lines == "bundles" else MEMORY
+
+    @property
     def quanta(self) -> int:
         return self._quanta
 
@@ -75,8 +82,8 @@ class Pooling(AbstractProcess):
             self.direct = np.stack([power.ravel() for power in landed])
         if self.done == 0:
             self._warm_up()
-        step = self.iteration
-        batch = max(1, round(BATCH / self.replicates / step / max(float(self.spans.ends_per_line.sum()) / 2, 1e-3))) * step
+        block = self.mixed.block
+        batch = max(1, round(BATCH / self.replicates / block / max(float(self.spans.ends_per_line.sum()) / 2, 1e-3))) * block
         while self.done < quanta:
             swept(self._gather(min(batch - self.done % batch, quanta - self.done)))
 
@@ -88,7 +95,7 @@ class Pooling(AbstractProcess):
     def _warm_up(self) -> None:
         """Solve for what the first lines see, which the iteration uses again: begun at nothing it would take
         1 / (1 - reflectance) times MEMORY iterations to forget that."""
-        ends = Ends.of(self._drawn(0, MEMORY * self.iteration), self.n)
+        ends = Ends.of([self.spans.draw(r, 0, self.memory * self.iteration) for r in range(self.replicates)], self.n)
         self.recent_ends = ends.number(self.recent_ends.size).astype(float)
         known, area = np.maximum(self.recent_ends, 1), np.tile(self.geometry.patches.area, self.replicates)
         # of each group: the total power that a radiosity in proportion to reflectance would still have to send and absorb
@@ -104,12 +111,10 @@ class Pooling(AbstractProcess):
             if (np.abs(change) @ area <= settled * (self.carried @ area)).all():
                 break
 
-    def _drawn(self, first: int, count: int) -> list[Pairs]:
-        return [self.spans.draw(replicate, first, count) for replicate in range(self.replicates)]
-
     def _gather(self, count: int) -> int:
         """The next lines of each replicate: how many ends they have, all together."""
-        drawn, step, ends_before, at = self._drawn(self.done, count), self.iteration, int(self.ends.sum()), 0
+        drawn = [self.mixed.draw(replicate, self.done, count) for replicate in range(self.replicates)]
+        step, ends_before, at = self.iteration, int(self.ends.sum()), 0
         for pairs, row in zip(drawn, range(self.replicates), strict=True):
             here = slice(row * self.n, (row + 1) * self.n)
             for near, far in ((pairs.one, pairs.other), (pairs.other, pairs.one)):
@@ -127,8 +132,9 @@ class Pooling(AbstractProcess):
             at += length
             if (self.done + at) % step == 0:
                 self.carried = self.source + self.rho * (self.recent / np.maximum(self.recent_ends, 1e-9))
-                self.recent *= 1 - 1 / MEMORY
-                self.recent_ends *= 1 - 1 / MEMORY
+                kept = 1 - 1 / max(self.memory, (self.done + at) // step // SHARE)
+                self.recent *= kept
+                self.recent_ends *= kept
         self.done += count
         return int(self.ends.sum()) - ends_before
 

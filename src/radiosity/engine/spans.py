@@ -26,7 +26,7 @@ from .surfaces import Surfaces
 __all__ = ["CODES", "ESCAPED", "LOST", "ONE_WAY", "Pairs", "Spans"]
 
 CHUNK = 1 << 20  # lines of a launch
-LEAST_SIDE, MOST_SIDE = 4, 9  # a bundle's lattice has 2^4 to 2^9 lines along an edge
+LEAST_SIDE, MOST_SIDE = 3, 9  # a bundle's lattice has 2^3 to 2^9 lines along an edge
 ROOM = 1.25  # spans that a launch makes room for, over those expected
 
 
@@ -91,10 +91,11 @@ class Spans:
 
     @cached_property
     def bundle(self) -> int:
-        """Lines of a bundle: a power of four, such that a patch has about one end in a bundle."""
+        """Lines of a bundle: a power of four, such that a mean patch has a quarter to one end in a bundle. More would cost
+        directions, which errors depend on most."""
         area, radius = self.geometry.patches.area, self.radius / self.geometry.tree.scale
         wanted = 8 * radius**2 / area.mean()
-        return 4 ** int(np.clip(np.ceil(np.log2(wanted) / 2), LEAST_SIDE, MOST_SIDE))
+        return 4 ** int(np.clip(np.floor(np.log2(wanted) / 2), LEAST_SIDE, MOST_SIDE))
 
     @cached_property
     def radius(self) -> float:

@@ -1,0 +1,81 @@
+"""What a span of global lines costs, in local lines of the same scene: `spans()`."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from scenes import room
+
+import radiosity as rd
+
+# isort: split
+import drjit as dr
+
+from radiosity.engine.device import choose
+from radiosity.engine.firing import Engine
+from radiosity.engine.geometry import Geometry
+from radiosity.engine.quanta import Source
+from radiosity.engine.spans import Spans
+
+KINDS = ("global", "global-disc", "spans", "bundles")
+LINES = 1 << 20  # of a turn
+TURNS = 7
+ROW = "{:<8} {:>7} {:>12} {:>8} {:>8} {:>8} {:>8}"
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Of a kind of lines: spans a line, million spans a second, and a span's cost in local lines of the same turn."""
+
+    spans: float
+    rate: float
+    ratio: float
+
+
+def spans() -> None:
+    """Print the table."""
+    print("spans of global lines, drawn to the host: their cost in local lines, of a whole sweep and in the same turn (medians)")
+    print(ROW.format("scene", "faces", "kind", "a line", "M/s", "local", "ratio"))
+    for tiles, cells in ((1, 24), (24, 1)):
+        patches = rd.subdivide(room(tiles), cells=cells)
+        local, costs = measure(patches)
+        for kind, cost in costs.items():
+            print(ROW.format("room", patches.scene.n_faces, kind, f"{cost.spans:.2f}", f"{cost.rate:.1f}", f"{local:.1f}",
+                             f"{cost.ratio:.2f}"), flush=True)  # fmt: skip
+
+
+def measure(patches: rd.Patches, turns: int = TURNS, lines: int = LINES) -> tuple[float, dict[str, Cost]]:
+    """Million local lines a second, and the cost of each kind's spans."""
+    geometry = Geometry(patches, choose("cpu"))
+    engine = Engine(geometry, Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0]), rd.Method(), 0, 1)
+    kinds = {kind: Spans(geometry, rd.Method(lines=kind, order="matrix"), 0, 1) for kind in KINDS}
+    local, rates, each = [], {kind: [] for kind in KINDS}, {}
+    for turn in range(turns + 1):
+        engine.set_quanta((turn + 1) * lines)
+        seconds, _ = _time(lambda: engine.fire(*engine.due()))
+        found = {}
+        for kind, source in kinds.items():
+            took, pairs = _time(lambda source=source, turn=turn: source.draw(0, turn * lines, lines))
+            each[kind] = len(pairs.line) / lines
+            found[kind] = len(pairs.line) / took / 1e6
+        if turn:  # the first compiles
+            local.append(lines / seconds / 1e6)
+            for kind, rate in found.items():
+                rates[kind].append(rate)
+    costs = {
+        kind: Cost(each[kind], float(np.median(rate)), float(np.median(np.array(local) / np.array(rate))))
+        for kind, rate in rates.items()
+    }
+    return float(np.median(local)), costs
+
+
+def _time(work):
+    dr.sync_thread()
+    begun = time.perf_counter()
+    result = work()
+    dr.sync_thread()
+    return time.perf_counter() - begun, result
+
+
+if __name__ == "__main__":
+    spans()
