@@ -2,7 +2,9 @@
 
 The transitions are those of shooting. A line that leaves patch q estimates the radiosity that it meets: emission of the patch
 it lands on, plus, where the walk goes on there, reflectance over survival probability times what the next line meets. So
-every part of a walk is a sample of the irradiance of the patch where it begins, and all are used.
+every part of a walk is a sample of the irradiance of the patch where it begins, and all are used. The number of parts and what
+they met hang together, so the mean is biased by the order of one over the walks of a replicate: 2 % at two walks a patch and
+mean reflectance 0.5, 0.2 % at 27.
 """
 
 from dataclasses import dataclass

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..solution.local_linear import Regions, weights
+from ..solution.local_linear import CORNER, Regions, weights
 from .display_mesh import DisplayMesh, build
 
 TOLERANCE = 0.02  # of the value: the least difference of brightness that people see side by side
@@ -31,7 +31,7 @@ def at_vertices(solution, mesh: DisplayMesh) -> tuple[DisplayMesh, np.ndarray]:
     key = mesh.polygons.astype(np.int64) * regions.count + regions.of[:, None]
     kept, polygons = np.unique(key, return_inverse=True)
     vertices = mesh.vertices[kept // regions.count]
-    smooth = weights(regions, solution.arrivals, vertices, kept % regions.count)
+    smooth = weights(regions, solution.arrivals, vertices, kept % regions.count, least=CORNER)
     landed = np.stack([_landed(solution, band) for band in range(solution.irradiance.shape[1])], axis=1)
     return replace(mesh, vertices=vertices, polygons=polygons.reshape(mesh.polygons.shape).astype(np.int32)), smooth @ landed
 

@@ -16,6 +16,8 @@ from ..patches.model import Patches
 
 WIDTH = 0.5  # bandwidth over the root of a region's area, times landings^(1/6)
 FLAT = 1e-4  # normals and offsets that agree to this, relative to the scene, are one plane
+CORNER = 4  # cells about a vertex
+BEYOND = 1.1  # how much farther than the last of them a kernel reaches
 SINGULAR = 1e-9  # of M's determinant, in units of the kernel's width: cells about the point lie on one line
 
 
@@ -68,13 +70,15 @@ class Regions:
         return points @ np.column_stack([first, np.cross(normal, first)])
 
 
-def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.ndarray):
+def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.ndarray, *, least: int = 1):
     """(m, n_patches) sparse matrix W: W times power over area of the patches is the estimate at m points, each in the plane of
     the region ``of`` it. Rows sum to one.
 
     Args:
         arrivals: (n_patches,) landings of the run, which set the bandwidth.
         points: (m, 3) metres; of: (m,) region numbers.
+        least: cells that a kernel reaches at least: 1 about their centres, where a cell larger than the kernel stands alone;
+            at vertices `CORNER`, since a plane needs three.
     """
     from scipy.sparse import csr_matrix
     from scipy.spatial import KDTree
@@ -89,8 +93,8 @@ def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.n
         cells = regions.plane(region, regions.patches.centroid[members])
         here = regions.plane(region, points[at])
         tree = KDTree(cells)
-        nearest = tree.query(here)[0]
-        reach = np.maximum(width[region], nearest * 1.01 + 1e-300)  # a cell larger than the kernel stands alone
+        nearest = tree.query(here, [min(least, len(members))])[0][:, 0]
+        reach = np.maximum(width[region], nearest * BEYOND + 1e-300)
         lists = tree.query_ball_point(here, reach)
         row = np.repeat(np.arange(len(at)), [len(found) for found in lists])
         column = np.concatenate([np.asarray(found, np.int64) for found in lists])

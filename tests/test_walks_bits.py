@@ -1,0 +1,122 @@
+"""Walks are functions of seed, replicate, patch and index: sums do not depend on order, threads, stages or interruptions; and the
+two equations are told apart."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+from radiosity.engine.progress import Interrupted
+
+QUANTA = 30_000
+KINDS = {
+    "continuous": rd.Method(equation="continuous"),
+    "discrete": rd.Method(absorption="drawn"),
+    "survival": rd.Method(equation="continuous", estimator="survival"),
+    "gathering": rd.Method(estimator="gathering"),
+    "fractional": rd.Method(equation="continuous", absorption="fractional"),
+}
+
+
+@pytest.fixture(scope="module")
+def colours():
+    """Bands that differ, an opening, and two-sided blocks."""
+    return rd.subdivide(rd.load_scene("cornell-box"), cells=3)
+
+
+def sums(solution):
+    return {name: value for name, value in solution.state.items() if name != "quanta"}
+
+
+def equal(one, two):
+    return sums(one).keys() == sums(two).keys() and all(np.array_equal(sums(one)[k], sums(two)[k]) for k in sums(one))
+
+
+@pytest.mark.parametrize("kind", ["continuous", "discrete", "survival"])
+def test_orders_end_in_equal_sums(colours, kind):
+    solutions = [
+        rd.solve(colours, replace(KINDS[kind], order=order), quanta=QUANTA, replicates=3)
+        for order in ("breadth-first", "depth-first", "staged")
+    ]
+    assert equal(solutions[0], solutions[1])
+    assert equal(solutions[0], solutions[2])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_threads_do_not_matter(colours, kind):
+    import drjit as dr
+
+    before, results = dr.thread_count(), []
+    try:
+        for threads in (1, 2):
+            dr.set_thread_count(threads)
+            results.append(rd.solve(colours, KINDS[kind], quanta=QUANTA, replicates=2))
+    finally:
+        dr.set_thread_count(before)
+    assert equal(*results)
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "fractional"])
+def test_stages_do_not_matter(colours, kind):
+    few = rd.solve(colours, KINDS[kind], quanta=QUANTA // 3, replicates=2)
+    assert equal(rd.solve(colours, KINDS[kind], quanta=QUANTA, replicates=2, resume=few),
+                 rd.solve(colours, KINDS[kind], quanta=QUANTA, replicates=2))  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_interrupted_stage_goes_on_to_the_same_sums(colours, kind, monkeypatch):
+    """Stopped between two launches of one stage, captured, put back into a new process, and gone on."""
+    from radiosity.engine import lanes
+    from radiosity.engine.device import choose
+    from radiosity.engine.geometry import Geometry
+    from radiosity.engine.problem import Problem
+    from radiosity.engine.process import make
+
+    monkeypatch.setattr(lanes, "CHUNK", 1 << 14)
+    geometry, problem = Geometry(colours, choose("cpu")), Problem.of(colours)
+
+    def stop(lines):
+        raise Interrupted("here")
+
+    first, second, whole = (make(geometry, problem, KINDS[kind], 4, 2) for _ in range(3))
+    with pytest.raises(Interrupted):
+        first.advance(QUANTA, stop)
+    state = {name: np.array(value) for name, value in first.capture().items()}
+    assert first.unfinished(state)
+    second.restore(state)
+    second.advance(QUANTA, lambda lines: None)
+    whole.advance(QUANTA, lambda lines: None)
+    assert not whole.unfinished(whole.capture())
+    assert all(np.array_equal(a, b) for a, b in zip(second.capture().values(), whole.capture().values(), strict=True))
+
+
+def test_books_of_collisions_close_in_whole_numbers(colours):
+    for kind in ("continuous", "discrete", "fractional"):
+        solution = rd.solve(colours, KINDS[kind], quanta=QUANTA, replicates=2)
+        assert all(book["closes"] is True for book in solution.books)
+        assert solution.books[0]["escaped"] > 0
+
+
+def test_books_of_other_estimators_say_that_they_balance_on_average_only(colours):
+    for kind in ("survival", "gathering"):
+        solution = rd.solve(colours, KINDS[kind], rays=4e6, replicates=2)
+        for book in solution.books:
+            assert book["closes"] is None
+            assert abs(book["rounding"]) < 0.05 * book["emitted"]
+
+
+def test_a_continuous_walk_leaves_from_where_it_landed():
+    """On undivided walls the discrete walk forgets where on them light landed; the continuous one agrees with fine patches."""
+    scene = rd.load_scene("room")
+    patches = rd.subdivide(scene, cells=1)
+    one = rd.solve(patches, KINDS["continuous"], rays=2_000_000, replicates=8)
+    two = rd.solve(patches, KINDS["discrete"], rays=2_000_000, replicates=8)
+    error = np.hypot(one.irradiance_standard_error, two.irradiance_standard_error)
+    assert np.abs((one.irradiance - two.irradiance) / error).max() > 20
+    fine = rd.subdivide(scene, cells=8)
+    parents = np.repeat(np.arange(len(patches)), 64)
+    exact = rd.solve(fine, rays=20_000_000, replicates=8).irradiance[:, 0]
+    mean = np.bincount(parents, exact * fine.area) / patches.area
+    assert np.average(np.abs(one.irradiance[:, 0] / mean - 1), weights=patches.area) < 0.02
+    assert np.average(np.abs(two.irradiance[:, 0] / mean - 1), weights=patches.area) > 0.03
