@@ -77,6 +77,8 @@ def _refuse_options(method, found: str) -> None:
     if method.absorption != "auto" and found not in ("firing", "walks", "gathering"):
         raise MethodError(f"absorption '{method.absorption}': nothing is absorbed on the way in {method.lines}/{method.order}, "
                           "power is weighed instead; leave it out")  # fmt: skip
+    if isinstance(method.first_shot, bool) or not isinstance(method.first_shot, int | float):
+        raise MethodError(f"first_shot is {method.first_shot!r}; it is the share of all lines, a number at least 0 and below 1")
     if method.first_shot and found not in ("multipath", "pooling"):
         raise MethodError("a first shot is for global lines of order multipath or regular: other methods begin at the lights")
     if not 0 <= method.first_shot < 1:
