@@ -35,9 +35,9 @@ def replicate_power(solution: rd.Solution, tally: AbstractTally | None = None, g
 
 
 def difference(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Of the means of (replicates, k) values, in combined standard errors; where neither has an error, in 1e-6 of the value."""
+    """Of the means of (replicates, k) values, in combined standard errors, of 1e-6 of the value at least."""
     errors = [np.maximum(x.std(axis=0, ddof=1) / len(x) ** 0.5, 1e-6 * np.abs(x.mean(axis=0))) for x in (one, other)]
-    return (one.mean(axis=0) - other.mean(axis=0)) / np.hypot(*errors)
+    return (one.mean(axis=0) - other.mean(axis=0)) / np.maximum(np.hypot(*errors), 1e-300)
 
 
 def open_room(*, two_sided: bool = False) -> rd.Scene:

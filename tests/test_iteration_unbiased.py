@@ -1,7 +1,7 @@
 """Unbiased where the derivation says so, and the same test rejects what is wrong.
 
 Each test compares the mean of independent short runs (replicates, each with a key and rounding offsets of its own) with a
-reference of 64 million lines of Halton numbers, whose error is a small part of theirs, surface by surface: Student's t,
+reference of 32 million lines of Halton numbers, whose error is a small part of theirs, surface by surface: Student's t,
 alpha = 1e-3 in all, shared out among the surfaces (Bonferroni). There are 4096 runs of some lines a patch, which show a bias of
 second order too, and 512 of 40 000 lines. Numbers are random, for which the derivations of docs/iterations.md hold; seeds are
 fixed.
@@ -27,14 +27,14 @@ CONSISTENT = ("regular", "regular, both ends", "regular, control variate", "regu
 def room():
     """Few patches with unlike reflectances, an opening, and the power that surfaces receive."""
     patches = rd.subdivide(open_room(), cells=1)
-    return patches, replicate_power(rd.solve(patches, rays=64_000_000, replicates=16)).mean(axis=0)
+    return patches, replicate_power(rd.solve(patches, rays=32_000_000, replicates=16)).mean(axis=0)
 
 
 @pytest.fixture(scope="module")
 def lit():
     """A closed cube whose sides all emit, and differ in what they reflect: power that comes back matters from the start."""
     patches = rd.subdivide(cube([[0.95], [0.1], [0.9], [0.2], [0.9], [0.1]], [[1.0], [0.1], [0.2], [0.5], [0.1], [2.0]]), cells=1)
-    return patches, replicate_power(rd.solve(patches, rays=64_000_000, replicates=16)).mean(axis=0)
+    return patches, replicate_power(rd.solve(patches, rays=32_000_000, replicates=16)).mean(axis=0)
 
 
 def statistic(scene, name: str, quanta: int, runs: int = RUNS) -> tuple[float, float]:

@@ -29,7 +29,7 @@ class Matrix(AbstractProcess):
         else:
             self.lines = GlobalLines(*arguments)
         self.n, self.counts, self.wanted, self.reached = len(self.problem.patches), PairCounts(), 0, 0
-        self.reader = MatrixTally(both_ways)
+        self.reader = MatrixTally(both_ways, directed=self.geometry.some_backs_pass)
 
     @property
     def quanta(self) -> int:

@@ -28,6 +28,12 @@ class Factors:
     escaped: np.ndarray
     lost: np.ndarray
 
+    def sent(self, area: np.ndarray) -> "Factors":
+        """As `gather` has to have them where light goes by the lines' own directions: A_i F_ij / A_j in place of F_ji. Backs that
+        let lines pass make the two different."""
+        values = self.values * area[self.rows] / area[self.columns]
+        return Factors(self.columns, self.rows, values, self.escaped, self.lost)
+
     def gather(self, radiosity: np.ndarray) -> np.ndarray:
         """(n,) irradiance, sum_j F_ij B_j."""
         return np.bincount(self.rows, weights=self.values * radiosity[self.columns], minlength=len(radiosity))

@@ -17,10 +17,11 @@ class MatrixTally(AbstractTally):
 
     Attributes:
         both_ways: use each line at both its ends, see `matrix_solve.of_both_ways`.
+        directed: patches do not see what sees them, see `Factors.sent`.
     """
 
-    def __init__(self, both_ways: bool):
-        self.both_ways = both_ways
+    def __init__(self, both_ways: bool, *, directed: bool = False):
+        self.both_ways, self.directed = both_ways, directed
         self._last: tuple[np.ndarray | None, dict] = (None, {})
 
     def lines(self, problem: Problem, state: State) -> int:
@@ -50,9 +51,10 @@ class MatrixTally(AbstractTally):
         groups, area = problem.groups, problem.patches.area
         found = {group: ([], []) for group in range(groups.n_groups)}
         for factors in replicate_factors(problem, state, both_ways=self.both_ways):
+            seen = factors.sent(area) if self.directed else factors
             for group, (values, missed) in found.items():
                 emission, rho = groups.emission[:, group], groups.reflectance[:, group]
-                received = irradiance(factors, emission, rho)
+                received = irradiance(seen, emission, rho)
                 power = area * (emission + rho * received)
                 values.append(area * received)
                 missed.append([factors.escaped @ power, factors.lost @ power])

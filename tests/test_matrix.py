@@ -1,0 +1,175 @@
+"""Form factors from counted lines: against closed forms and the firing engine, in standard errors of the replicates.
+
+About 60 comparisons at 5 to 6.5 standard errors (Student with 15 degrees of freedom or more: p below 2e-4 at 5) leave a chance of
+about 1 % for a false alarm, and seeds are fixed.
+"""
+
+import numpy as np
+import pytest
+from enclosures import cube, parallel_squares, perpendicular_squares
+from iterations import difference, open_room, replicate_power
+
+import radiosity as rd
+from radiosity.engine.matrix_counts import PairCounts, split
+from radiosity.engine.matrix_tally import MatrixTally, form_factors
+from radiosity.engine.problem import Problem
+
+LINES = ("local", "global", "global-disc", "spans", "bundles")
+GLOBAL = LINES[1:]
+
+
+@pytest.mark.parametrize("case", [parallel_squares, perpendicular_squares])
+@pytest.mark.parametrize("lines", LINES)
+@pytest.mark.parametrize("numbers", ["halton", "random"])
+def test_exact_form_factors(case, lines, numbers):
+    scene, exact = case()
+    patches = rd.subdivide(scene, cells=3)
+    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines, numbers=numbers), rays=1_000_000, replicates=16)
+    factors = form_factors(Problem.of(patches), solution.state, patches.surface, both_ways=lines == "local")
+    error = factors[:, 0, 1].std(ddof=1) / 4
+    assert abs(factors[:, 0, 1].mean() - exact) < 5 * error
+    assert error < 5e-3
+    assert np.allclose(factors.sum(axis=2), 1, atol=1e-12)  # what does not land escapes or is lost
+    assert (factors[:, 0, 0] == 0).all()  # a plane does not see itself
+
+
+@pytest.mark.parametrize("mean_reflectance", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("lines", ["local", "global", "global-disc", "spans"])
+def test_the_furnace_is_exact_since_rows_sum_to_one(mean_reflectance, lines):
+    patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean_reflectance}"), cells=1)
+    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=400_000, replicates=4)
+    assert np.abs(solution.radiosity - 1).max() < 1e-8
+    assert abs(solution.rays / 400_000 - 1) < 0.05
+
+
+@pytest.mark.parametrize("lines", LINES)
+@pytest.mark.parametrize("scene", ["room", "open", "two-sided"])
+def test_surfaces_receive_what_the_firing_engine_says(reference, scene, lines):
+    patches, expected = reference[scene]
+    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=2_000_000, replicates=16, seed=3)
+    power = replicate_power(solution, MatrixTally(lines == "local"))
+    # what a patch gets back of its own light goes there and back along counts of the same lines: a bias of the order of one
+    # over the lines of the patch, which the light's few lines show
+    patch_lines = solution.rays / 16 * np.array([patches.area[patches.surface == s].mean() for s in np.unique(patches.surface)])
+    bias = 8 * patches.area.sum() / patch_lines * power.mean(axis=0)
+    close = np.abs(power.mean(axis=0) - expected.mean(axis=0)) < bias
+    assert ((np.abs(difference(power, expected)) < 6.0) | close).all()
+    book = solution.books[0]
+    assert book["closes"] is None
+    assert abs(book["rounding"]) < (1e-6 if lines == "local" else 0.05) * book["emitted"]
+
+
+@pytest.fixture(scope="module")
+def reference():
+    """Patches and the power that their surfaces receive, (replicates, n_surfaces)."""
+    scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
+    cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
+    return {name: (p, replicate_power(rd.solve(p, rays=16_000_000, replicates=16))) for name, p in cut.items()}
+
+
+def test_both_ways_is_reciprocal_and_better():
+    """Of the room, with random numbers: the factors between surfaces, and the error of the solution."""
+    patches = rd.subdivide(rd.load_scene("room"), cells=3)
+    problem = Problem.of(patches)
+    solution = rd.solve(patches, rd.Method(order="matrix", numbers="random"), rays=1_000_000, replicates=16)
+    area = np.bincount(patches.surface, weights=patches.area)
+    both, rows = (form_factors(problem, solution.state, patches.surface, both_ways=b) for b in (True, False))
+    exchange = area[:, None] * both[:, :, :-2]
+    assert np.abs(exchange - exchange.transpose(0, 2, 1)).max() < 1e-6 * area.max()
+    k = len(area)
+    assert np.abs(difference(both.reshape(16, -1), rows.reshape(16, -1)).reshape(k, k + 2)).max() < 5
+    one, other = (replicate_power(solution, MatrixTally(b)).std(axis=0) for b in (True, False))
+    assert np.mean(one) < 0.5 * np.mean(other)
+
+
+def test_colours_share_the_factors():
+    colors = [[0.8, 0.5, 0.1], [0.2, 0.5, 0.7], [0.6, 0.3, 0.3], [0.1, 0.7, 0.2], [0.5, 0.5, 0.6], [0.3, 0.3, 0.75]]
+    light = [[1.0, 1.0, 1.0], [0.0, 0.0, 0.0], [0.5, 0.1, 0.0], [0.0, 0.0, 0.0], [0.0, 0.2, 0.9], [0.0, 0.0, 0.0]]
+    scene = cube(colors, light)
+    patches = rd.subdivide(scene, cells=4)
+    together = rd.solve(patches, rd.Method(order="matrix"), rays=1_000_000, replicates=16)
+    firing = rd.solve(patches, rays=4_000_000, replicates=16)
+    z = (together.irradiance - firing.irradiance) / np.hypot(together.irradiance_standard_error, firing.irradiance_standard_error)
+    assert np.abs(z).max() < 6.5
+    assert 0.7 < np.sqrt(np.mean(z**2)) < 1.4
+
+
+@pytest.mark.parametrize("lines", LINES)
+def test_stages_threads_and_interruptions_do_not_matter(lines, monkeypatch):
+    import drjit as dr
+
+    from radiosity.engine import matrix
+    from radiosity.engine.device import choose
+    from radiosity.engine.geometry import Geometry
+    from radiosity.engine.process import make
+    from radiosity.engine.progress import Interrupted
+
+    patches = rd.subdivide(open_room(), cells=3)
+    arguments = Geometry(patches, choose("cpu")), Problem.of(patches), rd.Method(order="matrix", lines=lines), 4, 2
+    monkeypatch.setattr(matrix, "LAUNCH", 6_000)
+
+    def stop(lines):
+        raise Interrupted("test")
+
+    def same(one, other):
+        assert set(one) == set(other)
+        assert all(np.array_equal(one[key], other[key]) for key in one)
+
+    before, whole = dr.thread_count(), []
+    try:
+        for threads in (1, 2):
+            dr.set_thread_count(threads)
+            whole.append(make(*arguments))
+            whole[-1].advance(20_000, lambda lines: None)
+    finally:
+        dr.set_thread_count(before)
+    same(*(process.capture() for process in whole))
+    staged = make(*arguments)
+    staged.advance(7_000, lambda lines: None)
+    with pytest.raises(Interrupted):
+        staged.advance(20_000, stop)
+    state = staged.capture()
+    assert staged.unfinished(state)
+    resumed = make(*arguments)
+    resumed.restore(state)
+    resumed.advance(resumed.quanta, lambda lines: None)
+    same(whole[0].capture(), resumed.capture())
+    with pytest.raises(rd.MethodError, match="lacks the counts"):
+        make(*arguments).restore({})
+
+
+def test_counts_are_those_of_a_dictionary(random):
+    from collections import Counter
+
+    counts, expected = PairCounts(), Counter()
+    for size in (0, 1, 1000, 50_000):
+        rows, columns = random.integers(0, 40, size), random.integers(0, 50, size)
+        counts.add(rows, columns)
+        expected.update(zip(rows.tolist(), columns.tolist(), strict=True))
+    keys, numbers = counts.arrays
+    assert (np.diff(keys.astype(np.int64)) > 0).all()
+    assert dict(zip(zip(*(x.tolist() for x in split(keys)), strict=True), numbers.tolist(), strict=True)) == dict(expected)
+
+
+def test_too_many_pairs_are_refused_or_end_the_run(monkeypatch):
+    from radiosity.engine import matrix
+
+    patches = rd.subdivide(rd.load_scene("room"), cells=6)
+    monkeypatch.setattr(matrix, "LIMIT", 1000)
+    with pytest.raises(rd.MethodError, match=r"648 patches in 8 replicates.*fewer replicates"):
+        rd.solve(patches, rd.Method(order="matrix"), quanta=5_000)
+    monkeypatch.setattr(matrix, "LIMIT", 1_060_000)
+    solution = rd.solve(patches, rd.Method(order="matrix"), quanta=10**6)
+    assert "may come to" in solution.status
+    assert solution.quanta < 10**6
+
+
+@pytest.mark.parametrize("lines", LINES)
+def test_backs_that_let_lines_pass_are_counted_one_way(lines):
+    from dataclasses import replace
+
+    scene = rd.load_scene("room")
+    patches = rd.subdivide(replace(scene, back=np.full_like(scene.back, int(rd.Back.PASSES))), cells=3)
+    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=4_000_000, replicates=16)
+    expected = replicate_power(rd.solve(patches, rays=4_000_000, replicates=16))
+    assert np.abs(difference(replicate_power(solution, MatrixTally(False, directed=True)), expected)).max() < 6.0
