@@ -14,6 +14,9 @@ from .hull import nothing_beyond
 from .lines import _hit, patch_of
 
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `firing`: no patch has these numbers
+PENDING, NOBODY = 0xFFFFFFFB, 0xFFFFFFFA  # what is not known yet, and who looks forward where a passing back hides all behind
+CODES = NOBODY  # from here on numbers are no patches
+ONE_WAY = 1 << 31  # of a patch number: `one` sees it, but it does not see `one`
 
 
 @dataclass(frozen=True)

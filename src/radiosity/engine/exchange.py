@@ -14,8 +14,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from .chords import CODES, ONE_WAY
-from .crossing import ESCAPED
+from .crossing import CODES, ESCAPED, ONE_WAY
 from .device import frozen, upload
 
 LEDGER = ("fired", "reflected", "escaped", "lost")

@@ -16,17 +16,19 @@ from ..method.lines.global_lines import by_disc, by_two_points, of_bundle
 from ..method.model import Method
 from ..method.numbers import make
 from . import quanta as contract
-from .chords import CODES, MARGIN, ONE_WAY, crossing_box, walk
-from .crossing import ESCAPED, LOST, Crossings
+from .chords import MARGIN, crossing_box, walk
+from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 from .device import upload
 from .entrance import Entrance
 from .geometry import EPSILON, Geometry
+from .sorting import ordered
 from .surfaces import Surfaces
 
 __all__ = ["CODES", "ESCAPED", "LOST", "ONE_WAY", "Pairs", "Spans"]
 
 CHUNK = 1 << 20  # lines of a launch
 LEAST_SIDE, MOST_SIDE = 3, 9  # a bundle's lattice has 2^3 to 2^9 lines along an edge
+DENSE = 16  # lines of a bundle to a face: from here on packets pay
 ROOM = 1.25  # spans that a launch makes room for, over those expected
 
 
@@ -73,13 +75,14 @@ class Spans:
         Raises:
             MethodError: the sequence of numbers has not so many points.
         """
-        lines, ones, others = [np.zeros(0, np.uint32)], [np.zeros(0, np.uint32)], [np.zeros(0, np.uint32)]
+        parts = []
         for start in range(0, count, CHUNK):
             line, one, other = self._launch(replicate, first + start, min(CHUNK, count - start))
-            lines.append((line + np.uint32(start)).astype(np.uint32))
-            ones.append(one)
-            others.append(other)
-        return Pairs(np.concatenate(lines), np.concatenate(ones), np.concatenate(others), self.ends_per_line)
+            parts.append((line + np.uint32(start) if start else line, one, other))
+        if len(parts) != 1:
+            none = np.zeros(0, np.uint32)
+            parts = [[np.concatenate(column) for column in zip((none, none, none), *parts, strict=True)]]
+        return Pairs(*parts[0], self.ends_per_line)
 
     @cached_property
     def ends_per_line(self) -> np.ndarray:
@@ -96,6 +99,11 @@ class Spans:
         area, radius = self.geometry.patches.area, self.radius / self.geometry.tree.scale
         wanted = 8 * radius**2 / area.mean()
         return 4 ** int(np.clip(np.floor(np.log2(wanted) / 2), LEAST_SIDE, MOST_SIDE))
+
+    @property
+    def coherent(self) -> bool:
+        """Lines are traced in packets: those of bundles so dense that packets meet the same faces."""
+        return self.method.lines == "bundles" and self.bundle >= DENSE * self.geometry.scene.n_faces
 
     @cached_property
     def radius(self) -> float:
@@ -132,8 +140,10 @@ class Spans:
         bundled = self.method.lines == "bundles"
         last = first + count if not bundled else (first + count - 1) // self.bundle + 1
         points = partial(self._numbers.points, patch=UInt32(0), randomisation=words, bits=self._numbers.bits_for(last))
+        lane = ordered(types, self.method.lines, self.method.numbers, begin, count)
+        dr.eval(lane)
         if self.method.lines == "spans":
-            return self.surfaces.spans(self.crossings, lambda lane: points(begin + lane), count)
+            return self.surfaces.spans(self.crossings, lambda lane: points(begin + lane), lane, count)
         line = partial(self._line, points, begin)
         box = [types.Array3f(*(dr.opaque(types.Float, float(x)) for x in corner)) for corner in self._box]
 
@@ -146,12 +156,11 @@ class Spans:
             within, patch, inside = self.entrance.find(origin + direction * distance, direction, axis)
             return dr.select(within, inside, outside), direction, within, patch
 
-        lanes = dr.arange(UInt32, max(count, 2))
-        meets = crossing_box(*line(lanes), *box)[0] & (lanes < dr.opaque(UInt32, count))
-        index = dr.compress(meets)
+        meets = crossing_box(*line(lane), *box)[0] & (lane < dr.opaque(UInt32, count))
+        index = dr.gather(UInt32, lane, dr.compress(meets))
         room = int(ROOM * count * self.ends_per_line.sum()) + 1024
-        walked = walk(self.crossings, index, entering, room, coherent=bundled)
-        return np.asarray(index)[walked.lane], walked.one, walked.other
+        walked = walk(self.crossings, index, max(count, 2), entering, room, coherent=self.coherent)
+        return walked.line, walked.one, walked.other
 
     def _line(self, points, begin, lane):
         """A point and the direction of the line with number ``begin`` + ``lane``, from 1 on."""

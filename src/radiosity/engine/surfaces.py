@@ -12,8 +12,7 @@ import numpy as np
 
 from ..method.lines.local import triangle
 from ..scene.model import Back
-from .chords import CODES, ONE_WAY
-from .crossing import ESCAPED, LOST, Crossings
+from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 from .departure import BACK, MASK, leave
 from .device import frozen, upload
 from .geometry import COLUMN_BITS, QUAD, Geometry
@@ -84,14 +83,16 @@ class Surfaces:
         )
         return dr.gather(UInt32, sides, side)
 
+    def word(self, numbers, index):
+        """In a kernel: 32 bits to choose a side by. A number has 24; the index, spread evenly, gives the rest."""
+        return (self.geometry.device.types.UInt32(numbers[4] * 2.0**24) << 8) | ((index * GOLDEN) >> 24)
+
     def leave(self, numbers, index):
         """In a kernel: patch, origin and direction of a line from a uniform point of all sides."""
         geometry = self.geometry
         types = geometry.device.types
-        Float, UInt32 = types.Float, types.UInt32
-        # a number has 24 bits; the index, spread evenly, gives the rest
-        word = (UInt32(numbers[4] * 2.0**24) << 8) | ((index * GOLDEN) >> 24)
-        face = self.choose(word)
+        Float = types.Float
+        face = self.choose(self.word(numbers, index))
         first, packed = dr.gather(types.Array2u, self._places, face & (BACK - 1))
         s, t = numbers[2], numbers[3]
         if not geometry.all_quads:
@@ -103,20 +104,22 @@ class Surfaces:
         columns, rows = Float(packed & MASK), Float((packed >> COLUMN_BITS) & MASK)
         return patch, *leave(geometry, face, s * columns, t * rows, numbers)
 
-    def spans(self, crossings: Crossings, points, count: int):
-        """Number of the line, one end and the other; ``points`` gives the numbers of lanes.
+    def spans(self, crossings: Crossings, points, lane, count: int):
+        """Number of the line, one end and the other; ``points`` gives the numbers of lanes, ``lane`` is a permutation of them.
 
         A line that meets no patch, or one that does not look back, was found from this end only: it counts twice.
         """
         types = self.geometry.device.types
-        lane = dr.arange(types.UInt32, max(count, 2))
         patch, origin, direction = self.leave(points(lane), lane)
         if self.geometry.some_backs_pass:
             other = self._through(crossings, origin, direction)
         else:
             other = patch_of(self.geometry, land(self.geometry, origin, direction), LOST, ESCAPED)
-        dr.eval(patch, other)
-        one, other = (np.array(frozen(x))[:count] for x in (patch, other))
+        ends = dr.opaque(types.UInt32, 0, max(count, 2)), dr.opaque(types.UInt32, 0, max(count, 2))
+        for end, values in zip(ends, (patch, other), strict=True):
+            dr.scatter(end, values, lane)
+        dr.eval(ends)
+        one, other = (np.array(frozen(end))[:count] for end in ends)
         line = np.arange(count, dtype=np.uint32)
         single = other >= ONE_WAY
         if single.any():
