@@ -44,7 +44,7 @@ class Ends:
 
     def received(self, radiosity: np.ndarray) -> np.ndarray:
         """(n_groups, total) sums of partners' radiosity, likewise given: in the order of spans, the same on every machine."""
-        return np.stack([np.bincount(self.at, band[self.sees], len(band)) for band in radiosity])
+        return np.stack([np.bincount(self.at, band[self.sees], len(band)).astype(float) for band in radiosity])
 
 
 def of_lines(pairs: Pairs, first: int, end: int) -> Pairs:

@@ -12,7 +12,7 @@ class Pooled(AbstractTally):
     """Means over span ends, after a first shot where there was one."""
 
     def lines(self, problem: Problem, state: State) -> int:
-        return int(state["ends"].sum()) + first_shot.fired(state)
+        return int(state["ends"].sum()) + int(state["warmed"]) + first_shot.fired(state)
 
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
         return state["ends"].reshape(int(state["replicates"]), -1).sum(axis=0) + first_shot.arrivals(state)

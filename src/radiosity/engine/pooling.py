@@ -17,8 +17,10 @@ from .process import AbstractProcess, State, Swept
 from .spans import ESCAPED, LOST, Spans
 
 ENDS = 2  # of a mean patch in an iteration, at least
-LEAST = 1 << 10  # lines of an iteration
+LEAST = 1 << 8  # lines of an iteration
 MEMORY, BUNDLES = 16, 64  # iterations, or bundles, that the radiosity which lines carry remembers at least
+WARM_UP = 4  # the warm-up has one in so many of all lines, or less: as many as are remembered at least
+APART = 1 << 65  # added to the seed: the numbers of the warm-up
 SHARE = 8  # and one in so many of all iterations so far
 BATCH = 1 << 20  # spans of all replicates between two looks at the clock
 SWEEPS, SETTLED = 200, 1e-4  # of the warm-up: at most, or until all change together is this share of 1 - rho
@@ -35,6 +37,8 @@ class Pooling(AbstractProcess):
         received, ends: the same of all iterations, alike: the result.
         escaped, lost: ends that see nothing, or an absorbing back.
 
+    The first lines, at most a quarter of all, are the warm-up; while it is not at its full length, a stage of more lines
+    begins anew, and lines are those of the last stage.
     Without a first shot the state after N lines depends on N alone; with one, see `Multipath`.
     """
 
@@ -46,7 +50,7 @@ class Pooling(AbstractProcess):
             self.shot = FirstShot(self.geometry, self.problem, self.method.numbers, self.seed, self.replicates)
         groups = self.problem.groups
         self.n, self.n_groups, total = len(self.geometry.patches), groups.n_groups, len(self.geometry.patches) * self.replicates
-        self._quanta, self.done = 0, 0
+        self._quanta, self.done, self.warm_up, self.warmed = 0, 0, -1, 0
         self.rho, self.emission = (np.tile(x.T, self.replicates) for x in (groups.reflectance, groups.emission))
         self.direct = np.zeros((self.n_groups, total)) if self.shot is not None else None
         self.carried, self.recent, self.received = (np.zeros((self.n_groups, total)) for _ in range(3))
@@ -80,22 +84,28 @@ class Pooling(AbstractProcess):
             state, area = self.shot.capture(), self.geometry.patches.area
             landed = [first_shot.landed(self.problem, state, g)[0] / area for g in range(self.n_groups)]
             self.direct = np.stack([power.ravel() for power in landed])
-        if self.done == 0:
-            self._warm_up()
+        warm_up = min(self.memory * self.iteration, quanta // WARM_UP)
+        if self.warm_up != warm_up:
+            swept(self._begin(warm_up))
         block = self.mixed.block
         batch = max(1, round(BATCH / self.replicates / block / max(float(self.spans.ends_per_line.sum()) / 2, 1e-3))) * block
-        while self.done < quanta:
-            swept(self._gather(min(batch - self.done % batch, quanta - self.done)))
+        while self.done < quanta - warm_up:
+            swept(self._gather(min(batch - self.done % batch, quanta - warm_up - self.done)))
 
     @property
     def source(self) -> np.ndarray:
         """(n_groups, replicates * n_patches): radiosity before any reflection along global lines."""
         return self.emission if self.direct is None else self.rho * self.direct
 
-    def _warm_up(self) -> None:
-        """Solve for what the first lines see, which the iteration uses again: begun at nothing it would take
-        1 / (1 - reflectance) times MEMORY iterations to forget that."""
-        ends = Ends.of([self.spans.draw(r, 0, self.memory * self.iteration) for r in range(self.replicates)], self.n)
+    def _begin(self, lines: int) -> int:
+        """Warm up: solve for what some lines see, by their own. Begun at nothing, the iteration would take 1 / (1 - reflectance)
+        times its memory to forget that. The lines are others than those that follow, since what is carried must not depend
+        on what it is carried along; their ends, here returned, count."""
+        apart = Spans(self.geometry, self.method, self.seed + APART, self.replicates)
+        ends = Ends.of([apart.draw(r, 0, lines) for r in range(self.replicates)], self.n)
+        for name in ("received", "ends", "escaped", "lost"):
+            getattr(self, name)[:] = 0
+        self.done, self.warm_up, self.warmed = 0, lines, len(ends.counted)
         self.recent_ends = ends.number(self.recent_ends.size).astype(float)
         known, area = np.maximum(self.recent_ends, 1), np.tile(self.geometry.patches.area, self.replicates)
         # of each group: the total power that a radiosity in proportion to reflectance would still have to send and absorb
@@ -110,6 +120,7 @@ class Pooling(AbstractProcess):
             self.carried = self.carried + change
             if (np.abs(change) @ area <= settled * (self.carried @ area)).all():
                 break
+        return self.warmed
 
     def _gather(self, count: int) -> int:
         """The next lines of each replicate: how many ends they have, all together."""
@@ -140,21 +151,24 @@ class Pooling(AbstractProcess):
 
     def capture(self) -> State:
         state = {name: getattr(self, name).copy() for name in ARRAYS}
-        state |= {"quanta": np.array(self._quanta), "done": np.array(self.done), "replicates": np.array(self.replicates)}
+        numbers = {"quanta": self._quanta, "done": self.done, "warm_up": self.warm_up, "warmed": self.warmed}
+        numbers["replicates"] = self.replicates
+        state |= {name: np.array(number) for name, number in numbers.items()}
         return state if self.shot is None else state | self.shot.capture()
 
     def restore(self, state: State) -> None:
-        wanted = {"quanta", "done", *ARRAYS}
+        wanted = {"quanta", "done", "warm_up", "warmed", *ARRAYS}
         if wanted - set(state) or state["ends"].shape != self.ends.shape:
             raise MethodError("the solution to go on from lacks the sums of its iterations; start anew")
         for name in ARRAYS:
             setattr(self, name, state[name].copy())
         self._quanta, self.done = int(state["quanta"]), int(state["done"])
+        self.warm_up, self.warmed = int(state["warm_up"]), int(state["warmed"])
         if self.shot is not None:
             self.shot.restore(state)
 
     def unfinished(self, state: State) -> bool:
-        return int(state["done"]) < int(state["quanta"])
+        return int(state["warm_up"]) + int(state["done"]) < int(state["quanta"])
 
     @property
     def tally(self) -> Pooled:

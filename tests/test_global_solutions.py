@@ -1,0 +1,223 @@
+"""Solutions by global lines: furnaces, comparison with the firing engine, books, stages, interruption.
+
+Bounds are in standard errors that replicates state, with fixed seeds: SIGMAS for a mean (Student, 15 degrees of freedom:
+p = 4e-4, about 40 comparisons), LARGEST for the largest of some hundred patches.
+"""
+
+import numpy as np
+import pytest
+from test_lines import stack
+
+import radiosity as rd
+from radiosity.engine.device import choose, frozen, upload
+from radiosity.engine.exchange import Exchange
+from radiosity.engine.geometry import Geometry
+from radiosity.engine.mixing import Mixed
+from radiosity.engine.problem import Problem
+from radiosity.engine.process import make
+from radiosity.engine.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
+from radiosity.scene.shapes import quad
+
+SIGMAS, LARGEST = 4.5, 6.5
+KINDS = ("global", "global-disc", "spans", "bundles")
+METHODS = [rd.Method(lines=lines, order=order, first_shot=shot) for lines in KINDS for order in ("multipath", "regular")
+           for shot in (0.0, 0.25) if (lines, order) != ("bundles", "multipath")]  # fmt: skip
+some = pytest.mark.parametrize("method", METHODS, ids=lambda method: str(method).removeprefix("discrete/"))
+
+
+def opening(back: rd.Back = rd.Back.RADIATES) -> rd.Scene:
+    """Four squares in the open, two different bands."""
+    quads = [quad((0, 0, 0), (2, 0, 0), (0, 2, 0)), quad((0.3, 0.3, 1.0), (1, 0, 0), (0, 1, 0.5)),
+             quad((0, 0, 2), (0, 2, 0), (2, 0, 0)), quad((-1, 0, 0), (0, 0, 1.5), (0, 1, 0))]  # fmt: skip
+    return rd.Scene.from_arrays(
+        np.concatenate(quads), np.arange(16).reshape(4, 4), [[0.5, 0.2], [0.8, 0.8], [0.3, 0.6], [0.7, 0.7]],
+        [[1.0, 2.0], [0.0, 0.0], [0.2, 0.0], [0.0, 0.0]], back=[back] * 4, surface=range(4), names=list("abcd"), bands=["x", "y"],
+    )  # fmt: skip
+
+
+def replicate_powers(solution, group=0):
+    """(replicates, surfaces and sides) received power, from the run's state."""
+    problem, patches = Problem.of(solution.patches), solution.patches
+    process = make(Geometry(patches, choose("cpu")), problem, rd.Method(**solution.provenance["choices"]), 0, solution.replicates)
+    values, unit = process.tally.irradiance(problem, solution.state, group)
+    key = 2 * patches.surface + patches.is_back
+    return np.stack([np.bincount(key, row.astype(float) * unit) for row in values])
+
+
+def same(solution, reference):
+    """Received power of every surface and side, and all that escaped or was lost, agree within their errors."""
+    for group in range(Problem.of(solution.patches).groups.n_groups):
+        one, two = (replicate_powers(s, group) for s in (solution, reference))
+        error = np.hypot(*(x.std(axis=0, ddof=1) / len(x) ** 0.5 for x in (one, two)))
+        difference = one.mean(axis=0) - two.mean(axis=0)
+        assert (np.abs(difference) <= SIGMAS * error + 1e-4 * two.mean(axis=0).max()).all()
+    for book, other in zip(solution.books, reference.books, strict=True):
+        for name in ("absorbed", "escaped", "lost"):
+            assert book[name] == pytest.approx(other[name], abs=0.03 * book["emitted"])
+        assert book["emitted"] == pytest.approx(other["emitted"])
+        assert book["emitted"] + book["rounding"] == pytest.approx(book["absorbed"] + book["escaped"] + book["lost"])
+
+
+@pytest.mark.parametrize("mean", [0.5, 0.9])
+@some
+def test_labyrinth_furnace_is_one_everywhere(method, mean):
+    patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean}"), cells=1)
+    solution = rd.solve(patches, method, rays=1_000_000, replicates=16)
+    difference, error = solution.radiosity - 1, solution.standard_error
+    # an iteration without a first shot has no error here, since means of equal values are exact: what its warm-up left shows
+    assert (np.abs(difference) < LARGEST * error + 4e-4).all()
+    assert np.sqrt(np.mean(difference**2)) < 0.01
+    assert solution.rays == pytest.approx(1_000_000, rel=0.05)
+    if error.mean() > 1e-4:
+        assert np.sqrt(np.mean((difference / error) ** 2)) < 1.5
+
+
+@pytest.fixture(scope="module")
+def references():
+    """Solutions by local lines, an order of magnitude more exact."""
+    cut = {"room": rd.subdivide(rd.load_scene("room"), cells=3)}
+    cut |= {back.name: rd.subdivide(opening(back), cells=2) for back in (rd.Back.RADIATES, rd.Back.PASSES)}
+    return {name: rd.solve(patches, rays=8_000_000, replicates=16, seed=9) for name, patches in cut.items()}
+
+
+@pytest.mark.parametrize("name", ["room", "RADIATES", "PASSES"])
+@some
+def test_like_local_lines(references, method, name):
+    same(rd.solve(references[name].patches, method, rays=600_000, replicates=16), references[name])
+
+
+def test_light_goes_one_way_through_a_back_that_lets_it_pass():
+    """The receiver sees the sheet's front, and gets the emitter's light through the sheet."""
+    patches = rd.subdivide(stack(rd.Back.PASSES), cells=3)
+    reference = rd.solve(patches, rays=2_000_000, replicates=16, seed=9)
+    for lines in ("global", "spans"):
+        for order in ("multipath", "regular"):
+            same(rd.solve(patches, rd.Method(lines=lines, order=order), rays=1_000_000, replicates=16), reference)
+
+
+def test_exchange_is_what_whole_numbers_say(random):
+    """Against Python's integers, span by span, with every kind of end."""
+    types, n = choose("cpu").types, 9
+    rho = (random.random(n) * 0.9 * 2**32).astype(np.uint32)
+    source = random.integers(0, 2**34, (2, n)).astype(np.uint64)
+    lengths, unshot, landed, ledger = [700, 500], np.zeros((2, n), object), np.zeros((2, n), object), np.zeros((4, 2), object)
+    ones, others = [], []
+    for r, length in enumerate(lengths):
+        one = random.integers(0, n, length)
+        other = (one + 1 + random.integers(0, n - 1, length)) % n
+        kind = random.integers(0, 8, length)
+        one = np.where(kind == 0, ESCAPED, np.where(kind == 1, LOST, one))
+        other = np.where(kind == 2, ESCAPED, np.where(kind == 3, LOST, np.where(kind == 4, other + ONE_WAY, other)))
+        ones.append(one.astype(np.uint32))
+        others.append(other.astype(np.uint32))
+        for i, j in zip(one.tolist(), other.tolist(), strict=True):
+            away = [0, 0]
+            for at, end in enumerate((i, j)):
+                if end < ONE_WAY:  # who is only seen sends nothing
+                    away[at] = int(unshot[r, end]) + int(source[r, end])
+                    unshot[r, end] = 0
+            for power, to in ((away[0], j), (away[1], i)):
+                ledger[0, r] += power
+                if to < CODES:
+                    to &= ONE_WAY - 1
+                    kept = power * int(rho[to]) >> 32
+                    unshot[r, to] += kept
+                    landed[r, to] += power
+                    ledger[1, r] += kept
+                else:
+                    ledger[2 if to == ESCAPED else 3, r] += power
+    exchange = Exchange(types, True, upload(types.UInt32, rho), upload(types.UInt64, source),
+                        *(upload(types.UInt64, np.zeros(2 * n, np.uint64)) for _ in range(2)))  # fmt: skip
+    both = (upload(types.UInt32, np.concatenate(ends)) for ends in (ones, others))
+    sums = exchange.run(*both, np.array(lengths), n)
+    assert frozen(exchange.unshot).reshape(2, n).tolist() == unshot.tolist()
+    assert frozen(exchange.landed).reshape(2, n).tolist() == landed.tolist()
+    assert sums.tolist() == ledger.tolist()
+
+
+def test_multipath_books_close_to_the_last_unit():
+    for scene in (rd.load_scene("room"), opening()):
+        for book in rd.solve(rd.subdivide(scene, cells=2), rd.Method(lines="global", order="multipath"), rays=200_000).books:
+            assert book["closes"] is True
+            assert abs(book["rounding"]) < 0.05 * book["emitted"]
+
+
+@some
+def test_same_bits_however_often_interrupted(method):
+    """A run that is stopped between two looks at the clock, anywhere, ends as one that was not."""
+    patches = rd.subdivide(opening(), cells=1)
+    problem, geometry = Problem.of(patches), Geometry(patches, choose("cpu"))
+
+    class Stopped(Exception):
+        pass
+
+    def stop(lines):
+        raise Stopped
+
+    whole = make(geometry, problem, method, 3, 2)
+    for quanta in (2048, 6000):
+        whole.advance(quanta, lambda lines: None)
+    parts = make(geometry, problem, method, 3, 2)
+    for quanta in (2048, 6000):
+        for _ in range(100):
+            try:
+                parts.advance(quanta, stop)
+                break
+            except Stopped:
+                state = parts.capture()
+                parts = make(geometry, problem, method, 3, 2)
+                parts.restore(state)
+        else:
+            pytest.fail("never complete")
+    one, two = whole.capture(), parts.capture()
+    assert set(one) == set(two)
+    for name in one:
+        assert np.array_equal(one[name], two[name]), name
+    assert not whole.unfinished(one)
+
+
+@pytest.mark.parametrize("order", ["multipath", "regular"])
+@pytest.mark.parametrize("lines", KINDS)
+def test_state_depends_on_the_number_of_lines_alone(lines, order):
+    """In one stage or many, without a first shot."""
+    if (lines, order) == ("bundles", "multipath"):
+        return
+    patches = rd.subdivide(opening(), cells=1)
+    problem, geometry = Problem.of(patches), Geometry(patches, choose("cpu"))
+    states = []
+    for stages in ((5000,), (1, 700, 2048, 2049, 5000)):
+        process = make(geometry, problem, rd.Method(lines=lines, order=order), 3, 2)
+        assert process.nested
+        for quanta in stages:
+            process.advance(quanta, lambda lines: None)
+        states.append(process.capture())
+    for name, values in states[0].items():
+        assert values == pytest.approx(states[1][name], rel=1e-12), name
+
+
+def test_mixed_order_holds_the_same_spans():
+    patches = rd.subdivide(rd.load_scene("room"), cells=1)
+    for lines in ("global", "bundles"):
+        spans = Spans(Geometry(patches, choose("cpu")), rd.Method(lines=lines, order="regular"), 0, 2)
+        mixed = Mixed(spans)
+        block = mixed.block
+        drawn, plain = mixed.draw(1, 0, 2 * block), spans.draw(1, 0, 2 * block)
+        assert (np.diff(drawn.line.astype(int)) >= 0).all()
+        for part in (slice(0, block), slice(block, 2 * block)):
+            a, b = (slice(*np.searchsorted(p.line, (part.start, part.stop))) for p in (drawn, plain))
+            both = [np.sort(p.one[s].astype(np.uint64) << np.uint64(32) | p.other[s]) for p, s in ((drawn, a), (plain, b))]
+            assert np.array_equal(*both)
+        pieces = [mixed.draw(1, first, count) for first, count in ((0, 100), (100, block), (block + 100, block - 100))]
+        assert np.array_equal(np.concatenate([piece.one for piece in pieces]), drawn.one)
+
+
+def test_one_replicate_has_no_error_and_a_seed_repeats_itself():
+    patches = rd.subdivide(rd.load_scene("room"), cells=1)
+    for order in ("multipath", "regular"):
+        method = rd.Method(lines="spans", order=order)
+        one, two = (rd.solve(patches, method, rays=100_000, replicates=1, seed=4) for _ in range(2))
+        assert np.isnan(one.irradiance_standard_error).all()
+        assert np.array_equal(one.irradiance, two.irradiance)
+        longer = rd.solve(patches, method, rays=300_000, replicates=1, seed=4, resume=one)
+        again = rd.solve(patches, method, quanta=longer.quanta, replicates=1, seed=4)
+        assert longer.irradiance == pytest.approx(again.irradiance, rel=1e-12)
