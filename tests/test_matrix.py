@@ -56,7 +56,7 @@ def test_surfaces_receive_what_the_firing_engine_says(reference, scene, lines):
     assert ((np.abs(difference(power, expected)) < 6.0) | close).all()
     book = solution.books[0]
     assert book["closes"] is None
-    assert abs(book["rounding"]) < (1e-6 if lines == "local" else 0.05) * book["emitted"]
+    assert abs(book["rounding"]) < (1e-4 if lines == "local" else 0.05) * book["emitted"]
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +64,7 @@ def reference():
     """Patches and the power that their surfaces receive, (replicates, n_surfaces)."""
     scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
     cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
-    return {name: (p, replicate_power(rd.solve(p, rays=16_000_000, replicates=16))) for name, p in cut.items()}
+    return {name: (p, replicate_power(rd.solve(p, rays=8_000_000, replicates=16))) for name, p in cut.items()}
 
 
 def test_both_ways_is_reciprocal_and_better():
@@ -75,7 +75,7 @@ def test_both_ways_is_reciprocal_and_better():
     area = np.bincount(patches.surface, weights=patches.area)
     both, rows = (form_factors(problem, solution.state, patches.surface, both_ways=b) for b in (True, False))
     exchange = area[:, None] * both[:, :, :-2]
-    assert np.abs(exchange - exchange.transpose(0, 2, 1)).max() < 1e-6 * area.max()
+    assert np.abs(exchange - exchange.transpose(0, 2, 1)).max() < 1e-4 * area.max()
     k = len(area)
     assert np.abs(difference(both.reshape(16, -1), rows.reshape(16, -1)).reshape(k, k + 2)).max() < 5
     one, other = (replicate_power(solution, MatrixTally(b)).std(axis=0) for b in (True, False))

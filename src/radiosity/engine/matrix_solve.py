@@ -8,8 +8,8 @@ import numpy as np
 from .matrix_counts import WORD, split
 
 TOLERANCE = 1e-10  # relative, of radiosity
-BALANCED = 1e-9  # relative, of row sums while they are scaled
-SCALINGS = 500  # at most
+BALANCED = 1e-6  # of the scene's area: how far off row sums may be together while they are scaled
+SCALINGS = 20  # at most: few rows are far off then, and single ones may never meet their sum
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ def _balanced(rows: np.ndarray, columns: np.ndarray, exchange: np.ndarray, wante
     for _ in range(SCALINGS):
         sums = scale * np.bincount(rows, weights=exchange * scale[columns], minlength=n)
         ratio = np.divide(wanted, sums, out=np.ones(n), where=sums > 0)
-        if np.abs(ratio - 1).max() < BALANCED:
+        if np.abs(wanted - sums).sum() < BALANCED * wanted.sum():
             break
         scale *= np.sqrt(ratio)
     values = exchange * scale[rows] * scale[columns]
