@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 from rates import LINES, measure
 from scenes import black, room, strangers
+from spans import spans
 
 import radiosity as rd
 
@@ -32,6 +33,7 @@ def main() -> None:
         row(name, rd.subdivide(black(scene), cells=1), ">= 0.9")
     finer_patches()
     coherent()
+    spans()
     for name, scene in loaded.items():
         whole_run(name, scene)
     whole_run("room, 2 million patches", rd.load_scene("room"), cells=354)

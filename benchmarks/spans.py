@@ -34,7 +34,7 @@ class Cost:
 
 def spans() -> None:
     """Print the table."""
-    print("spans of global lines, drawn to the host: their cost in local lines, of a whole sweep and in the same turn (medians)")
+    print("spans of global lines, drawn to the host: their cost in local lines, which are fired in the same turn (medians)")
     print(ROW.format("scene", "faces", "kind", "a line", "M/s", "local", "ratio"))
     for tiles, cells in ((1, 24), (24, 1)):
         patches = rd.subdivide(room(tiles), cells=cells)
@@ -52,7 +52,9 @@ def measure(patches: rd.Patches, turns: int = TURNS, lines: int = LINES) -> tupl
     local, rates, each = [], {kind: [] for kind in KINDS}, {}
     for turn in range(turns + 1):
         engine.set_quanta((turn + 1) * lines)
-        seconds, _ = _time(lambda: engine.fire(*engine.due()))
+        batch, largest = engine.due()
+        assert batch is not None
+        seconds, _ = _time(lambda batch=batch, largest=largest: engine.fire(batch, largest))
         found = {}
         for kind, source in kinds.items():
             took, pairs = _time(lambda source=source, turn=turn: source.draw(0, turn * lines, lines))

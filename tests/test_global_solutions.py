@@ -197,8 +197,8 @@ def test_state_depends_on_the_number_of_lines_alone(lines, order):
 
 def test_mixed_order_holds_the_same_spans():
     patches = rd.subdivide(rd.load_scene("room"), cells=1)
-    for lines in ("global", "bundles"):
-        spans = Spans(Geometry(patches, choose("cpu")), rd.Method(lines=lines, order="regular"), 0, 2)
+    for lines in ("global", "spans"):
+        spans = Spans(Geometry(patches, choose("cpu")), rd.Method(lines=lines, order="multipath"), 0, 2)
         mixed = Mixed(spans)
         block = mixed.block
         drawn, plain = mixed.draw(1, 0, 2 * block), spans.draw(1, 0, 2 * block)

@@ -1,8 +1,9 @@
-"""In which order a replicate's spans are taken: blocks of lines one after the other, the spans of a block in an order drawn anew.
+"""In which order multipath takes spans: blocks of lines one after the other, the spans of a block in an order drawn anew.
 
-Multipath reads a path out of spans that follow each other on a patch, and an iteration carries on what the ones before it left.
-That is right if a span is independent of the spans before it. Neighbours in a low discrepancy sequence are not, they are made to
-differ; nor are the spans of one line, or a span that counts twice. The set of spans in a block stays what it is.
+Multipath reads a path out of spans that follow each other on a patch. That is right if a span is independent of the spans before
+it. Neighbours in a low discrepancy sequence are not, they are made to differ; nor are spans of one line, or one that counts
+twice. The set of spans in a block stays what it is. What is left is that no span comes twice in a block, which is felt the less
+the longer blocks are.
 """
 
 from dataclasses import dataclass
@@ -12,9 +13,8 @@ import numpy as np
 from .quanta import stream
 from .spans import Pairs, Spans
 
-VISITS = 64  # of a mean patch within a block, where that is not too long
+VISITS = 256  # of a mean patch within a block, where that is not too long
 LEAST, MOST = 1 << 10, 1 << 18  # lines of a block
-BUNDLES, MOST_BUNDLED = 256, 1 << 19  # bundles of a block, and their lines
 ORDER = 2  # purpose of the stream (`quanta.stream`), which has the block as a child
 
 
@@ -27,14 +27,8 @@ class Mixed:
     @property
     def block(self) -> int:
         """Lines of a block, a power of two."""
-        if self.bundled:
-            return min(BUNDLES * self.spans.bundle, max(MOST_BUNDLED, self.spans.bundle))
         wanted = VISITS / float(self.spans.ends_per_line.mean())
         return int(np.clip(2.0 ** np.ceil(np.log2(wanted)), LEAST, MOST))
-
-    @property
-    def bundled(self) -> bool:
-        return self.spans.method.lines == "bundles"
 
     def draw(self, replicate: int, first: int, count: int) -> Pairs:
         """As `Spans.draw`, of the lines ``first`` to below ``first + count`` in the mixed order. Its lines are not those of the
@@ -56,15 +50,5 @@ class Mixed:
         """From the lines of a block's spans: the spans in their new order, and the lines that they belong to then."""
         seed = np.random.SeedSequence(stream(self.spans.seed, replicate, ORDER).entropy, spawn_key=(number,))
         generator = np.random.Generator(np.random.Philox(seed))
-        if self.bundled:
-            return _bundle_by_bundle(line, generator.permutation(self.block // self.spans.bundle), self.spans.bundle)
         spread = np.arange(len(line), dtype=np.uint64) * np.uint64(self.block) // np.uint64(max(len(line), 1))
         return generator.permutation(len(line)), spread
-
-
-def _bundle_by_bundle(line: np.ndarray, order: np.ndarray, lines: int) -> tuple[np.ndarray, np.ndarray]:
-    """Whole bundles of so many lines in another order."""
-    cuts = np.searchsorted(line, np.arange(len(order) + 1) * lines)
-    counts = np.diff(cuts)[order]
-    rows = np.repeat(cuts[:-1][order] - (np.cumsum(counts) - counts), counts) + np.arange(len(line))
-    return rows, line[rows].astype(np.int64) + np.repeat((np.arange(len(order)) - order) * lines, counts)
