@@ -14,8 +14,8 @@ import drjit as dr
 from radiosity.engine.device import choose
 from radiosity.engine.firing import Engine
 from radiosity.engine.geometry import Geometry
+from radiosity.engine.global_lines.spans import Spans
 from radiosity.engine.quanta import Source
-from radiosity.engine.spans import Spans
 
 KINDS = ("global", "global-disc", "spans", "bundles")
 LINES = 1 << 20  # of a turn

@@ -37,6 +37,24 @@ def sphere(reflectance: float, emission: float, subdivisions: int = 3) -> rd.Sce
     return rd.Scene.from_arrays(points, faces, reflectance, emission)
 
 
+def sphere_in_box() -> tuple[rd.Scene, float]:
+    """A convex polyhedron, nearly a sphere, inside a cube: all of its light lands on the cube, and the share of the cube's light
+    that lands on it is the ratio of areas, by reciprocity: exact for any convex body in another."""
+    ball, outer = sphere(0.0, 0.0, 2), cube(0.0, 0.0)
+    corners = 0.5 + 0.3 * ball.vertices
+    triangles = np.column_stack([ball.faces[:, [0, 2, 1]], np.full(ball.n_faces, -1)])
+    scene = rd.Scene.from_arrays(
+        np.concatenate([corners, outer.vertices]),
+        np.concatenate([triangles, outer.faces + len(corners)]),
+        0.0,
+        1.0,
+        surface=[0] * len(triangles) + [1] * outer.n_faces,
+        names=["sphere", "box"],
+    )
+    area = np.bincount(scene.surface, scene.area)
+    return scene, float(area[0] / area[1])
+
+
 def facing(first: np.ndarray, second: np.ndarray) -> rd.Scene:
     """Two black parallelograms, the first emitting 1 W/m²: the share of its power that lands on the other is F_12."""
     return rd.Scene.from_arrays(

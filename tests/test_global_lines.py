@@ -12,7 +12,7 @@ from scipy import stats
 import radiosity as rd
 from radiosity.engine.device import choose, upload
 from radiosity.engine.geometry import Geometry
-from radiosity.engine.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
+from radiosity.engine.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
 from radiosity.errors import MethodError
 from radiosity.method.lines import global_lines
 from radiosity.patches import cells

@@ -10,12 +10,12 @@ from test_lines import stack
 
 import radiosity as rd
 from radiosity.engine.device import choose, frozen, upload
-from radiosity.engine.exchange import Exchange
 from radiosity.engine.geometry import Geometry
-from radiosity.engine.mixing import Mixed
+from radiosity.engine.global_lines.exchange import Exchange
+from radiosity.engine.global_lines.mixing import Mixed
+from radiosity.engine.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
 from radiosity.engine.problem import Problem
 from radiosity.engine.process import make
-from radiosity.engine.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
 from radiosity.scene.shapes import quad
 
 SIGMAS, LARGEST = 4.5, 6.5

@@ -15,8 +15,8 @@ from iterations import VARIANTS, open_room, replicate_power
 from scipy.stats import t as student
 
 import radiosity as rd
-from radiosity.engine.iteration_exchange import LINE, Exchange
-from radiosity.engine.shooter import Ends, Shooter
+from radiosity.engine.iteration.exchange import LINE, Exchange
+from radiosity.engine.iteration.shooter import Ends, Shooter
 
 RUNS, LONG_RUNS, ALPHA = 4096, 512, 1e-3
 UNBIASED = ("incremental", "incremental, both ends", "incremental, control variate", "regular, warm-up")
@@ -115,8 +115,8 @@ def test_swapped_weights_are_rejected(lit, monkeypatch):
 
 def test_a_start_at_the_light_that_is_kept_is_rejected(room, monkeypatch):
     """Without start-up the first iterations are too dark, and the mean remembers them."""
-    from radiosity.engine import iteration_plan
+    from radiosity.engine.iteration import plan
 
-    monkeypatch.setattr(iteration_plan, "DARK", 0.999)
+    monkeypatch.setattr(plan, "DARK", 0.999)
     largest, bound = statistic(room, "regular", 10_000, LONG_RUNS)
     assert largest > 1.5 * bound

@@ -6,12 +6,12 @@ about 1 % for a false alarm, and seeds are fixed.
 
 import numpy as np
 import pytest
-from enclosures import cube, parallel_squares, perpendicular_squares
+from enclosures import coaxial_discs, cube, parallel_squares, perpendicular_squares, sphere_in_box
 from iterations import difference, open_room, replicate_power
 
 import radiosity as rd
-from radiosity.engine.matrix_counts import PairCounts, split
-from radiosity.engine.matrix_tally import MatrixTally, form_factors
+from radiosity.engine.matrix.counts import PairCounts, split
+from radiosity.engine.matrix.tally import MatrixTally, form_factors
 from radiosity.engine.problem import Problem
 
 LINES = ("local", "global", "global-disc", "spans", "bundles")
@@ -31,6 +31,29 @@ def test_exact_form_factors(case, lines, numbers):
     assert error < 5e-3
     assert np.allclose(factors.sum(axis=2), 1, atol=1e-12)  # what does not land escapes or is lost
     assert (factors[:, 0, 0] == 0).all()  # a plane does not see itself
+
+
+@pytest.mark.parametrize("lines", LINES)
+def test_exact_form_factors_of_discs(lines):
+    scene, exact = coaxial_discs()
+    patches = rd.subdivide(scene, cells=1)
+    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=1_000_000, replicates=16)
+    factors = form_factors(Problem.of(patches), solution.state, patches.surface, both_ways=lines == "local")[:, 0, 1]
+    error = factors.std(ddof=1) / 4
+    assert abs(factors.mean() - exact) < 5 * error
+    assert error < 0.02 * exact
+
+
+@pytest.mark.parametrize("lines", LINES)
+def test_exact_form_factors_of_a_sphere_in_a_box(lines):
+    scene, exact = sphere_in_box()
+    patches = rd.subdivide(scene, cells=1)
+    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=1_000_000, replicates=16)
+    factors = form_factors(Problem.of(patches), solution.state, patches.surface, both_ways=lines == "local")
+    assert np.allclose(factors[:, 0], [0, 1, 0, 0], atol=1e-5)  # sphere: all to the box, but what slips through an edge
+    error = factors[:, 1, 0].std(ddof=1) / 4
+    assert abs(factors[:, 1, 0].mean() - exact) < 5 * error
+    assert error < 0.01 * exact
 
 
 @pytest.mark.parametrize("mean_reflectance", [0.1, 0.5, 0.9])
@@ -98,9 +121,9 @@ def test_colours_share_the_factors():
 def test_stages_threads_and_interruptions_do_not_matter(lines, monkeypatch):
     import drjit as dr
 
-    from radiosity.engine import matrix
     from radiosity.engine.device import choose
     from radiosity.engine.geometry import Geometry
+    from radiosity.engine.matrix import process as matrix
     from radiosity.engine.process import make
     from radiosity.engine.progress import Interrupted
 
@@ -152,7 +175,7 @@ def test_counts_are_those_of_a_dictionary(random):
 
 
 def test_too_many_pairs_are_refused_or_end_the_run(monkeypatch):
-    from radiosity.engine import matrix
+    from radiosity.engine.matrix import process as matrix
 
     patches = rd.subdivide(rd.load_scene("room"), cells=6)
     monkeypatch.setattr(matrix, "LIMIT", 1000)

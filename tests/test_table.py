@@ -12,6 +12,7 @@ from methods import METHODS, critical, differences, surface_powers
 import radiosity as rd
 
 RAYS, REPLICATES = 1_500_000, 16
+START_UP = 1e-4  # of the light, that iterations may leave out as they begin (docs/iterations.md); some have no variance here
 SMOOTHING = 0.05  # density estimation alone: what smoothing may move between surfaces' patches, which its error bars leave out
 
 
@@ -59,7 +60,7 @@ def test_furnace(method, mean_reflectance):
     solution = rd.solve(patches, method, rays=RAYS, replicates=REPLICATES)
     exact = np.bincount(patches.surface, patches.area)
     power = surface_powers(solution)
-    error = np.maximum(power.std(axis=0, ddof=1) / REPLICATES**0.5, 1e-6 * exact)
+    error = np.maximum(power.std(axis=0, ddof=1) / REPLICATES**0.5, START_UP * exact)
     assert np.abs((power.mean(axis=0) - exact) / error).max() < critical(REPLICATES, len(exact))
     assert np.average(np.abs(solution.radiosity[:, 0] - 1), weights=patches.area) < 0.1
 

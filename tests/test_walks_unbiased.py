@@ -11,9 +11,9 @@ from methods import critical, surface_powers
 
 import radiosity as rd
 from radiosity.engine.device import upload
-from radiosity.engine.flock import Legs
-from radiosity.engine.gathering import Gathering
-from radiosity.engine.scores import Scores
+from radiosity.engine.walks.flock import Legs
+from radiosity.engine.walks.gathering import Gathering
+from radiosity.engine.walks.scores import Scores
 
 RUNS, WALKS = 300, 150
 

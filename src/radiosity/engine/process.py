@@ -13,12 +13,12 @@ from .problem import Problem
 
 PROCESSES = {
     "firing": "firing_process:Firing",
-    "walks": "walks:Walks",
-    "gathering": "gathering:Gathering",
-    "iteration": "iteration:Iteration",
-    "multipath": "multipath:Multipath",
-    "pooling": "pooling:Pooling",
-    "matrix": "matrix:Matrix",
+    "walks": "walks.shooting:Walks",
+    "gathering": "walks.gathering:Gathering",
+    "iteration": "iteration.process:Iteration",
+    "multipath": "global_lines.multipath:Multipath",
+    "pooling": "global_lines.pooling:Pooling",
+    "matrix": "matrix.process:Matrix",
 }
 
 State = dict[str, np.ndarray]

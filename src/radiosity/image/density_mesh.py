@@ -58,7 +58,7 @@ def display(solution, quantity: str) -> tuple[DisplayMesh, np.ndarray, np.ndarra
 def _landed(solution, band: int) -> np.ndarray:
     """(n_patches,) irradiance of a band as counted, before it was smoothed, mean over replicates."""
     from ..engine.problem import Problem
-    from ..engine.walk_tally import WalkTally
+    from ..engine.walks.tally import WalkTally
 
     problem = Problem.of(solution.patches)
     group, scale = problem.groups.index[band], problem.groups.scale[band]

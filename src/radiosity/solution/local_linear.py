@@ -93,7 +93,7 @@ def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.n
         cells = regions.plane(region, regions.patches.centroid[members])
         here = regions.plane(region, points[at])
         tree = KDTree(cells)
-        nearest = tree.query(here, [min(least, len(members))])[0][:, 0]
+        nearest = tree.query(here, min(least, len(members)))[0].reshape(len(at), -1)[:, -1]
         reach = np.maximum(width[region], nearest * BEYOND + 1e-300)
         lists = tree.query_ball_point(here, reach)
         row = np.repeat(np.arange(len(at)), [len(found) for found in lists])

@@ -1,0 +1,81 @@
+"""In a kernel: the next face on a line, what it shows to either side, and where the line goes on behind it."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ...scene.model import Back
+from ..device import upload
+from ..geometry import Geometry
+from ..lines import _hit, patch_of
+from .hull import nothing_beyond
+
+ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `firing`: no patch has these numbers
+PENDING, NOBODY = 0xFFFFFFFB, 0xFFFFFFFA  # what is not known yet, and who looks forward where a passing back hides all behind
+CODES = NOBODY  # from here on numbers are no patches
+ONE_WAY = 1 << 31  # of a patch number: `one` sees it, but it does not see `one`
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A face on a line.
+
+    Attributes:
+        valid: there is one.
+        near, far: the patch on the side where the line comes from, and on that where it goes on; LOST for an absorbing
+            back, and near is ESCAPED where there is no face.
+        near_passes, far_passes: that side is a back that lets lines pass, and ``near`` or ``far`` means nothing.
+        origin: where the line goes on: behind the face.
+        free: nothing lies behind the face.
+    """
+
+    valid: Any
+    near: Any
+    far: Any
+    near_passes: Any
+    far_passes: Any
+    origin: Any
+    free: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Crossings:
+    """The faces of a scene, as lines that go through them meet them."""
+
+    geometry: Geometry
+
+    @cached_property
+    def records(self):
+        """(n_faces * 16,) Float: origin, edges, the step from the plane to the point where lines go on in front of it, and
+        whether there is nothing in front and behind."""
+        origin, first, second, offset = self.geometry.frames
+        cross = np.cross(first, second)
+        step = cross / np.linalg.norm(cross, axis=1, keepdims=True) * offset[:, None]
+        free = nothing_beyond(self.geometry)
+        record = np.concatenate([origin, first, second, step, free, np.zeros_like(free)], axis=1)
+        return upload(self.geometry.device.types.Float, record.astype(np.float32))
+
+    def next(self, origin, direction, active, *, coherent: bool = False) -> Crossing:
+        """The first face from ``origin`` on.
+
+        Lines go on from the point with the hit's coordinates on the face, which is as exact as the face's own corners; the
+        point a distance along the line is as inexact as the line is long, and may lie before a small face near the centre.
+        """
+        geometry = self.geometry
+        types = geometry.device.types
+        hit, _ = _hit(geometry, origin, direction, coherent, active)
+        near = patch_of(geometry, hit, LOST, ESCAPED)
+        turned = replace(hit, front=~hit.front)
+        far = patch_of(geometry, turned, LOST, ESCAPED)
+        face = dr.gather(types.UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
+        block = dr.gather(types.Array44f, self.records, face, hit.valid)
+        words = [block[i // 4][i % 4] for i in range(16)]
+        corner, first, second, step = (types.Array3f(*words[at : at + 3]) for at in range(0, 12, 3))
+        onward = corner + first * dr.clip(hit.u, 0, 1) + second * dr.clip(hit.v, 0, 1) + dr.select(hit.front, -step, step)
+        free = hit.valid & (dr.select(hit.front, words[13], words[12]) > 0)
+        return Crossing(
+            hit.valid, near, far, hit.back(Back.PASSES), turned.back(Back.PASSES), dr.select(hit.valid, onward, origin), free
+        )

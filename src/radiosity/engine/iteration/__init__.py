@@ -1,0 +1,1 @@
+"""Iterations of local lines: power sent by patches, incrementally or all of it anew."""

@@ -1,0 +1,62 @@
+"""How many lines regular iterations fire when: first a start, then ever longer iterations."""
+
+import math
+
+import numpy as np
+
+from .control import SHARE
+
+START = 4  # one line in so many of the first stage is for the start
+DARK = 1e-4  # share of the light that may be missing when the start-up ends
+FEWEST = 1024  # lines of an iteration, and one a patch
+COUNTERS = ("quanta", "done", "summed", "count", "starting", "start_lines", "probing")
+
+
+class Plan:
+    """Counters of a replicate; all replicates go alike.
+
+    Attributes:
+        n: patches.
+        mean: the mean reflectance, about the factor by which light falls from bounce to bounce.
+        quanta, done: lines to be traced in this stage and before, and traced.
+        summed, count: lines of the iterations in the mean, and how many iterations there were.
+        starting, start_lines: iterations of the start-up that are left (1 during a warm-up), and the lines of each.
+        probing: lines of this stage that are yet to be fired for the control variate.
+    """
+
+    def __init__(self, n: int, mean: float):
+        self.n, self.mean = n, mean
+        self.quanta = self.done = self.summed = self.count = self.starting = self.start_lines = self.probing = 0
+
+    def begin(self, quanta: int, *, probes: bool) -> None:
+        """A stage of N lines. The first also plans the start, unless one is under way."""
+        if self.quanta == 0 and not self.starting:
+            self.starting = max(1, math.ceil(math.log(DARK) / math.log(max(self.mean, DARK))))
+            self.start_lines = max(1, min(quanta // START // self.starting, 10 * self.n))
+        self.probing = max((quanta - self.quanta) // SHARE, 1) if probes else 0
+        self.quanta = quanta
+
+    def lines(self) -> int:
+        """Of the next iteration: one a patch at least, then a share of all so far, so that between L and 2 L lines there are
+        enough iterations for an error of the source to die out, and few enough to be cheap."""
+        if self.starting:
+            return self.start_lines
+        wanted = max(self.n, FEWEST, self.summed // min(max(8, round(4 / (1 - self.mean))), 128))
+        left = self.quanta - self.done
+        return left if left < 1.5 * wanted else wanted
+
+    def count_iteration(self, lines: int) -> bool:
+        """An iteration is done; whether it is part of the result."""
+        self.done, self.count = self.done + lines, self.count + 1
+        if self.starting:
+            self.starting -= 1
+            return False
+        self.summed += lines
+        return True
+
+    def capture(self) -> np.ndarray:
+        return np.array([getattr(self, name) for name in COUNTERS])
+
+    def restore(self, values: np.ndarray) -> None:
+        for name, value in zip(COUNTERS, values, strict=True):
+            setattr(self, name, int(value))

@@ -1,0 +1,1 @@
+"""Form factors from counted lines, and the equation solved with them."""

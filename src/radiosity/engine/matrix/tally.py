@@ -1,0 +1,88 @@
+"""What counted lines mean: form factors, and the solution of the equation with them."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from ...solution.books import by_difference
+from ..problem import Problem
+from ..process import AbstractTally, State
+from .counts import WORD, split
+from .solve import Factors, irradiance, of_both_ways, of_rows
+
+
+class MatrixTally(AbstractTally):
+    """Reads counts; the last state's results are kept, since they are asked for more than once.
+
+    Attributes:
+        both_ways: use each line at both its ends, see `matrix_solve.of_both_ways`.
+        directed: patches do not see what sees them, see `Factors.sent`.
+    """
+
+    def __init__(self, both_ways: bool, *, directed: bool = False):
+        self.both_ways, self.directed = both_ways, directed
+        self._last: tuple[np.ndarray | None, dict] = (None, {})
+
+    def lines(self, problem: Problem, state: State) -> int:
+        """Each line of a patch is an entry; a span between two patches is two."""
+        return int(state["counts"].sum(dtype=np.uint64))
+
+    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
+        n, (_, columns) = len(problem.patches), split(state["keys"])
+        return np.bincount(columns, weights=state["counts"], minlength=n + 2)[:n].astype(np.int64)
+
+    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
+        return self._solved(problem, state, group)[0], 1.0
+
+    def books(self, problem: Problem, state: State, group: int) -> dict:
+        values, missed = self._solved(problem, state, group)
+        emitted = float(problem.groups.emission[:, group] @ problem.patches.area)
+        absorbed = float(values.mean(axis=0) @ (1 - problem.groups.reflectance[:, group]))
+        return by_difference(emitted, absorbed, *(float(x) for x in missed.mean(axis=0)))
+
+    def _solved(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, np.ndarray]:
+        """Power received, (replicates, n_patches), and escaped and lost, (replicates, 2)."""
+        if self._last[0] is not state["keys"]:
+            self._last = state["keys"], self._all(problem, state)
+        return self._last[1][group]
+
+    def _all(self, problem: Problem, state: State) -> dict:
+        groups, area = problem.groups, problem.patches.area
+        found = {group: ([], []) for group in range(groups.n_groups)}
+        for factors in replicate_factors(problem, state, both_ways=self.both_ways):
+            seen = factors.sent(area) if self.directed else factors
+            for group, (values, missed) in found.items():
+                emission, rho = groups.emission[:, group], groups.reflectance[:, group]
+                received = irradiance(seen, emission, rho)
+                power = area * (emission + rho * received)
+                values.append(area * received)
+                missed.append([factors.escaped @ power, factors.lost @ power])
+        return {group: (np.array(values), np.array(missed)) for group, (values, missed) in found.items()}
+
+
+def replicate_factors(problem: Problem, state: State, *, both_ways: bool) -> Iterator[Factors]:
+    """The form factors of each replicate, one after the other."""
+    n = len(problem.patches)
+    bounds = np.searchsorted(state["keys"], np.arange(int(state["replicates"]) + 1).astype(np.uint64) * np.uint64(n) << WORD)
+    for replicate, (begin, end) in enumerate(pairwise(bounds)):
+        keys, counts = state["keys"][begin:end] - (np.uint64(replicate * n) << WORD), state["counts"][begin:end]
+        yield of_both_ways(keys, counts, n, problem.patches.area) if both_ways else of_rows(keys, counts, n)
+
+
+def form_factors(problem: Problem, state: State, labels: np.ndarray, *, both_ways: bool) -> np.ndarray:
+    """(replicates, k, k) form factors between k groups of patches, and to nowhere, (replicates, k, k + 2): the last two columns
+    are escaped and lost.
+
+    Args:
+        labels: (n_patches,) int, the group of each patch, 0 to k - 1.
+    """
+    area, k = problem.patches.area, int(labels.max()) + 1
+    whole = np.bincount(labels, weights=area, minlength=k)
+    result = []
+    for factors in replicate_factors(problem, state, both_ways=both_ways):
+        pairs = labels[factors.rows] * k + labels[factors.columns]
+        power = np.bincount(pairs, weights=factors.values * area[factors.rows], minlength=k * k).reshape(k, k)
+        missed = [np.bincount(labels, weights=x * area, minlength=k) for x in (factors.escaped, factors.lost)]
+        result.append(np.column_stack([power, *missed]) / whole[:, None])
+    return np.array(result)
