@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from methods import methods
 from rates import LINES, measure
 from scenes import black, room, strangers
 from spans import spans
@@ -37,6 +38,7 @@ def main() -> None:
     for name, scene in loaded.items():
         whole_run(name, scene)
     whole_run("room, 2 million patches", rd.load_scene("room"), cells=354)
+    methods()
     start_up()
 
 

@@ -12,7 +12,7 @@ WALKS = {
         "Discrete random walks: a particle leaves the patch that it hit from a fresh uniform point. Here the patches own "
         "the walk: each fires as many lines as its emission and its arrivals times reflectance make whole quanta, so that "
         "no number is drawn for absorption and the counts do not depend on the order of firing.",
-        "The default. The least error at equal lines of all methods here, and the same bits on any number of threads.",
+        "The default: fast, little error at equal lines, exact books, and the same bits on any number of threads.",
         "sbert1997",
         (ESTIMATOR, ABSORPTION, ("coherent", "packets of like lines: faster where patches fire some million lines")),
     ),
