@@ -249,7 +249,7 @@ def test_more_rays_go_on_from_a_solution(patches, solution):
 def test_going_on_with_something_else_is_refused(patches, solution):
     with pytest.raises(rd.MethodError, match=r"seed \(0 then, 1 now\)"):
         rd.solve(patches, rays=4_000_000, resume=solution, seed=1)
-    with pytest.raises(rd.MethodError, match="choices"):
+    with pytest.raises(rd.MethodError, match=r"numbers \(halton then, random now\)"):
         rd.solve(patches, rays=4_000_000, resume=solution, numbers="random")
     with pytest.raises(rd.MethodError, match="patches"):
         rd.solve(rd.subdivide(patches.scene, cells=2), rays=4_000_000, resume=solution)

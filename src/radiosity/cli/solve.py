@@ -27,7 +27,9 @@ def solve(
     estimator: str | None = None,
     absorption: str | None = None,
     first_shot: Share = None,
-    control_variate: Flag = False,
+    control_variate: bool | None = None,
+    warm_up: bool | None = None,
+    reconstruction: str | None = None,
     patch_size: Length = None,
     cells: Count = None,
     replicates: Copies = 8,
@@ -73,6 +75,10 @@ def solve(
         Of global lines: the share of all lines that sends the lights' own power by local lines first, such as 25%.
     control_variate
         Of iterations: take a constant radiosity out of what lines carry.
+    warm_up
+        Of regular iterations: begin with incremental ones.
+    reconstruction
+        Of particles: patches (landings are counted) or local-linear (planes are fitted to them).
     patch_size
         Longest edge of a patch, in metres. Default: what gives about 20 000 patches.
     cells
@@ -115,7 +121,8 @@ def solve(
         solution = rd.solve(
             patches, method, rays=rays if given else DEFAULT_RAYS, seconds=seconds, error=error, quanta=quanta,
             equation=equation, lines=lines, order=order, numbers=numbers, replicates=replicates, seed=seed, device=device,
-            estimator=estimator, absorption=absorption, first_shot=first_shot, control_variate=control_variate or None,
+            estimator=estimator, absorption=absorption, first_shot=first_shot, control_variate=control_variate,
+            warm_up=warm_up, reconstruction=reconstruction,
             coherent=coherent or None, progress=progress, resume=before,
         )  # fmt: skip
     print(solution.report())

@@ -122,9 +122,9 @@ def _wanted(budget: Budget, replicates: int, rung: int, at: Progressed) -> int |
     if budget.quanta is not None:
         return int(budget.quanta)
     if budget.rays is not None:
-        return round(budget.rays * at.quanta / at.lines)
+        return round(budget.rays * at.quanta / at.lines) if at.lines else rung  # nothing was hit yet: try more
     if budget.seconds is not None:
         left = budget.seconds - at.seconds
-        rate = at.lines / max(at.stage_seconds, 1e-9) / 2  # a stage fires about half of all lines so far
-        return round(at.quanta * (1 + 0.9 * left * rate / at.lines)) if left > 0 else None
+        rate = max(at.lines, 1) / max(at.stage_seconds, 1e-9) / 2  # a stage fires about half of all lines so far
+        return round(at.quanta * (1 + 0.9 * left * rate / max(at.lines, 1))) if left > 0 else None
     return None if math.isnan(at.error) or at.error <= (budget.error or 0) else rung

@@ -37,6 +37,10 @@ class Geometry:
     def scene(self) -> Scene:
         return self.patches.scene
 
+    def prepare(self) -> None:
+        """Make what kernels read. Records made within a recorded loop would end the process where they have one entry."""
+        _ = self.face_records, self.hit_records, self.patch_records, self.primitive_faces, self.offsets
+
     @cached_property
     def tree(self) -> Tree:
         return tree(self.scene, self.device)

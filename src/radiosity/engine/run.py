@@ -23,6 +23,7 @@ MANY = 64  # more lines than a quantum takes in most scenes: then the first rung
 COUNTERS_FULL = "counters full before the end; take more replicates"
 ENOUGH = 20.0  # times sqrt(patches): quanta from which on a number of rays is met closely
 TRIAL = 1 << 15  # quanta of that measurement, or an eighth of a replicate's budget
+ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
 
 
@@ -48,6 +49,7 @@ class Run:
         if resume is not None:
             check_same(resume.provenance, self._provenance())
         self.geometry = Geometry(patches, self.device)
+        self.geometry.prepare()
 
     def solve(self) -> Solution:
         """Stage after stage until the budget is used up, or Ctrl-C."""
@@ -63,9 +65,9 @@ class Run:
             target = process.quanta
             if not process.nested and not process.unfinished(self.resume.state) and not on_ladder(target, self.rung):
                 raise MethodError(
-                    f"a run of {self.problem.groups.n_groups} different bands, by {self.method}, that ended with {target} quanta "
-                    "cannot go on to the bits of one longer run: its last stage is no power of two from "
-                    f"{self.rung} on; start anew"
+                    f"a run by {self.method} in {self.problem.groups.n_groups} groups of bands cannot go on from {target} quanta "
+                    "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
+                    f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
         self.teller.begin(0 if self.resume is None else process.tally.lines(self.problem, process.capture()))
         snapshot, status, pending = None, "complete", {}
@@ -132,7 +134,8 @@ class Run:
 
     def _few_quanta(self, rays: float) -> int:
         """For a small number of rays a replicate: how many a quantum takes is measured in a run that is thrown away."""
-        process = self._process(self.problem.scalar, 1)
+        counted = self.problem.scalar if self.method.machine == "firing" else self.problem
+        process = self._process(counted, 1)
         trial = max(min(math.ceil(rays), LEAST_QUANTA), min(int(rays) // 8, TRIAL))
         process.advance(trial, self._tried)
         lines = process.tally.lines(process.problem, process.capture())
@@ -153,6 +156,14 @@ class Run:
             raise KeyboardInterrupt
 
     def _solution(self, snapshot: Snapshot, status: str, pending) -> Solution:
+        ends = snapshot.lines / self.replicates / len(self.patches)
+        if self.method.machine == "matrix" and self.method.lines != "local" and ends < ENDS_ENOUGH:
+            warnings.warn(
+                f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over that "
+                "number, and not in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
+                RadiosityWarning,
+                stacklevel=5,
+            )
         mean, error = snapshot.irradiance()
         return Solution(
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,

@@ -28,6 +28,8 @@ def solve(
     absorption: str | None = None,
     first_shot: float | None = None,
     control_variate: bool | None = None,
+    warm_up: bool | None = None,
+    reconstruction: str | None = None,
     coherent: bool | None = None,
     progress: Listener | None = None,
     resume: Solution | None = None,
@@ -37,8 +39,8 @@ def solve(
     Args:
         scene: a `Scene` (cut into about 20 000 patches) or the `Patches` of one.
         method: a preset's name or a `Method`.
-        equation, lines, order, numbers, estimator, absorption, first_shot, control_variate, coherent: replace its choices;
-            see `Method`.
+        equation, lines, order, numbers, estimator, absorption, first_shot, control_variate, warm_up, reconstruction, coherent:
+            replace its choices; see `Method`. Without ``warm_up`` another order than the method's drops its warm-up.
         rays, seconds, error, quanta: exactly one: lines traced in all (replicates together); wall time (the first stage is
             completed whatever it takes); relative error of the scene (`Solution.error`); or N of each replicate, which
             replays a run bit for bit.
@@ -47,7 +49,9 @@ def solve(
         device: "auto", "cpu" or "cuda".
         progress: called with a `Progress` after each sweep.
         resume: a solution of the same scene, method, seed and replicates to go on from, also an interrupted one; the
-            budget counts its lines. The result is that of a run that was never interrupted.
+            budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
+            their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
+            from a stage that is a power of two.
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
@@ -60,7 +64,8 @@ def solve(
     budget = Budget(rays, seconds, error, quanta)
     chosen = resolve(
         method, equation=equation, lines=lines, order=order, numbers=numbers, estimator=estimator, absorption=absorption,
-        first_shot=first_shot, control_variate=control_variate, coherent=coherent,
+        first_shot=first_shot, control_variate=control_variate, warm_up=warm_up, reconstruction=reconstruction,
+        coherent=coherent,
     )  # fmt: skip
     replicates, seed = _whole(replicates, "replicates", 1), _whole(seed, "seed", 0)
     budget.check(replicates)

@@ -5,7 +5,7 @@ import numpy as np
 from ..errors import MethodError
 from .device import frozen, upload
 
-SAME = ("scene", "cut", "choices", "seed", "replicates")
+SAME = ("scene", "cut", "seed", "replicates")
 
 
 def capture(engine) -> dict[str, np.ndarray]:
@@ -65,7 +65,9 @@ def check_same(before: dict, now: dict) -> None:
     Raises:
         MethodError: what differs.
     """
+    choices, chosen = before.get("choices") or {}, now["choices"]
     different = [f"{key} ({before.get(key)} then, {now[key]} now)" for key in SAME if before.get(key) != now[key]]
+    different += [f"{key} ({choices.get(key)} then, {value} now)" for key, value in chosen.items() if choices.get(key) != value]
     versions = before.get("versions", {})
     different += [f"{name} {versions.get(name)} then, {v} now" for name, v in now["versions"].items() if versions.get(name) != v]
     if different:

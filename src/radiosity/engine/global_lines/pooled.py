@@ -7,6 +7,13 @@ from ..problem import Problem
 from ..process import AbstractTally, State
 from . import first_shot
 
+UNIT = 2.0**-34  # of a group's largest emission: what radiosity is rounded to, so that its sums are whole numbers
+
+
+def units(problem: Problem) -> np.ndarray:
+    """(n_groups,) W/m²: what radiosity is counted in."""
+    return problem.groups.emission.max(axis=0) * UNIT
+
 
 class Pooled(AbstractTally):
     """Means over span ends, after a first shot where there was one."""
@@ -19,7 +26,7 @@ class Pooled(AbstractTally):
 
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
         received, ends = (_pooled(problem, values, state) for values in (state["received"][group], state["ends"]))
-        power = received / np.maximum(ends, 1) * problem.patches.area
+        power = received / np.maximum(ends, 1) * (problem.patches.area * units(problem)[group])
         if first_shot.PREFIX + "fired" in state:
             power = power + first_shot.landed(problem, state, group)[0]
         return power, 1.0

@@ -12,7 +12,7 @@ from ..process import AbstractProcess, State, Swept
 from . import first_shot
 from .ends import Ends, of_lines
 from .first_shot import FirstShot
-from .pooled import Pooled
+from .pooled import Pooled, units
 from .spans import ESCAPED, LOST, Pairs, Spans
 
 HALVES = 2  # of a replicate: each carries what the other has found
@@ -21,8 +21,9 @@ LEAST = 1 << 8  # lines of an iteration
 MEMORY, BUNDLES = 16, 64  # iterations, or bundles, that the radiosity which lines carry remembers at least
 SHARE = 8  # and one in so many of all iterations so far
 BATCH = 1 << 20  # spans of all replicates between two looks at the clock
+WARM = 1 << 21  # lines of all halves together in the warm-up, at most, but one iteration at least
 SWEEPS, SETTLED = 200, 1e-4  # of the warm-up: at most, or until all change together is this share of 1 - rho
-ARRAYS = ("carried", "recent", "recent_ends", "received", "ends", "escaped", "lost")
+ARRAYS = ("carried", "recent", "recent_ends", "fresh", "fresh_ends", "received", "ends", "escaped", "lost")
 
 
 class Pooling(AbstractProcess):
@@ -34,9 +35,11 @@ class Pooling(AbstractProcess):
     what it had before, and the irradiance of a small light came out too small by eight standard errors.
 
     Arrays, halves of replicates side by side, (n_groups, halves * n_patches) or (halves * n_patches):
-        carried: radiosity that lines carry, W/m²: all of it, or what is reflected where there was a first shot.
+        carried: radiosity that lines carry, whole numbers of the group's `units`: all of it, or what is reflected where there
+            was a first shot.
         recent, recent_ends: radiosity of partners, and ends, in the last iterations, each counting less than the next.
-        received, ends: the same of all iterations, alike: the result.
+        fresh, fresh_ends: int64, of the iteration that is not complete.
+        received, ends: int64, of all iterations, alike: the result. Whole numbers do not depend on where a stage ended.
         escaped, lost: ends that see nothing, or an absorbing back.
 
     Without a first shot the state after N lines depends on N alone; with one, see `Multipath`.
@@ -54,9 +57,11 @@ class Pooling(AbstractProcess):
         self._quanta, self.done = 0, 0
         self.rho, self.emission = (np.tile(x.T, self.halves) for x in (groups.reflectance, groups.emission))
         self.direct = np.zeros((self.n_groups, total)) if self.shot is not None else None
-        self.carried, self.recent, self.received = (np.zeros((self.n_groups, total)) for _ in range(3))
+        self.units = units(self.problem)
+        self.carried, self.recent = (np.zeros((self.n_groups, total)) for _ in range(2))
+        self.fresh, self.received = (np.zeros((self.n_groups, total), np.int64) for _ in range(2))
         self.recent_ends = np.zeros(total)
-        self.ends, self.escaped, self.lost = (np.zeros(total, np.int64) for _ in range(3))
+        self.fresh_ends, self.ends, self.escaped, self.lost = (np.zeros(total, np.int64) for _ in range(4))
 
     @property
     def iteration(self) -> int:
@@ -94,13 +99,13 @@ class Pooling(AbstractProcess):
 
     @property
     def source(self) -> np.ndarray:
-        """(n_groups, halves * n_patches): radiosity before any reflection along global lines."""
-        return self.emission if self.direct is None else self.rho * self.direct
+        """(n_groups, halves * n_patches): radiosity before any reflection along global lines, in `units`."""
+        return (self.emission if self.direct is None else self.rho * self.direct) / self.units[:, None]
 
     def _warm_up(self) -> None:
         """Solve for what the first lines of each half see. Begun at nothing, the iteration would take 1 / (1 - reflectance) times
         its memory to forget that."""
-        ends = Ends.of(self._drawn(0, self.memory * self.iteration), self.n)
+        ends = Ends.of(self._drawn(0, min(self.memory, max(1, WARM // self.halves // self.iteration)) * self.iteration), self.n)
         self.recent_ends = ends.number(self.recent_ends.size).astype(float)
         known, area = np.maximum(self.recent_ends, 1), np.tile(self.geometry.patches.area, self.halves)
         # of each group: the total power that a radiosity in proportion to reflectance would still have to send and absorb
@@ -115,6 +120,7 @@ class Pooling(AbstractProcess):
             self.carried = self.carried + change
             if (np.abs(change) @ area <= settled * (self.carried @ area)).all():
                 break
+        self.carried = np.round(self.carried)
 
     def _drawn(self, first: int, count: int) -> list[Pairs]:
         """Spans of each half of each replicate."""
@@ -132,15 +138,18 @@ class Pooling(AbstractProcess):
             length = min(step - (self.done + at) % step, count - at)
             batch = Ends.of([of_lines(pairs, at, at + length) for pairs in drawn], self.n)
             # what a half carries is what the other has found
-            ends, received = batch.number(self.ends.size), batch.received(self._exchanged(self.carried))
+            ends, received = batch.number(self.ends.size), batch.received(self._exchanged(self.carried)).astype(np.int64)
             self.ends += ends
             self.received += received
-            # what is not a whole iteration yet waits with the rest of it
-            self.recent += received
-            self.recent_ends += ends
+            # what is not a whole iteration yet waits for the rest of it
+            self.fresh += received
+            self.fresh_ends += ends
             at += length
             if (self.done + at) % step == 0:
-                self.carried = self.source + self.rho * (self.recent / np.maximum(self.recent_ends, 1e-9))
+                self.recent += self.fresh
+                self.recent_ends += self.fresh_ends
+                self.fresh[:], self.fresh_ends[:] = 0, 0
+                self.carried = np.round(self.source + self.rho * (self.recent / np.maximum(self.recent_ends, 1e-9)))
                 kept = 1 - 1 / max(self.memory, (self.done + at) // step // SHARE)
                 self.recent *= kept
                 self.recent_ends *= kept

@@ -65,6 +65,8 @@ class Incremental:
             lines, self.probing = self.probing, 0
             return lines
         exchange, types = self.exchange, self.exchange.types
+        if not dr.any(self.unsent != 0):
+            return 0  # without a step counted: a run that goes on from here comes by twice
         lines, fired = exchange.send(self.unsent, types.UInt64(exchange.largest(self.unsent)))
         self.fired += 0 if fired is None else fired
         self.received += exchange.shooter.received

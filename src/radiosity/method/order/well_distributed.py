@@ -16,12 +16,14 @@ def run(engine, progress) -> None:
         breadth_first.run(engine, progress)
         return
     while True:
-        fired = False
+        fired = 0
         for block in range(BLOCKS):
             batch, largest = engine.due_between(engine.total * block // BLOCKS, engine.total * (block + 1) // BLOCKS)
             if batch is not None:
                 engine.fire(batch, largest)
                 progress(batch.total)
-                fired = True
-        if not fired:
+                fired += batch.total
+        if fired < breadth_first.TAIL:
+            engine.everywhere, engine.landed = True, None  # blocks kept no account of where lines landed
+            breadth_first.run(engine, progress)  # the last few, and none where none are left
             return

@@ -27,4 +27,7 @@ def resolve(method: "str | Method" = "random-walk", **choices) -> Method:
         method = PRESETS[method].method
     if not isinstance(method, Method):
         raise MethodError(f"method is {method!r}; give a name ({', '.join(PRESETS)}) or a Method")
-    return replace(method, **{axis: value for axis, value in choices.items() if value is not None})
+    given = {axis: value for axis, value in choices.items() if value is not None}
+    if given.get("order", method.order) != method.order and "warm_up" not in given:
+        given["warm_up"] = False  # belongs to the order that was replaced
+    return replace(method, **given)

@@ -1,0 +1,86 @@
+"""Odd budgets and small scenes that every preset must survive, and what runs of all kinds share."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+
+
+def one_face(corners: int) -> rd.Patches:
+    vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]][:corners]
+    return rd.subdivide(rd.Scene.from_arrays(vertices, [list(range(corners))], 0.5, 1.0), cells=1)
+
+
+@pytest.fixture(scope="module")
+def coloured():
+    return rd.subdivide(rd.load_scene("cornell-box"), cells=3)
+
+
+@pytest.mark.parametrize("name", rd.PRESETS)
+@pytest.mark.parametrize("budget", [{"rays": 1}, {"rays": 1000}, {"quanta": 1}, {"quanta": 3, "replicates": 1}], ids=str)
+def test_one_face_and_few_lines(name, budget):
+    """Arrays of one entry, and runs that hit nothing at all; everything escapes."""
+    for corners in (3, 4):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", rd.RadiosityWarning)
+            solution = rd.solve(one_face(corners), name, **budget)
+        assert solution.irradiance == 0
+        assert solution.radiosity == 1
+
+
+@pytest.mark.parametrize("name", rd.PRESETS)
+def test_rays_are_met_within_five_percent_in_colour(name):
+    """Bands that differ much: lines follow what the method does with all of them together."""
+    scene = rd.load_scene("room")
+    reflectance = np.column_stack([scene.reflectance[:, 0], scene.reflectance[:, 0] / 8, np.zeros(scene.n_faces)])
+    tinted = rd.Scene.from_arrays(
+        scene.vertices, scene.faces, reflectance, scene.emission * [[1.0, 0.0, 2.0]], surface=scene.surface, names=scene.names
+    )
+    solution = rd.solve(rd.subdivide(tinted, cells=4), name, rays=1_000_000, replicates=4)
+    assert solution.rays == pytest.approx(1_000_000, rel=0.05)
+
+
+@pytest.mark.parametrize("name", rd.PRESETS)
+def test_quanta_replay_the_bits_and_files_keep_them(name, coloured, tmp_path):
+    solution = rd.solve(coloured, name, rays=200_000, replicates=3)
+    again = rd.solve(coloured, name, quanta=solution.quanta, replicates=3)
+    assert np.array_equal(again.irradiance, solution.irradiance)
+    solution.save(tmp_path / "run.npz")
+    loaded = rd.load_solution(tmp_path / "run.npz")
+    assert np.array_equal(loaded.irradiance, solution.irradiance)
+    assert loaded.report() == solution.report()
+
+
+@pytest.mark.parametrize("name", rd.PRESETS)
+def test_a_run_goes_on_to_the_bits_of_a_longer_one(name, coloured):
+    """From a power of two, which every process allows."""
+    few = rd.solve(coloured, name, quanta=1 << 19, replicates=2)
+    more = rd.solve(coloured, name, quanta=1 << 20, replicates=2, resume=few)
+    assert np.array_equal(more.irradiance, rd.solve(coloured, name, quanta=1 << 20, replicates=2).irradiance)
+
+
+@pytest.mark.parametrize("name", rd.PRESETS)
+def test_books_balance(name, coloured):
+    for book in rd.solve(coloured, name, rays=400_000, replicates=2).books:
+        assert book["closes"] in (True, None)
+        left = book["emitted"] + book["rounding"]
+        assert left == pytest.approx(book["absorbed"] + book["escaped"] + book["lost"], rel=1e-9)
+
+
+def test_few_ends_for_form_factors_warn(coloured):
+    with pytest.warns(rd.RadiosityWarning, match="ends of spans a patch"):
+        rd.solve(coloured, "global-form-factors", rays=50_000)
+
+
+def test_another_order_drops_the_warm_up(coloured):
+    solution = rd.solve(coloured, "stochastic-jacobi", order="incremental", rays=100_000)
+    assert solution.provenance["method"] == "discrete/local/incremental/halton"
+
+
+def test_going_on_by_another_method_names_what_differs(coloured):
+    solution = rd.solve(coloured, rays=100_000)
+    with pytest.raises(rd.MethodError, match=r"numbers \(halton then, sobol now\)") as raised:
+        rd.solve(coloured, rays=200_000, numbers="sobol", resume=solution)
+    assert "{" not in str(raised.value)
