@@ -125,10 +125,10 @@ def test_version_and_help(capsys):
     assert status == 0
     assert err == ""
     commands = [line.split()[1] for line in out.splitlines() if line.startswith("│ ") and not line.startswith("│ -")]
-    assert [command for command in commands if command in app.app] == ["solve", "methods", "render", "check", "doctor"]
+    assert [command for command in commands if command in app.app] == ["solve", "methods", "render", "check", "experiment", "doctor"]
 
 
-@pytest.mark.parametrize("command", ["solve", "render", "check", "doctor"])
+@pytest.mark.parametrize("command", ["solve", "render", "check", "experiment", "doctor"])
 def test_help_of_each_command_explains_each_option(capsys, command):
     status, out, _ = run(capsys, command, "--help")
     assert status == 0

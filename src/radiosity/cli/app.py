@@ -12,6 +12,7 @@ from ..errors import DeviceError, RadiosityError, RadiosityWarning
 from . import interrupts
 from .check import check
 from .doctor import doctor
+from .experiment import experiment
 from .methods import methods
 from .render import render
 from .solve import solve
@@ -33,7 +34,7 @@ app = App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-for place, command in enumerate((solve, methods, render, check, doctor)):
+for place, command in enumerate((solve, methods, render, check, experiment, doctor)):
     app.command(command, sort_key=place)
 
 

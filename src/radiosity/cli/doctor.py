@@ -9,6 +9,7 @@ from ..errors import DeviceError
 EXTRAS = {
     "formats": ("trimesh", "pyradiance", "pydantic"),
     "plots": ("matplotlib",),
+    "lab": ("matplotlib", "xarray"),
 }
 
 

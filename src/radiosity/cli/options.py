@@ -43,3 +43,4 @@ Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
 Outputs = Annotated[
     tuple[Path, ...], Parameter(name=["--output", "-o"], consume_multiple=(1, None), negative=(), show_default=False)
 ]
+Folder = Annotated[Path, Parameter(name=["--output", "-o"])]

@@ -29,6 +29,23 @@ def bar():
         yield advance
 
 
+@contextmanager
+def steps():
+    """A callable (what, done, total) for work of many steps: a bar on a terminal, else nothing."""
+    from rich.console import Console
+
+    console = Console(file=sys.stderr)
+    if not console.is_terminal:
+        yield lambda what, done, total: None
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (BarColumn(bar_width=30), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
+    with Progress(*columns, console=console, transient=True) as progress:
+        task = progress.add_task("preparing", total=None)
+        yield lambda what, done, total: progress.update(task, description=what, completed=done, total=total)
+
+
 def facts(state) -> str:
     """``stage 3, 12.3M rays, 21.4M/s, error 1.2 %, 8 s left``"""
     parts = [f"stage {state.stage + 1}", f"{short(state.rays)} rays", f"{short(state.rays_per_second)}/s"]

@@ -92,6 +92,19 @@ def frozen(array) -> np.ndarray:
     return np.asarray(type(array)(array))
 
 
+@contextmanager
+def threads(count: int):
+    """Dr.Jit with so many threads for a while."""
+    import drjit as dr
+
+    before = dr.thread_count()
+    dr.set_thread_count(count)
+    try:
+        yield
+    finally:
+        dr.set_thread_count(before)
+
+
 def describe() -> dict[str, str]:
     """Facts for ``radiosity doctor``."""
     library = llvm.prepare()

@@ -1,0 +1,1 @@
+"""The study of Bekaert, Cools and Willems, "An empirical comparison of Monte Carlo radiosity algorithms", on this program."""

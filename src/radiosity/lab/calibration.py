@@ -1,0 +1,52 @@
+"""Beyond the paper: how often the true value lies inside the stated intervals."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..engine.device import choose
+from ..engine.geometry import Geometry
+from ..engine.problem import Problem
+from ..engine.process import make
+from .measure import radiosity
+from .study import Arm, Case
+
+LEVELS = (0.5, 0.9, 0.95, 0.99)
+REPLICATES = 8  # of one run: as by default
+SEEDS = 60
+LINES = 16_000  # of one replicate
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """Of an arm.
+
+    Attributes:
+        arm: its name.
+        covered: for each of `LEVELS`, the share of patches and runs whose interval holds the truth, and its standard error (over
+            runs, since patches of one run share lines).
+        rms: root mean square error of the runs' means.
+    """
+
+    arm: str
+    covered: tuple[tuple[float, float], ...]
+    rms: float
+
+
+def coverage(arm: Arm, case: Case, truth: np.ndarray, seed: int) -> Coverage:
+    """Student intervals of runs of eight replicates each; a run is a group of replicates of one seed."""
+    from scipy.stats import t
+
+    problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
+    process = make(geometry, problem, arm.method, seed, REPLICATES * SEEDS)
+    mean = float(case.patches.area @ case.patches.reflectance[:, 0] / case.patches.area.sum())
+    process.advance(max(1, round(LINES * (1 - mean))), lambda lines: None)
+    found = radiosity(process, problem, process.capture()).reshape(SEEDS, REPLICATES, -1)
+    middle, error = found.mean(axis=1), found.std(axis=1, ddof=1) / np.sqrt(REPLICATES)
+    known = error > 0
+    apart = np.where(known, np.abs(middle - truth) / np.where(known, error, 1), np.inf)
+    covered = []
+    for level in LEVELS:
+        share = (apart <= t.ppf(0.5 + level / 2, REPLICATES - 1)).mean(axis=1)
+        covered.append((float(share.mean()), float(share.std(ddof=1) / np.sqrt(SEEDS))))
+    return Coverage(arm.name, tuple(covered), float(np.sqrt(((middle - truth) ** 2).mean())))

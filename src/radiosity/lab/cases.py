@@ -1,0 +1,48 @@
+"""The scenes of the study, and references where no exact solution is known."""
+
+import numpy as np
+
+from ..engine.device import choose
+from ..engine.geometry import Geometry
+from ..engine.problem import Problem
+from ..engine.process import make
+from ..method import Method
+from ..patches import subdivide
+from ..scene import load_scene
+from .measure import radiosity
+from .study import Case, Protocol
+
+MAZES = ("labyrinth-0.1", "labyrinth-0.5", "labyrinth-0.9")
+CELLS = {"room": 6}
+REFERENCE_SEED = 987654321
+
+
+def maze(name: str) -> Case:
+    """A closed maze with the mean reflectance of its name; reflectances differ by patch and emission is 1 - rho, so B = 1."""
+    patches = subdivide(load_scene(name), cells=1)
+    return Case(name, patches, np.ones(len(patches)))
+
+
+def ones(case: Case) -> np.ndarray:
+    """(n_patches,) the exact solution of a maze."""
+    return np.ones(len(case.patches))
+
+
+def room(cells: int | None = None) -> Case:
+    """A box with two boxes and a small light."""
+    return Case("room", subdivide(load_scene("room"), cells=cells or CELLS["room"]), None)
+
+
+def reference(case: Case, equation: str, protocol: Protocol) -> tuple[np.ndarray, float]:
+    """(n_patches,) radiosity by ``protocol.reference`` times as many lines, of the arms' own equation; and its relative error,
+    the area-weighted RMS of its standard error over that of the reflected light."""
+    problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
+    replicates = 8
+    process = make(geometry, problem, Method(equation=equation), REFERENCE_SEED, replicates)
+    # a quantum takes 1 / (1 - mean reflectance) lines; more lines than asked for do no harm
+    lines = protocol.reference * protocol.rungs[-1]
+    process.advance(max(1, lines // replicates), lambda lines: None)
+    found = radiosity(process, problem, process.capture())
+    mean, error = found.mean(axis=0), found.std(axis=0, ddof=1) / np.sqrt(replicates)
+    area = case.patches.area
+    return mean, float(np.sqrt(area @ error**2) / np.sqrt(area @ (mean - case.patches.emission[:, 0]) ** 2))

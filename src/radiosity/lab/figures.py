@@ -1,0 +1,82 @@
+"""Error against lines, in one style for all experiments."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from . import slopes
+from .results import Results
+from .start import Start
+from .study import Arm
+
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")  # told apart by the colour-blind too
+STYLE: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.25, "axes.spines.top": False, "axes.spines.right": False,
+              "svg.hashsalt": "radiosity", "svg.fonttype": "path", "legend.frameon": False}  # fmt: skip
+LINES = "lines of one replicate (a span counts two)"
+
+
+@contextmanager
+def drawn(path: Path, size: tuple[float, float], title: str = "") -> Iterator[Any]:
+    """A figure to draw on, in the style of all; written as ``path`` with .png and .svg."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=size, layout="constrained")
+        yield figure
+        if title:
+            figure.suptitle(title)
+        figure.savefig(path.with_suffix(".png"), dpi=130)
+        figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
+
+
+def convergence(results: Results, arms: tuple[Arm, ...], scenes: tuple[str, ...], title: str, path: Path, *,
+                seconds: bool = False, picture: bool = False) -> None:  # fmt: skip
+    """One panel a scene; random numbers dashed, low discrepancy solid; the band is one standard error over replicates.
+
+    Args:
+        seconds: against wall time, not lines.
+        picture: RMS of tone-mapped pictures, not of the radiosity of patches.
+    """
+    families = list(dict.fromkeys(arm.family for arm in arms))
+    with drawn(path, (8.4, 7.2), title) as figure:
+        panels = figure.subplots(2, (len(scenes) + 1) // 2, squeeze=False).ravel()
+        for panel, scene in zip(panels, scenes, strict=False):
+            what = "RMS error of the picture" if picture else "RMS error of the radiosity"
+            panel.set(xscale="log", yscale="log", title=scene, xlabel="seconds" if seconds else LINES, ylabel=what)
+            for arm in arms:
+                series = results.series[scene, arm.name]
+                errors = series.picture if picture else series.area_weighted
+                colour = COLOURS[families.index(arm.family) % len(COLOURS)]
+                _curve(panel, series.seconds if seconds else series.lines, errors, colour, arm)
+            _guide(panel)
+        panels[0].legend(fontsize=7)
+
+
+def starts(found: dict[str, list[Start]], title: str, path: Path) -> None:
+    """The first lines of runs in different orders, a panel a scene."""
+    with drawn(path, (4.2 * len(found) + 1.5, 3.6), title) as figure:
+        panels = figure.subplots(1, len(found), squeeze=False).ravel()
+        for panel, (scene, orders) in zip(panels, found.items(), strict=True):
+            panel.set(xscale="log", yscale="log", title=scene, xlabel=LINES, ylabel="RMS error of the radiosity")
+            for order, colour, mark in zip(orders, COLOURS, (".", "s", "x"), strict=False):
+                error = slopes.mean_error(order.errors)
+                panel.plot(order.lines, error, color=colour, marker=mark, markersize=5, linewidth=1, label=order.order)
+            panel.legend(fontsize=8)
+
+
+def _curve(panel, x, errors, colour: str, arm: Arm) -> None:
+    middle = slopes.mean_error(errors)
+    spread = errors.std(axis=0, ddof=1) / len(errors) ** 0.5
+    panel.plot(x, middle, color=colour, linestyle="-" if arm.quasi else "--", linewidth=1.3, label=arm.name)
+    panel.fill_between(x, (middle - spread).clip(middle * 1e-3), middle + spread, color=colour, alpha=0.15, linewidth=0)
+
+
+def _guide(panel) -> None:
+    """A line of slope -1/2 to compare with."""
+    (low, high), (bottom, top) = panel.get_xlim(), panel.get_ylim()
+    begin = max(low, high / 1e4)
+    panel.plot([begin, high], [top, top * (high / begin) ** -0.5], color="0.6", linewidth=0.8, linestyle=":", zorder=0)
+    panel.set(xlim=(low, high), ylim=(bottom, top))

@@ -1,0 +1,67 @@
+"""Experiments to files: figures, tables, and the report."""
+
+from pathlib import Path
+
+from ..errors import OutputError
+from . import figures, pictures, report, store
+from .experiments import module
+from .results import Results
+from .run import Told, run
+from .study import Protocol
+
+
+def make(numbers: list[int], protocol: Protocol, folder: Path, command: str, told: Told, *, image: bool = False) -> Path:
+    """Run experiments and write everything into a folder; the path of the report.
+
+    Args:
+        image: figures show the error of tone-mapped pictures too.
+
+    Raises:
+        OutputError: the folder cannot be written.
+    """
+    _writable(folder)
+    told("pictures of the scenes", 0, 1)
+    pictures.scenes(folder / "scenes", protocol)
+    caption = "<p>The scenes (the paper's figure 3): the room, and the maze of mean reflectance 0.9 from above.</p>"
+    sections, found = [report.picture(folder / "scenes"), caption], {}
+    for number in numbers:
+        experiment, parts = module(number), []
+        if hasattr(experiment, "SCENES"):
+            kept = folder / "series"
+            results = run(number, protocol, kept, lambda what, done, total, n=number: told(f"{n}: {what}", done, total))
+            found[number] = results, {arm.name: str(arm.method) for arm in experiment.ARMS}
+            parts += _drawn(experiment, number, results, folder, image)
+            parts.append(report.findings(results, experiment.claims(results)))
+            store.write_netcdf(folder / f"experiment-{number}.nc", results)
+        if hasattr(experiment, "extras"):
+            told(f"{number}: more", 0, 1)
+            parts += experiment.extras(protocol, folder)
+        sections.append(report.section(number, experiment.TITLE, experiment.QUESTION, parts))
+    store.write_csv(folder / "results.csv", found)
+    path = folder / "report.html"
+    path.write_text(report.page(sections, command, protocol), encoding="utf-8")
+    return path
+
+
+def _drawn(experiment, number: int, results: Results, folder: Path, image: bool) -> list[str]:
+    """The figures of an experiment, for the report."""
+    kinds = {"": {}}
+    if getattr(experiment, "AGAINST_TIME", False):
+        kinds["-time"] = {"seconds": True}
+    if image:
+        kinds["-picture"] = {"picture": True}
+    pages = []
+    for suffix, options in kinds.items():
+        path = folder / f"experiment-{number}{suffix}"
+        figures.convergence(results, experiment.ARMS, experiment.SCENES, experiment.TITLE, path, **options)
+        pages.append(report.figure(path))
+    return pages
+
+
+def _writable(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / ".writable").touch()
+        (folder / ".writable").unlink()
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be written ({error.strerror})") from None

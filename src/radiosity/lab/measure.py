@@ -1,0 +1,90 @@
+"""An arm on a case: error against lines, replicate by replicate."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..engine.device import choose
+from ..engine.geometry import Geometry
+from ..engine.problem import Problem
+from ..engine.process import AbstractProcess, make
+from .sight import Sight
+from .study import Arm, Case, Protocol
+
+TRIAL = 1 << 14  # quanta of the run that tells how many lines a quantum takes
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Errors of an arm on a case.
+
+    Attributes:
+        lines: (k,) float64, of one replicate, as the paper counts them (mean over replicates).
+        seconds: (k,) float64, of one replicate: wall time from the start over replicates, without compilation.
+        area_weighted, plain: (replicates, k) float64, RMS of B less the true B; relative where the truth is a reference.
+        picture: likewise, of tone-mapped pictures; NaN where the scene has no camera.
+    """
+
+    lines: np.ndarray
+    seconds: np.ndarray
+    area_weighted: np.ndarray
+    plain: np.ndarray
+    picture: np.ndarray
+
+
+def measure(arm: Arm, case: Case, truth: np.ndarray, protocol: Protocol) -> Series:
+    """Run an arm up the ladder; the tally is read at every rung.
+
+    Args:
+        truth: (n_patches,) radiosity to compare with.
+    """
+    problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
+    _climb(_process(arm, problem, geometry, protocol), [TRIAL])  # compiles what the run will use
+    per_quantum = lines_per_quantum(arm, problem, geometry, protocol)
+    process = _process(arm, problem, geometry, protocol)
+    sight = Sight.of(case.patches)
+    lines, seconds, errors, spent, before = [], [], [], 0.0, 0
+    for rung in protocol.rungs:
+        quanta = max(before + 1, round(rung / per_quantum))
+        begun = time.perf_counter()
+        _climb(process, [quanta])
+        spent += time.perf_counter() - begun
+        before, state = quanta, process.capture()
+        lines.append(process.tally.lines(problem, state) / protocol.replicates)
+        seconds.append(spent / protocol.replicates)
+        found = radiosity(process, problem, state)
+        seen = np.full(protocol.replicates, np.nan) if sight is None else sight.error(found, truth)
+        errors.append([*deviations(case, found, truth, absolute=case.exact is not None), seen])
+    return Series(np.array(lines), np.array(seconds), *np.transpose(errors, (1, 2, 0)))
+
+
+def lines_per_quantum(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol) -> float:
+    """Lines that one quantum takes, from a small run."""
+    process = _process(arm, problem, geometry, protocol)
+    _climb(process, [TRIAL])
+    return process.tally.lines(problem, process.capture()) / protocol.replicates / TRIAL
+
+
+def _process(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol) -> AbstractProcess:
+    return make(geometry, problem, arm.method, protocol.seed, protocol.replicates)
+
+
+def _climb(process: AbstractProcess, rungs: list[int]) -> None:
+    for quanta in rungs:
+        process.advance(quanta, lambda lines: None)
+
+
+def radiosity(process: AbstractProcess, problem: Problem, state) -> np.ndarray:
+    """(replicates, n_patches) of the first group of bands."""
+    values, unit = process.tally.irradiance(problem, state, 0)
+    patches, groups = problem.patches, problem.groups
+    return groups.emission[:, 0] + groups.reflectance[:, 0] * values * (unit / patches.area)
+
+
+def deviations(case: Case, found: np.ndarray, truth: np.ndarray, *, absolute: bool) -> np.ndarray:
+    """(2, replicates): RMS of the difference, area-weighted and plain; over that of the reflected light unless ``absolute``."""
+    square, area, emitted = (found - truth) ** 2, case.patches.area, case.patches.emission[:, 0]
+    weights = area / area.sum(), np.full(len(area), 1 / len(area))
+    scale = [1.0 if absolute else float(np.sqrt(w @ (truth - emitted) ** 2)) for w in weights]
+    return np.stack([np.sqrt(square @ w) / s for w, s in zip(weights, scale, strict=True)])

@@ -1,0 +1,66 @@
+"""The start of a run (section 3): what is known after few lines, by the order in which they are fired.
+
+Depth-first: complete walks, ever more of them. Staged: complete small solutions, each on the lines of those before.
+Breadth-first: one solution of a fixed number of quanta, as it stands after each sweep: light reflected k times is missing until
+sweep k.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..engine.device import choose
+from ..engine.geometry import Geometry
+from ..engine.problem import Problem
+from ..engine.process import make
+from ..method import Method
+from .measure import deviations, radiosity
+from .study import Case
+
+LAST = 13  # up to 2^13 lines of a replicate
+REPLICATES = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Errors after few lines.
+
+    Attributes:
+        order: in the legend.
+        lines: (k,) of one replicate. errors: (REPLICATES, k), area-weighted RMS.
+    """
+
+    order: str
+    lines: np.ndarray
+    errors: np.ndarray
+
+
+def starts(case: Case, truth: np.ndarray, seed: int) -> list[Start]:
+    """Depth-first, staged and breadth-first, with Halton numbers."""
+    problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
+
+    def follow(order: str, quanta: list[int], *, within: bool):
+        process = make(geometry, problem, Method(order=order), seed, REPLICATES)
+        lines, errors = [], []
+
+        def note(_lines=0):
+            state = process.capture()
+            lines.append(process.tally.lines(problem, state) / REPLICATES)
+            found = radiosity(process, problem, state)
+            errors.append(deviations(case, found, truth, absolute=case.exact is not None)[0])
+
+        for n in quanta:
+            process.advance(n, note if within else lambda _: None)
+            if not within:
+                note()
+        return np.array(lines), np.stack(errors, axis=1)
+
+    mean = float(case.patches.area @ case.patches.reflectance[:, 0] / case.patches.area.sum())
+    most = round((1 << LAST) * (1 - mean))
+    ladder = [max(1, most >> k) for k in range(LAST - 3, -1, -1)]
+    dense = sorted({max(1, round(most * 2 ** (-k / 2))) for k in range(2 * LAST - 6)})
+    return [
+        Start("depth-first", *follow("depth-first", dense, within=False)),
+        Start("staged", *follow("staged", sorted(set(ladder)), within=False)),
+        Start("breadth-first", *follow("breadth-first", [most], within=True)),
+    ]

@@ -1,0 +1,85 @@
+"""What an experiment consists of: arms, scenes, and how far it goes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..method import Method
+from ..patches.model import Patches
+
+FIRST = 10  # the ladder of lines begins at 2^10
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A curve of a figure.
+
+    Attributes:
+        name: in the legend, such as "random walk, Halton".
+        method: what is run.
+        family: arms of one family share a colour; ``quasi`` ones are drawn solid, those of random numbers dashed.
+    """
+
+    name: str
+    method: Method
+    family: str
+
+    @property
+    def quasi(self) -> bool:
+        return self.method.numbers != "random"
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A scene of an experiment and what its solution is compared with.
+
+    Attributes:
+        name: such as "labyrinth-0.5".
+        patches: its unknowns.
+        exact: (n_patches,) radiosity where it is known, else None: then a reference of its own equation is computed.
+    """
+
+    name: str
+    patches: Patches
+    exact: np.ndarray | None
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """How far an experiment goes.
+
+    Attributes:
+        last: the ladder of lines of one replicate ends at 2^last.
+        replicates: independent randomisations of every arm.
+        reference: a reference has so many times the lines of the last rung of all replicates together.
+        seed: of everything.
+    """
+
+    last: int = 23
+    replicates: int = 5
+    reference: int = 100
+    seed: int = 1
+
+    @property
+    def rungs(self) -> list[int]:
+        """Lines of one replicate, doubling."""
+        return [1 << k for k in range(FIRST, self.last + 1)]
+
+
+QUICK = Protocol(last=17)
+FULL = Protocol()
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A sentence of the paper, and whether this run agrees.
+
+    Attributes:
+        says: what the paper states.
+        agrees: True, False, or None where it is reported only.
+        found: what was measured, in a sentence with figures.
+    """
+
+    says: str
+    agrees: bool | None
+    found: str

@@ -1,0 +1,187 @@
+"""The paper's claims, as tests over what ``radiosity experiment all --quick`` computes; and the machinery of the study.
+
+Slopes have five replicates; an interval at alpha = 1e-3 (Student, 4 degrees of freedom) is 3.1 times the 95 % one printed.
+"""
+
+import csv
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+from radiosity.lab import cases, slopes
+from radiosity.lab.bits import bits
+from radiosity.lab.calibration import LEVELS, coverage
+from radiosity.lab.discretisation import discretisation, parents
+from radiosity.lab.experiments import EXPERIMENTS, module
+from radiosity.lab.run import run
+from radiosity.lab.start import starts
+from radiosity.lab.study import QUICK, Arm, Protocol
+
+WIDER = 8.61 / 2.776
+SCENES = ("labyrinth-0.1", "labyrinth-0.5", "labyrinth-0.9", "room")
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    folder, known = tmp_path_factory.mktemp("study"), {}
+
+    def get(number):
+        if number not in known:
+            known[number] = run(number, QUICK, folder, lambda what, done, total: None)
+        return known[number]
+
+    return get
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_random_numbers_converge_with_the_root_of_the_lines(study, scene):
+    slope = study(4).slope(scene, "random")
+    assert abs(slope.value + 0.5) < WIDER * slope.half
+    assert slope.half < 0.1
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_halton_is_steeper_in_the_local_discrete_walk_and_better_at_the_end(study, scene):
+    results = study(4)
+    assert results.slope(scene, "halton").value < -0.55
+    assert results.last(scene, "halton") < results.last(scene, "random")
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_generators_are_within_a_factor_of_two(study, scene):
+    last = [study(4).last(scene, name) for name in module(4).SEQUENCES]
+    assert max(last) < 2 * min(last)
+
+
+def test_global_lines_without_a_first_shot_are_clearly_worse_in_the_room(study):
+    results = study(2)
+    for kind in ("random", "Halton"):
+        worse, within = results.ratio("room", f"global, {kind}", f"local, {kind}")
+        assert worse / within > 3
+        repaired, _ = results.ratio("room", f"global, first shot, {kind}", f"local, {kind}")
+        assert repaired < worse / 3
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_order_has_no_influence(study, scene):
+    """To the bit on one machine; and the slope of an iteration, which draws lines anew, is not less steep."""
+    results = study(1)
+    for name in ("WDRS", "Shirley", "Feda-Purgathofer"):
+        for kind in ("random", "Halton"):
+            assert results.equal(scene, f"{name}, {kind}", f"random walk, {kind}")
+    for kind in ("random", "Halton"):
+        ray, walk = results.slope(scene, f"stochastic ray, {kind}"), results.slope(scene, f"random walk, {kind}")
+        assert ray.value - walk.value < WIDER * np.hypot(ray.half, walk.half)
+
+
+@pytest.mark.parametrize("number", [n for n in EXPERIMENTS if n != 5])
+def test_every_claim_has_a_verdict_and_figures(study, number):
+    for claim in module(number).claims(study(number)):
+        assert claim.agrees in (True, False, None)
+        assert any(character.isdigit() for character in claim.found) or "bit" in claim.found
+
+
+def test_lines_are_met_and_errors_have_every_replicate(study):
+    for series in study(3).series.values():
+        assert series.lines == pytest.approx(QUICK.rungs, rel=0.1)
+        assert series.area_weighted.shape == (QUICK.replicates, len(QUICK.rungs))
+        assert (series.area_weighted > 0).all()
+        assert (np.diff(series.seconds) > 0).all()
+
+
+def test_a_study_goes_on_where_it_stopped(tmp_path):
+    protocol, told = Protocol(last=11, replicates=2, reference=1), []
+
+    def stop(what, done, total):
+        if done == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(4, protocol, tmp_path, stop)
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    assert len(before) == 3
+    run(4, protocol, tmp_path, lambda what, done, total: told.append(done))
+    assert told[-1] == 28
+    assert all(path.stat().st_mtime_ns == time for path, time in before.items())
+
+
+def test_a_slope_is_recovered_with_its_interval():
+    lines = 2.0 ** np.arange(10, 20)
+    random = np.random.default_rng(0)
+    errors = 3 * lines**-0.625 * np.exp(0.05 * random.standard_normal((5, len(lines))))
+    slope = slopes.fit(lines, errors)
+    assert abs(slope.value + 0.625) < WIDER * slope.half < 0.2
+    assert str(slope).startswith("-0.6")
+
+
+def test_starts_end_alike_and_breadth_first_lacks_light_before():
+    case = cases.maze("labyrinth-0.5")
+    depth, staged, breadth = starts(case, cases.ones(case), 3)
+    assert np.array_equal(depth.errors[:, -1], staged.errors[:, -1])
+    assert np.array_equal(depth.errors[:, -1], breadth.errors[:, -1])
+    early = slopes.mean_error(breadth.errors)[0]
+    at = np.searchsorted(depth.lines, breadth.lines[0])
+    assert early > 3 * slopes.mean_error(depth.errors)[at]
+
+
+def test_hashes_agree_but_for_another_seed():
+    rows = bits(cases.maze("labyrinth-0.5"), 7)
+    assert len({row.digest for row in rows[:-1]}) == 1
+    assert rows[-1].digest != rows[0].digest
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say():
+    case = cases.maze("labyrinth-0.5")
+    covered = coverage(Arm("halton", rd.Method(), "halton"), case, cases.ones(case), 1).covered
+    for level, (share, error) in zip(LEVELS, covered, strict=True):
+        assert abs(share - level) < 4 * error + 0.005
+
+
+def test_discretisation_error_falls_with_the_mesh_and_is_less_for_continuous_walks():
+    coarse, fine = (discretisation(count, 3e6, 5) for count in (2, 5))
+    assert fine.discrete < 0.9 * coarse.discrete
+    assert coarse.continuous < coarse.discrete
+    assert 0.3 * coarse.discrete < coarse.delta < 1.5 * coarse.discrete
+
+
+def test_parents_hold_their_cells():
+    scene = rd.load_scene("room")
+    coarse, fine = rd.subdivide(scene, cells=2), rd.subdivide(scene, cells=8)
+    of = parents(fine, coarse)
+    assert np.bincount(of, fine.area) == pytest.approx(coarse.area)
+    middle = np.stack([np.bincount(of, fine.area * axis) for axis in fine.centroid.T], axis=1) / coarse.area[:, None]
+    assert middle == pytest.approx(coarse.centroid)
+
+
+def test_the_command_writes_a_report_that_stands_alone(tmp_path, capsys):
+    from radiosity.cli.app import run as command
+
+    assert command(["experiment", "5", "--quick", "-o", str(tmp_path)]) == 0
+    report = (tmp_path / "report.html").read_text()
+    assert capsys.readouterr().out.strip() == str(tmp_path / "report.html")
+    assert "All runs of one seed end in the same bits" in report
+    assert "src=" not in report.replace("src='data:", "")
+    assert command(["experiment", "9", "-o", str(tmp_path)]) == 2
+    assert "known are 1, 2, 3, 4, 5 and all" in capsys.readouterr().err
+
+
+def test_figures_tables_and_stores(tmp_path, monkeypatch):
+    import xarray
+
+    from radiosity.lab.make import make
+
+    monkeypatch.setattr(module(4), "SCENES", ("labyrinth-0.1", "room"))
+    protocol = Protocol(last=12, replicates=2, reference=2)
+    report = make([4], protocol, tmp_path, "radiosity experiment 4", lambda *told: None, image=True)
+    assert report.read_text().count("<svg") == 2
+    for name in ("experiment-4.png", "experiment-4.svg", "experiment-4-picture.png"):
+        assert (tmp_path / name).stat().st_size > 10_000
+    with (tmp_path / "results.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 7 * 2 * 2 * len(protocol.rungs)
+    with xarray.open_dataset(tmp_path / "experiment-4.nc", engine="scipy") as store:
+        assert store["error_area_weighted"].shape == (7, 2, 2, len(protocol.rungs))
+        assert float(store["error_area_weighted"].sel(arm="sobol", scene="room")[0, -1]) > 0
+    room = [row for row in rows if row["scene"] == "room" and row["arm"] == "halton"]
+    assert all(0 < float(row["error_picture"]) < 1 for row in room)
