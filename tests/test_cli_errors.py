@@ -125,7 +125,8 @@ def test_version_and_help(capsys):
     assert status == 0
     assert err == ""
     commands = [line.split()[1] for line in out.splitlines() if line.startswith("│ ") and not line.startswith("│ -")]
-    assert [command for command in commands if command in app.app] == ["solve", "methods", "render", "check", "experiment", "doctor"]
+    listed = [command for command in commands if command in app.app]
+    assert listed == ["solve", "methods", "render", "check", "experiment", "doctor"]
 
 
 @pytest.mark.parametrize("command", ["solve", "render", "check", "experiment", "doctor"])
