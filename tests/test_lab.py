@@ -182,6 +182,7 @@ def test_figures_tables_and_stores(tmp_path, monkeypatch):
     assert len(rows) == 7 * 2 * 2 * len(protocol.rungs)
     with xarray.open_dataset(tmp_path / "experiment-4.nc", engine="scipy") as store:
         assert store["error_area_weighted"].shape == (7, 2, 2, len(protocol.rungs))
+        assert store.attrs["command"] == "radiosity experiment 4"
         assert float(store["error_area_weighted"].sel(arm="sobol", scene="room")[0, -1]) > 0
     room = [row for row in rows if row["scene"] == "room" and row["arm"] == "halton"]
     assert all(0 < float(row["error_picture"]) < 1 for row in room)

@@ -32,7 +32,7 @@ def make(numbers: list[int], protocol: Protocol, folder: Path, command: str, tol
             found[number] = results, {arm.name: str(arm.method) for arm in experiment.ARMS}
             parts += _drawn(experiment, number, results, folder, image)
             parts.append(report.findings(results, experiment.claims(results)))
-            store.write_netcdf(folder / f"experiment-{number}.nc", results)
+            store.write_netcdf(folder / f"experiment-{number}.nc", results, {"command": command, "versions": report.versions()})
         if hasattr(experiment, "extras"):
             told(f"{number}: more", 0, 1)
             parts += experiment.extras(protocol, folder)

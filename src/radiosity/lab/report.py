@@ -22,14 +22,18 @@ img { max-width: 100%; } code { background: #f3f3f3; padding: 0 3px; } .scroll {
 VERDICTS = {True: ("yes", "agrees"), False: ("no", "differs"), None: ("open", "reported")}
 
 
+def versions() -> str:
+    """Of what made the numbers."""
+    names = ", ".join(f"{name} {version(name)}" for name in ("radiosity", "drjit", "mitsuba", "numpy"))
+    return f"{names}; Python {platform.python_version()} on {platform.machine()}"
+
+
 def page(sections: list[str], command: str, protocol: Protocol) -> str:
     """The whole report."""
-    versions = ", ".join(f"{name} {version(name)}" for name in ("radiosity", "drjit", "mitsuba", "numpy"))
     facts = (
         f"<p>Made by <code>{html.escape(command)}</code>. Ladder of 2<sup>10</sup> to 2<sup>{protocol.last}</sup> lines, "
         f"{protocol.replicates} replicates (independent randomisations) of every arm, seed {protocol.seed}; references of "
-        f"{protocol.reference} times the lines of the last rung. {versions}; Python {platform.python_version()} on "
-        f"{html.escape(platform.machine())}.</p>"
+        f"{protocol.reference} times the lines of the last rung. {html.escape(versions())}.</p>"
     )
     counting = (
         "<p>Lines are counted as in the paper: a local line is one sample, a span of a global line two. Errors are RMS over "

@@ -42,8 +42,8 @@ def _rows(table, number: int, results: Results, methods: dict[str, str]) -> None
                 table.writerow([number, scene, arm, methods[arm], replicate, *(f"{value:.9g}" for value in row)])
 
 
-def write_netcdf(path: Path, results: Results) -> None:
-    """Arm x scene x rung x replicate, as NetCDF (version 3)."""
+def write_netcdf(path: Path, results: Results, facts: dict[str, str]) -> None:
+    """Arm x scene x replicate x rung, as NetCDF (version 3), with facts on how it was made."""
     import xarray
 
     scenes = list(dict.fromkeys(scene for scene, _ in results.series))
@@ -58,5 +58,5 @@ def write_netcdf(path: Path, results: Results) -> None:
             "error_area_weighted": (curves, stack("area_weighted")), "error_plain": (curves, stack("plain")),
             "error_picture": (curves, stack("picture")), "lines": (single, stack("lines")), "seconds": (single, stack("seconds")),
         },
-        coords={"arm": arms, "scene": scenes},
+        coords={"arm": arms, "scene": scenes}, attrs=facts,
     ).to_netcdf(path, engine="scipy")  # fmt: skip
