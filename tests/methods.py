@@ -3,14 +3,9 @@
 A new preset is in the table by itself; a combination of choices that no preset makes is one line here.
 """
 
-import numpy as np
 from scipy import stats
 
 import radiosity as rd
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.problem import Problem
-from radiosity.engine.process import make
 
 COMBINATIONS = {
     "continuous, sobol": rd.Method(equation="continuous", numbers="sobol"),
@@ -37,22 +32,6 @@ COMBINATIONS = {
 METHODS = {name: preset.method for name, preset in rd.PRESETS.items()} | COMBINATIONS
 
 ALPHA = 1e-4  # of all comparisons of one test together (Bonferroni)
-
-
-def surface_powers(solution: rd.Solution) -> np.ndarray:
-    """(replicates, n_surfaces) power that arrives on each surface in the first group of bands, W."""
-    problem = Problem.of(solution.patches)
-    method = rd.Method(**solution.provenance["choices"])
-    tally = make(Geometry(solution.patches, choose("cpu")), problem, method, 0, 1).tally
-    values, unit = tally.irradiance(problem, solution.state, 0)
-    surface = solution.patches.surface
-    return np.stack([values[:, surface == s].sum(axis=1) for s in np.unique(surface)], axis=1) * unit
-
-
-def differences(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Of the means of (replicates, k) values, in combined standard errors (or, of values without spread, 1e-6 of them)."""
-    errors = [np.maximum(x.std(axis=0, ddof=1) / len(x) ** 0.5, 1e-6 * np.abs(x.mean(axis=0))) for x in (one, other)]
-    return (one.mean(axis=0) - other.mean(axis=0)) / np.hypot(*errors)
 
 
 def critical(replicates: int, comparisons: int) -> float:

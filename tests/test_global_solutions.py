@@ -6,6 +6,7 @@ p = 4e-4, about 40 comparisons), LARGEST for the largest of some hundred patches
 
 import numpy as np
 import pytest
+from replicates import powers
 from test_lines import stack
 
 import radiosity as rd
@@ -37,11 +38,8 @@ def opening(back: rd.Back = rd.Back.RADIATES) -> rd.Scene:
 
 def replicate_powers(solution, group=0):
     """(replicates, surfaces and sides) received power, from the run's state."""
-    problem, patches = Problem.of(solution.patches), solution.patches
-    process = make(Geometry(patches, choose("cpu")), problem, rd.Method(**solution.provenance["choices"]), 0, solution.replicates)
-    values, unit = process.tally.irradiance(problem, solution.state, group)
-    key = 2 * patches.surface + patches.is_back
-    return np.stack([np.bincount(key, row.astype(float) * unit) for row in values])
+    patches = solution.patches
+    return powers(solution, key=2 * patches.surface + patches.is_back, group=group)
 
 
 def same(solution, reference):

@@ -7,7 +7,8 @@ degrees of freedom: p = 3e-6) leave a chance of less than 1e-3 for a false alarm
 import numpy as np
 import pytest
 from enclosures import cube
-from iterations import VARIANTS, difference, open_room, replicate_power
+from iterations import VARIANTS, open_room
+from replicates import difference, powers
 
 import radiosity as rd
 
@@ -40,7 +41,7 @@ def test_labyrinth_furnace_is_one_everywhere(name, mean_reflectance):
 def test_surfaces_receive_what_the_firing_engine_says(reference, name, scene):
     patches, expected = reference[scene]
     solution = rd.solve(patches, rd.Method(**VARIANTS[name]), rays=1_000_000, replicates=16, seed=3)
-    assert np.abs(difference(replicate_power(solution), expected)).max() < SIGMAS
+    assert np.abs(difference(powers(solution), expected)).max() < SIGMAS
     book = solution.books[0]
     assert abs(book["rounding"]) < 0.02 * book["emitted"]
     assert book["closes"] is (True if name == "incremental" else None)
@@ -53,7 +54,7 @@ def reference():
     """Patches and the power that their surfaces receive, (replicates, n_surfaces)."""
     scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
     cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
-    return {name: (p, replicate_power(rd.solve(p, rays=8_000_000, replicates=16))) for name, p in cut.items()}
+    return {name: (p, powers(rd.solve(p, rays=8_000_000, replicates=16))) for name, p in cut.items()}
 
 
 @pytest.mark.parametrize("name", VARIANTS)

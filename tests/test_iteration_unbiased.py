@@ -11,7 +11,8 @@ import drjit as dr
 import numpy as np
 import pytest
 from enclosures import cube
-from iterations import VARIANTS, open_room, replicate_power
+from iterations import VARIANTS, open_room
+from replicates import powers
 from scipy.stats import t as student
 
 import radiosity as rd
@@ -27,21 +28,21 @@ CONSISTENT = ("regular", "regular, both ends", "regular, control variate", "regu
 def room():
     """Few patches with unlike reflectances, an opening, and the power that surfaces receive."""
     patches = rd.subdivide(open_room(), cells=1)
-    return patches, replicate_power(rd.solve(patches, rays=32_000_000, replicates=16)).mean(axis=0)
+    return patches, powers(rd.solve(patches, rays=32_000_000, replicates=16)).mean(axis=0)
 
 
 @pytest.fixture(scope="module")
 def lit():
     """A closed cube whose sides all emit, and differ in what they reflect: power that comes back matters from the start."""
     patches = rd.subdivide(cube([[0.95], [0.1], [0.9], [0.2], [0.9], [0.1]], [[1.0], [0.1], [0.2], [0.5], [0.1], [2.0]]), cells=1)
-    return patches, replicate_power(rd.solve(patches, rays=32_000_000, replicates=16)).mean(axis=0)
+    return patches, powers(rd.solve(patches, rays=32_000_000, replicates=16)).mean(axis=0)
 
 
 def statistic(scene, name: str, quanta: int, runs: int = RUNS) -> tuple[float, float]:
     """The largest t of all surfaces, and the bound that it exceeds with probability ALPHA if there is no bias."""
     patches, exact = scene
     method = rd.Method(**VARIANTS[name], numbers="random")
-    power = replicate_power(rd.solve(patches, method, quanta=quanta, replicates=runs, seed=1))
+    power = powers(rd.solve(patches, method, quanta=quanta, replicates=runs, seed=1))
     seen = power.std(axis=0) > 0
     t = (power.mean(axis=0) - exact)[seen] / (power.std(axis=0, ddof=1)[seen] / runs**0.5)
     return float(np.abs(t).max()), float(student.ppf(1 - ALPHA / 2 / seen.sum(), runs - 1))

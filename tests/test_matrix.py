@@ -7,7 +7,8 @@ about 1 % for a false alarm, and seeds are fixed.
 import numpy as np
 import pytest
 from enclosures import coaxial_discs, cube, parallel_squares, perpendicular_squares, sphere_in_box
-from iterations import difference, open_room, replicate_power
+from iterations import open_room
+from replicates import difference, powers
 
 import radiosity as rd
 from radiosity.engine.matrix.counts import PairCounts, split
@@ -70,7 +71,7 @@ def test_the_furnace_is_exact_since_rows_sum_to_one(mean_reflectance, lines):
 def test_surfaces_receive_what_the_firing_engine_says(reference, scene, lines):
     patches, expected = reference[scene]
     solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=2_000_000, replicates=16, seed=3)
-    power = replicate_power(solution, MatrixTally(lines == "local"))
+    power = powers(solution, tally=MatrixTally(lines == "local"))
     # what a patch gets back of its own light goes there and back along counts of the same lines: a bias of the order of one
     # over the lines of the patch, which the light's few lines show
     patch_lines = solution.rays / 16 * np.array([patches.area[patches.surface == s].mean() for s in np.unique(patches.surface)])
@@ -87,7 +88,7 @@ def reference():
     """Patches and the power that their surfaces receive, (replicates, n_surfaces)."""
     scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
     cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
-    return {name: (p, replicate_power(rd.solve(p, rays=8_000_000, replicates=16))) for name, p in cut.items()}
+    return {name: (p, powers(rd.solve(p, rays=8_000_000, replicates=16))) for name, p in cut.items()}
 
 
 def test_both_ways_is_reciprocal_and_better():
@@ -101,7 +102,7 @@ def test_both_ways_is_reciprocal_and_better():
     assert np.abs(exchange - exchange.transpose(0, 2, 1)).max() < 1e-4 * area.max()
     k = len(area)
     assert np.abs(difference(both.reshape(16, -1), rows.reshape(16, -1)).reshape(k, k + 2)).max() < 5
-    one, other = (replicate_power(solution, MatrixTally(b)).std(axis=0) for b in (True, False))
+    one, other = (powers(solution, tally=MatrixTally(b)).std(axis=0) for b in (True, False))
     assert np.mean(one) < 0.5 * np.mean(other)
 
 
@@ -194,5 +195,5 @@ def test_backs_that_let_lines_pass_are_counted_one_way(lines):
     scene = rd.load_scene("room")
     patches = rd.subdivide(replace(scene, back=np.full_like(scene.back, int(rd.Back.PASSES))), cells=3)
     solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=4_000_000, replicates=16)
-    expected = replicate_power(rd.solve(patches, rays=4_000_000, replicates=16))
-    assert np.abs(difference(replicate_power(solution, MatrixTally(False, directed=True)), expected)).max() < 6.0
+    expected = powers(rd.solve(patches, rays=4_000_000, replicates=16))
+    assert np.abs(difference(powers(solution, tally=MatrixTally(False, directed=True)), expected)).max() < 6.0

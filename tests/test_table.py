@@ -7,7 +7,8 @@ of a test together, so that a false alarm among its some hundred cases has a cha
 
 import numpy as np
 import pytest
-from methods import METHODS, critical, differences, surface_powers
+from methods import METHODS, critical
+from replicates import difference, powers
 
 import radiosity as rd
 
@@ -47,7 +48,7 @@ def reference(room, plates):
     def get(name, equation):
         if (name, equation) not in known:
             solution = rd.solve(scenes[name], REFERENCES[equation], rays=40_000_000, replicates=REPLICATES, seed=77)
-            known[name, equation] = surface_powers(solution)
+            known[name, equation] = powers(solution)
         return known[name, equation]
 
     return get
@@ -59,7 +60,7 @@ def test_furnace(method, mean_reflectance):
     patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean_reflectance}"), cells=1)
     solution = rd.solve(patches, method, rays=RAYS, replicates=REPLICATES)
     exact = np.bincount(patches.surface, patches.area)
-    power = surface_powers(solution)
+    power = powers(solution)
     error = np.maximum(power.std(axis=0, ddof=1) / REPLICATES**0.5, START_UP * exact)
     assert np.abs((power.mean(axis=0) - exact) / error).max() < critical(REPLICATES, len(exact))
     assert np.average(np.abs(solution.radiosity[:, 0] - 1), weights=patches.area) < 0.1
@@ -77,16 +78,16 @@ def test_open_scene_of_two_sided_faces(method, plates, reference):
 
 def compare(method, patches, expected):
     solution = rd.solve(patches, method, rays=RAYS, replicates=REPLICATES)
-    power = surface_powers(solution)
+    power = powers(solution)
     spread = power.std(axis=0, ddof=1) / REPLICATES**0.5 / expected.mean(axis=0)
     assert np.median(spread) < 0.05  # an error bar as wide as the room would agree with anything
     if method.reconstruction == "local-linear":
         assert np.abs(power.mean(axis=0) / expected.mean(axis=0) - 1).max() < SMOOTHING
     else:
-        assert np.abs(differences(power, expected)).max() < critical(REPLICATES, power.shape[1])
+        assert np.abs(difference(power, expected)).max() < critical(REPLICATES, power.shape[1])
 
 
 def test_the_two_equations_differ_and_the_program_knows(room, reference):
     """On large patches the continuous solution is another one: each method fits its own reference and not the other's."""
-    between = differences(reference("room", "discrete"), reference("room", "continuous"))
+    between = difference(reference("room", "discrete"), reference("room", "continuous"))
     assert np.abs(between).max() > 5 * critical(REPLICATES, len(between))

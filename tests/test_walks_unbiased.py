@@ -7,7 +7,8 @@ a false alarm has a chance of 0.14 %, and seeds are fixed. Deliberately wrong es
 import drjit as dr
 import numpy as np
 import pytest
-from methods import critical, surface_powers
+from methods import critical
+from replicates import powers
 
 import radiosity as rd
 from radiosity.engine.device import upload
@@ -22,7 +23,7 @@ def largest_difference(walks=WALKS, **choices) -> float:
     """Of surfaces, in standard errors."""
     patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
     exact = np.bincount(patches.surface, patches.area)
-    power = surface_powers(rd.solve(patches, rd.Method(**choices), quanta=walks, replicates=RUNS, seed=1))
+    power = powers(rd.solve(patches, rd.Method(**choices), quanta=walks, replicates=RUNS, seed=1))
     error = power.std(axis=0, ddof=1) / RUNS**0.5
     assert np.median(error / exact) < 0.03
     return float(np.abs((power.mean(axis=0) - exact) / error).max())

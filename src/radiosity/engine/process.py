@@ -102,5 +102,6 @@ class AbstractTally(ABC):
 
 def make(geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int) -> AbstractProcess:
     """The process that runs a method."""
+    geometry.prepare()
     module, cls = PROCESSES[method.machine].split(":")
     return getattr(import_module(f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)

@@ -49,7 +49,6 @@ class Run:
         if resume is not None:
             check_same(resume.provenance, self._provenance())
         self.geometry = Geometry(patches, self.device)
-        self.geometry.prepare()
 
     def solve(self) -> Solution:
         """Stage after stage until the budget is used up, or Ctrl-C."""

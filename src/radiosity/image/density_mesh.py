@@ -32,7 +32,7 @@ def at_vertices(solution, mesh: DisplayMesh) -> tuple[DisplayMesh, np.ndarray]:
     kept, polygons = np.unique(key, return_inverse=True)
     vertices = mesh.vertices[kept // regions.count]
     smooth = weights(regions, solution.arrivals, vertices, kept % regions.count, least=CORNER)
-    landed = np.stack([_landed(solution, band) for band in range(solution.irradiance.shape[1])], axis=1)
+    landed = _landed(solution)
     return replace(mesh, vertices=vertices, polygons=polygons.reshape(mesh.polygons.shape).astype(np.int32)), smooth @ landed
 
 
@@ -55,16 +55,15 @@ def display(solution, quantity: str) -> tuple[DisplayMesh, np.ndarray, np.ndarra
     return replace(mesh, vertices=mesh.vertices[used], polygons=polygons), values[used], patch
 
 
-def _landed(solution, band: int) -> np.ndarray:
-    """(n_patches,) irradiance of a band as counted, before it was smoothed, mean over replicates."""
+def _landed(solution) -> np.ndarray:
+    """(n_patches, n_bands) irradiance as counted, before it was smoothed, mean over replicates."""
     from ..engine.problem import Problem
+    from ..engine.snapshot import Snapshot
     from ..engine.walks.tally import WalkTally
 
-    problem = Problem.of(solution.patches)
-    group, scale = problem.groups.index[band], problem.groups.scale[band]
-    estimator = solution.provenance["choices"]["estimator"] == "collision"
-    values, unit = WalkTally(estimator, False).irradiance(problem, solution.state, group)
-    return values.mean(axis=0) * (unit * scale) / solution.patches.area
+    collisions = solution.provenance["choices"]["estimator"] == "collision"
+    counted = WalkTally(collisions, solution.provenance["choices"]["absorption"] == "fractional")
+    return Snapshot(Problem.of(solution.patches), counted, solution.state).irradiance()[0]
 
 
 def merged(solution, mesh: DisplayMesh, values: np.ndarray, tolerance: float = TOLERANCE) -> tuple[DisplayMesh, np.ndarray]:

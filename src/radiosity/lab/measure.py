@@ -40,15 +40,14 @@ def measure(arm: Arm, case: Case, truth: np.ndarray, protocol: Protocol) -> Seri
         truth: (n_patches,) radiosity to compare with.
     """
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
-    _climb(_process(arm, problem, geometry, protocol), [TRIAL])  # compiles what the run will use
-    per_quantum = lines_per_quantum(arm, problem, geometry, protocol)
+    per_quantum = lines_per_quantum(arm, problem, geometry, protocol)  # and compiles what the run will use
     process = _process(arm, problem, geometry, protocol)
     sight = Sight.of(case.patches)
     lines, seconds, errors, spent, before = [], [], [], 0.0, 0
     for rung in protocol.rungs:
         quanta = max(before + 1, round(rung / per_quantum))
         begun = time.perf_counter()
-        _climb(process, [quanta])
+        process.advance(quanta, _untold)
         spent += time.perf_counter() - begun
         before, state = quanta, process.capture()
         lines.append(process.tally.lines(problem, state) / protocol.replicates)
@@ -62,7 +61,7 @@ def measure(arm: Arm, case: Case, truth: np.ndarray, protocol: Protocol) -> Seri
 def lines_per_quantum(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol) -> float:
     """Lines that one quantum takes, from a small run."""
     process = _process(arm, problem, geometry, protocol)
-    _climb(process, [TRIAL])
+    process.advance(TRIAL, _untold)
     return process.tally.lines(problem, process.capture()) / protocol.replicates / TRIAL
 
 
@@ -70,9 +69,8 @@ def _process(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol)
     return make(geometry, problem, arm.method, protocol.seed, protocol.replicates)
 
 
-def _climb(process: AbstractProcess, rungs: list[int]) -> None:
-    for quanta in rungs:
-        process.advance(quanta, lambda lines: None)
+def _untold(lines: int) -> None:
+    """Nobody listens."""
 
 
 def radiosity(process: AbstractProcess, problem: Problem, state) -> np.ndarray:

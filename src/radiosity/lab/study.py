@@ -1,6 +1,6 @@
 """What an experiment consists of: arms, scenes, and how far it goes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,16 @@ class Arm:
     @property
     def quasi(self) -> bool:
         return self.method.numbers != "random"
+
+
+def with_both_numbers(methods: dict[str, Method]) -> tuple[Arm, ...]:
+    """Two arms for each method, a family of its name: random and Halton numbers."""
+    kinds = {"random": "random", "Halton": "halton"}
+    return tuple(
+        Arm(f"{name}, {kind}", replace(method, numbers=numbers), name)
+        for name, method in methods.items()
+        for kind, numbers in kinds.items()
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """Landings of particles, reconstructed by local linear fits."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -19,6 +19,7 @@ class DensityTally(AbstractTally):
     """
 
     counted: AbstractTally
+    _known: dict = field(default_factory=dict, compare=False)
 
     def lines(self, problem: Problem, state: State) -> int:
         return self.counted.lines(problem, state)
@@ -28,10 +29,16 @@ class DensityTally(AbstractTally):
 
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
         values, unit = self.counted.irradiance(problem, state, group)
-        patches = problem.patches
-        regions = Regions.find(patches)
-        smooth = weights(regions, self.arrivals(problem, state), patches.centroid, regions.of)
+        patches, smooth = problem.patches, self._smoother(problem, state)
         return np.stack([smooth @ (row / patches.area) * patches.area for row in values]), unit
+
+    def _smoother(self, problem: Problem, state: State):
+        """The same for all bands and for the books of a state; the last one is kept."""
+        if self._known.get("counts") is not state["arrivals"]:
+            regions = Regions.find(problem.patches)
+            fit = weights(regions, self.arrivals(problem, state), problem.patches.centroid, regions.of)
+            self._known.update(counts=state["arrivals"], fit=fit)
+        return self._known["fit"]
 
     def books(self, problem: Problem, state: State, group: int) -> dict:
         """Of the smoothed irradiance: what smoothing moved from one patch to another does not balance exactly."""

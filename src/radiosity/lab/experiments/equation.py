@@ -1,13 +1,12 @@
 """Experiment 3 (section 5, figure 6): discrete, continuous, and Keller's quasi-Monte Carlo radiosity."""
 
-from dataclasses import replace
 from pathlib import Path
 
 from ...method import PRESETS, Method
 from .. import report
 from ..discretisation import discretisation
 from ..results import Results
-from ..study import Arm, Claim, Protocol
+from ..study import Claim, Protocol, with_both_numbers
 
 TITLE = "Discrete against continuous walks"
 QUESTION = (
@@ -20,11 +19,7 @@ KINDS = {
     "continuous": PRESETS["particle-tracing"].method,
     "Keller": PRESETS["qmc-radiosity"].method,
 }
-ARMS = tuple(
-    Arm(f"{name}, {kind}", replace(method, numbers=numbers), name)
-    for name, method in KINDS.items()
-    for kind, numbers in (("random", "random"), ("Halton", "halton"))
-)
+ARMS = with_both_numbers(KINDS)
 
 
 def extras(protocol: Protocol, folder: Path) -> list[str]:

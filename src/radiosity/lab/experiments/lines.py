@@ -1,12 +1,11 @@
 """Experiment 2 (section 4, figure 5): local against global lines."""
 
-from dataclasses import replace
 from pathlib import Path
 
 from ...method import PRESETS, Method
 from .. import pictures, report
 from ..results import Results
-from ..study import Arm, Claim, Protocol
+from ..study import Claim, Protocol, with_both_numbers
 
 AGAINST_TIME = True
 TITLE = "Local against global lines"
@@ -17,11 +16,7 @@ KINDS = {
     "global": PRESETS["global-multipath"].method,
     "global, first shot": PRESETS["global-multipath-first-shot"].method,
 }
-ARMS = tuple(
-    Arm(f"{name}, {kind}", replace(method, numbers=numbers), name)
-    for name, method in KINDS.items()
-    for kind, numbers in (("random", "random"), ("Halton", "halton"))
-)
+ARMS = with_both_numbers(KINDS)
 
 
 def extras(protocol: Protocol, folder: Path) -> list[str]:

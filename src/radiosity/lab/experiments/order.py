@@ -7,7 +7,7 @@ from ...method import PRESETS
 from .. import cases, figures, pictures, report
 from ..results import Results
 from ..start import starts
-from ..study import Arm, Claim, Protocol
+from ..study import Claim, Protocol, with_both_numbers
 
 TITLE = "Sampling order"
 QUESTION = (
@@ -22,11 +22,7 @@ ORDERS = {
     "Shirley": PRESETS["shirley"].method,
     "Feda-Purgathofer": PRESETS["progressive-ray-refinement"].method,
 }
-ARMS = tuple(
-    Arm(f"{name}, {kind}", replace(method, numbers=numbers), name)
-    for name, method in ORDERS.items()
-    for kind, numbers in (("random", "random"), ("Halton", "halton"))
-)
+ARMS = with_both_numbers(ORDERS)
 
 
 def extras(protocol: Protocol, folder: Path) -> list[str]:
