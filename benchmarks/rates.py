@@ -27,10 +27,9 @@ class Rates:
     ratio: float
 
 
-def measure(patches: rd.Patches, *, coherent: bool = False, lines: int = LINES, turns: int = TURNS) -> Rates:
+def measure(patches: rd.Patches, *, coherent: bool = False, lines: int = LINES, turns: int = TURNS, device: str = "cpu") -> Rates:
     """Time whole sweeps (what is owed, lanes, numbers, lines, hits, tally) of black patches against the bare caster."""
-    device = choose("cpu")
-    geometry = Geometry(patches, device)
+    geometry = Geometry(patches, choose(device))
     source = Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0])
     engine = Engine(geometry, source, rd.Method(coherent=coherent), 0, 1)
     rays, width = _rays(engine, lines)

@@ -9,7 +9,8 @@ import drjit as dr
 from ..method.numbers import strata
 from .device import upload
 
-CHUNK = 1 << 20  # lanes of one launch: enough to keep all cores busy, and little memory to touch
+CHUNK = 1 << 20  # lanes of one launch on a CPU: enough to keep all cores busy, and little memory to touch
+CUDA_CHUNK = 1 << 24  # and on a GPU, which has many more lanes at work at a time, and memory for them
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,10 @@ class Batch:
         return Batch(numbers, counts, begins, fired, entries, int(begins[last]) + int(counts[last]))
 
     def chunks(self, types) -> "Iterator[Chunk]":
-        """Launches of at most ``CHUNK`` lanes."""
-        for start in range(0, self.total, CHUNK):
-            width = min(CHUNK, self.total - start)
+        """Launches of at most ``CHUNK`` lanes, or ``CUDA_CHUNK``."""
+        most = CUDA_CHUNK if dr.backend_v(types.UInt32) is dr.JitBackend.CUDA else CHUNK
+        for start in range(0, self.total, most):
+            width = min(most, self.total - start)
             first, end = dr.opaque(types.UInt64, start), dr.opaque(types.UInt64, start + width)  # no literals: one kernel for all
             # each entry writes its rank where its lines begin; the running maximum carries it to all of them
             rank = dr.zeros(types.UInt32, max(width, 2))

@@ -7,7 +7,7 @@ import drjit as dr
 
 from ..scene.model import Back
 from .departure import BACK, MASK, local_line
-from .device import entered
+from .device import classes
 from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, Geometry
 
 NORMAL_MASK = (1 << NORMAL_BITS) - 1
@@ -66,9 +66,9 @@ def _hit(geometry: Geometry, origin, direction, coherent: bool, active):
     """The nearest hit, and the face's normal, not normalised."""
     types = geometry.device.types
     Float, Int32 = types.Float, types.Int
-    with entered(geometry.device) as mi:
-        ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
-        found = geometry.tree.caster.ray_intersect_preliminary(ray, coherent=coherent, active=active)
+    mi, caster = classes(geometry.device), geometry.tree.caster
+    ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
+    found = caster.ray_intersect_preliminary(ray, coherent=coherent, active=active)
     valid = found.is_valid() & active
     first, packed, low, high = dr.gather(types.Array4u, geometry.hit_records, found.prim_index, valid)
     y = (low >> NORMAL_BITS) | (high << 32 - NORMAL_BITS)
