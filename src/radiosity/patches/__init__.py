@@ -1,6 +1,7 @@
 """Scene -> Patches"""
 
+from .hierarchy import Hierarchy
 from .model import Patches
 from .subdivide import subdivide
 
-__all__ = ["Patches", "subdivide"]
+__all__ = ["Hierarchy", "Patches", "subdivide"]

@@ -40,8 +40,12 @@ def number(u: np.ndarray, v: np.ndarray, columns: np.ndarray, rows: np.ndarray, 
     column = np.clip(np.floor(x).astype(np.int64), 0, limit - 1)
     inverted = (x - column) + (y - row) > 1
     inverted &= column < limit - 1
-    triangle = row * (2 * columns - row) + 2 * column + inverted
-    return np.where(is_quad, row * columns + column, triangle)
+    return at(column, row, inverted, columns, is_quad)
+
+
+def at(column, row, inverted, columns, is_quad) -> np.ndarray:
+    """Cell at a place: the inverse of `place`."""
+    return np.where(is_quad, row * columns + column, row * (2 * columns - row) + 2 * column + inverted)
 
 
 def corners(column, row, inverted, columns, rows, is_quad) -> np.ndarray:

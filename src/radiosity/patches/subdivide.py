@@ -13,7 +13,7 @@ DEFAULT_PATCHES = 20_000
 MOST_PATCHES = 2**31 - 2**16
 
 
-def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = None) -> Patches:
+def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = None, powers_of_two: bool = False) -> Patches:
     """Cut every face into patches.
 
     Args:
@@ -22,6 +22,8 @@ def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = No
         cells: every face into cells x cells instead (1: a patch for each face and radiating side).
             Neither: a size at which the faces large enough to be cut give about 20 000 patches; the others are one
             for each side.
+        powers_of_two: columns and rows are rounded up to powers of two, so that the patches are the leaves of a `Hierarchy`;
+            what is said of size, cells and 20 000 patches holds still.
 
     Raises:
         SceneError: both or senseless values, or more patches than can be counted.
@@ -33,11 +35,12 @@ def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = No
     if cells is not None:
         if isinstance(cells, bool) or not isinstance(cells, Real) or not np.isfinite(cells) or int(cells) != cells or cells < 1:
             raise SceneError(f"cells is {cells!r}; it must be a whole number of 1 or more")
-        columns = rows = np.full(scene.n_faces, min(int(cells), 2**31), np.int64)
+        columns = rows = _rounded(np.full(scene.n_faces, min(int(cells), 2**31), np.int64), powers_of_two)
     else:
         if size is not None and not (isinstance(size, Real) and np.isfinite(size) and size > 0):
             raise SceneError(f"patch size is {size!r}; it must be a positive number of metres")
-        columns, rows = _by_size(scene, _default_size(scene) if size is None else float(size))
+        size = _default_size(scene, powers_of_two) if size is None else float(size)
+        columns, rows = _by_size(scene, size, powers_of_two)
     return _checked(scene, columns, rows)
 
 
@@ -47,14 +50,22 @@ def _edges(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     return tuple(np.where(scene.is_quad, np.linalg.norm(edge, axis=1), half) for edge in (first, second))  # type: ignore[return-value]
 
 
-def _by_size(scene: Scene, size: float) -> tuple[np.ndarray, np.ndarray]:
+def _rounded(counts: np.ndarray, powers_of_two: bool) -> np.ndarray:
+    """Counts of 1 or more, up to the next power of two where that is asked for."""
+    if not powers_of_two:
+        return counts
+    _, exponent = np.frexp(counts.astype(np.float64) - 1)  # the bits of count - 1; exact, since counts are whole
+    return (2 ** exponent.astype(np.int64)).astype(counts.dtype)
+
+
+def _by_size(scene: Scene, size: float, powers_of_two: bool) -> tuple[np.ndarray, np.ndarray]:
     own = scene.patch_size[scene.surface] if len(scene.patch_size) else np.full(scene.n_faces, np.nan)
     wanted = np.where(np.isfinite(own), own, size)
     columns, rows = (np.maximum(np.ceil(edge / wanted * (1 - 1e-9)), 1) for edge in _edges(scene))
-    return np.minimum(columns, 2**31), np.minimum(rows, 2**31)
+    return tuple(_rounded(np.minimum(count, 2**31), powers_of_two) for count in (columns, rows))  # type: ignore[return-value]
 
 
-def _default_size(scene: Scene) -> float:
+def _default_size(scene: Scene, powers_of_two: bool) -> float:
     """A size at which the faces that are cut at all give about 20 000 patches: walls are cut however many tiny faces
     there are beside them."""
     sides = np.where(scene.back == Back.RADIATES, 2, 1)
@@ -62,7 +73,7 @@ def _default_size(scene: Scene) -> float:
     low = high * 1e-6
     for _ in range(60):
         middle = np.sqrt(low * high)
-        columns, rows = _by_size(scene, middle)
+        columns, rows = _by_size(scene, middle, powers_of_two)
         patches = columns * rows * sides
         low, high = (middle, high) if patches[columns * rows > 1].sum() > DEFAULT_PATCHES else (low, middle)
     return high

@@ -1,0 +1,128 @@
+"""How much two polygons see of each other: full, blocked and partial views, and what the numbers are a function of."""
+
+import numpy as np
+import pytest
+from enclosures import cube, sphere
+
+import radiosity as rd
+from radiosity.engine.device import choose
+from radiosity.engine.geometry import Geometry
+from radiosity.engine.visibility import Polygons, visible_share
+from radiosity.errors import MethodError
+from radiosity.scene.shapes import quad
+
+
+def geometry_of(scene: rd.Scene, cells: int = 1) -> Geometry:
+    return Geometry(rd.subdivide(scene, cells=cells), choose("cpu"))
+
+
+def all_pairs(geometry: Geometry) -> tuple[Polygons, Polygons]:
+    i, j = (x.ravel() for x in np.indices((len(geometry.patches),) * 2))
+    polygons = Polygons.of(geometry.patches)
+    return polygons.take(i), polygons.take(j)
+
+
+def black(quads: list[np.ndarray], back=rd.Back.ABSORBS) -> rd.Scene:
+    """Parallelograms, a face each."""
+    count = len(quads)
+    return rd.Scene.from_arrays(np.concatenate(quads), np.arange(4 * count).reshape(count, 4), 0.0, 1.0, back=[back] * count)
+
+
+@pytest.mark.parametrize(("scale", "move"), [(1.0, 0.0), (1e-4, 3e-2), (1e6, -5e7)])
+def test_in_an_empty_cube_all_walls_see_each_other_whole_and_themselves_not_at_all(scale, move):
+    inside = cube()
+    scene = rd.Scene.from_arrays(inside.vertices * scale + move, inside.faces, 0.5, 1.0)
+    geometry = geometry_of(scene, 5)
+    share = visible_share(geometry, *all_pairs(geometry), rays=16).reshape(150, 150)
+    same = geometry.patches.face[:, None] == geometry.patches.face
+    assert (share[~same] == 1).all()
+    assert (share[same] == 0).all()
+
+
+def test_triangles_of_a_sphere_see_each_other_whole():
+    """Single precision hides a line or two where neighbours meet at a shallow angle: fewer than 1e-5 of the pairs."""
+    geometry = geometry_of(sphere(0.5, 1.0, 2), 1)
+    one, other = all_pairs(geometry)
+    share = visible_share(geometry, one, other, rays=16)
+    apart = (one.corners != other.corners).any(axis=(1, 2))
+    assert (share[apart] < 1).sum() <= 1
+    assert share[apart].min() > 0.9
+    assert (share[~apart] == 0).all()
+
+
+def parallel(a: float, b: float) -> float:
+    """A F of equal opposed rectangles a x b at unit distance (Howell C-11)."""
+    x, y = 1 + a * a, 1 + b * b
+    total = np.log(np.sqrt(x * y / (1 + a * a + b * b))) - a * np.arctan(a) - b * np.arctan(b)
+    total += a * np.sqrt(y) * np.arctan(a / np.sqrt(y)) + b * np.sqrt(x) * np.arctan(b / np.sqrt(x))
+    return 2 / np.pi * total
+
+
+def divided(back=rd.Back.ABSORBS) -> rd.Scene:
+    """Unit squares at unit distance, and a wall that parts them into halves."""
+    floor, ceiling = quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0, 0, 1), (0, 1, 0), (1, 0, 0))
+    return black([floor, ceiling, quad((0.5, -1, -1), (0, 3, 0), (0, 0, 3))], back)
+
+
+def test_a_wall_hides_what_the_closed_form_says():
+    geometry = geometry_of(divided())
+    polygons = Polygons.of(geometry.patches)
+    share = visible_share(geometry, polygons.take([0]), polygons.take([1]), rays=1 << 15)
+    assert share[0] == pytest.approx(2 * parallel(0.5, 1) / parallel(1, 1), abs=1e-3)
+    assert abs(share[0] - 0.5) > 0.05  # what the plain mean of visible lines would say
+
+
+def halves() -> tuple[Polygons, Polygons]:
+    """Parts of the squares of `divided`: below on the left of its wall, above on the right."""
+    left, right = quad((0, 0, 0), (0.5, 0, 0), (0, 1, 0)), quad((0.5, 0, 1), (0, 1, 0), (0.5, 0, 0))
+    return Polygons(left[None], np.array([0])), Polygons(right[None], np.array([1]))
+
+
+@pytest.mark.parametrize(
+    ("back", "forth", "return_"), [(rd.Back.ABSORBS, 0, 0), (rd.Back.RADIATES, 0, 0), (rd.Back.PASSES, 1, 0)]
+)
+def test_backs_that_pass_hide_one_way_only(back, forth, return_):
+    geometry, (left, right) = geometry_of(divided(back)), halves()  # the wall's front looks to the right
+    assert visible_share(geometry, left, right)[0] == forth
+    assert visible_share(geometry, right, left)[0] == return_
+
+
+def test_a_back_that_radiates_is_seen_from_behind():
+    floor, sheet = quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0, 0, 1), (1, 0, 0), (0, 1, 0))
+    geometry = geometry_of(black([floor, sheet], rd.Back.RADIATES))
+    front_of_floor, front_of_sheet, back_of_sheet = (Polygons.of(geometry.patches, [i]) for i in (0, 2, 3))
+    assert visible_share(geometry, front_of_floor, back_of_sheet)[0] == 1
+    assert visible_share(geometry, front_of_floor, front_of_sheet)[0] == 0
+
+
+def test_a_share_depends_on_the_pair_alone(random):
+    geometry = geometry_of(rd.load_scene("room"), 2)
+    count = len(geometry.patches)
+    polygons = Polygons.of(geometry.patches)
+    i, j = random.integers(0, count, (2, 3000))
+    share = visible_share(geometry, polygons.take(i), polygons.take(j), rays=32, seed=5)
+    assert 0.02 < ((share > 0) & (share < 1)).mean() < 0.98
+    some = random.permutation(3000)[:7]
+    assert (visible_share(geometry, polygons.take(j[some]), polygons.take(i[some]), rays=32, seed=5) == share[some]).all()
+    single = visible_share(geometry, polygons.take(i[some[:1]]), polygons.take(j[some[:1]]), rays=32, seed=5)
+    assert single[0] == share[some[0]]
+    assert (visible_share(geometry, polygons.take(i), polygons.take(j), rays=32, seed=6) != share).any()
+
+
+def test_more_rays_say_more(random):
+    geometry = geometry_of(rd.load_scene("room"), 2)
+    polygons = Polygons.of(geometry.patches)
+    one, other = (polygons.take(numbers) for numbers in random.integers(0, len(geometry.patches), (2, 3000)))
+    few, many, most = (visible_share(geometry, one, other, rays=rays) for rays in (16, 256, 8192))
+    error, less = (np.sqrt(np.mean((share - most) ** 2)) for share in (few, many))
+    assert error < 0.2
+    assert less < error / 3
+
+
+def test_one_ray_no_pair_and_too_many_rays():
+    geometry, (left, right) = geometry_of(divided()), halves()
+    assert visible_share(geometry, left, right, rays=1).shape == (1,)
+    assert visible_share(geometry, left.take([]), right.take([])).shape == (0,)
+    for rays in (0, 1 << 16):
+        with pytest.raises(MethodError, match="rays of a pair"):
+            visible_share(geometry, left, right, rays=rays)
