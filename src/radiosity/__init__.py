@@ -16,7 +16,7 @@ from .errors import DeviceError, MethodError, OutputError, RadiosityError, Radio
 
 if TYPE_CHECKING:
     from .engine.solve import solve
-    from .method import PRESETS, Method
+    from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
     from .scene import Back, Camera, Scene, load_scene
     from .solution import Solution, load_solution
@@ -26,7 +26,7 @@ llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
     "engine.solve": ("solve",),
-    "method": ("PRESETS", "Method"),
+    "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
     "patches": ("Patches", "subdivide"),
     "scene": ("Back", "Camera", "Scene", "load_scene"),
     "solution": ("Solution", "load_solution"),
@@ -34,8 +34,10 @@ _HOMES = {
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
+    "BASELINES",
     "PRESETS",
     "Back",
+    "Baseline",
     "Camera",
     "DeviceError",
     "Method",

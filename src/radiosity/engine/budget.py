@@ -9,6 +9,8 @@ from .quanta import LIMIT
 FIRST_STAGE = 1 << 20  # quanta of all replicates together in the first stage
 FULL = 0.95 * LIMIT  # lines of a replicate: its counters have 32 bits
 LEAST_QUANTA = 1024
+DONE = 1 << 31  # quanta, more than any baseline takes: it ends when there is nothing left to do
+BASELINE_RUNGS = {"full-matrix": 1, "progressive": 64, "hierarchical": 1}  # the whole matrix; shots; passes of refinement
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,8 @@ def first_rung(order: str, replicates: int, share) -> int:
     """N of the first rung for an order: staged ones begin with few lines, to show something soon; well distributed ones with a
     quantum no larger than the power of the weakest light, so that none is silent (``share`` of power, (n_patches,)).
     """
+    if order in BASELINE_RUNGS:
+        return BASELINE_RUNGS[order]
     usual = first_stage(replicates, len(share))
     if order == "staged":
         return LEAST_QUANTA

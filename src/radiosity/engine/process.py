@@ -4,10 +4,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
+from typing import Any
 
 import numpy as np
 
-from ..method import Method
+from ..method import Baseline, Method
 from .geometry import Geometry
 from .problem import Problem
 
@@ -19,6 +20,9 @@ PROCESSES = {
     "multipath": "global_lines.multipath:Multipath",
     "pooling": "global_lines.pooling:Pooling",
     "matrix": "matrix.process:Matrix",
+    "full-matrix": "..deterministic.full_matrix:FullMatrix",
+    "progressive": "..deterministic.progressive.process:Progressive",
+    "hierarchical": "..deterministic.hierarchical.process:Hierarchical",
 }
 
 State = dict[str, np.ndarray]
@@ -39,7 +43,7 @@ class AbstractProcess(ABC):
 
     geometry: Geometry
     problem: Problem
-    method: Method
+    method: Any  # a Method, or a Baseline
     seed: int
     replicates: int
 
@@ -60,7 +64,7 @@ class AbstractProcess(ABC):
 
     @abstractmethod
     def capture(self) -> State:
-        """All that is needed to go on, and to read the result."""
+        """All that is needed to go on, and to read the result. ``done`` in it says that more quanta would change nothing."""
 
     @abstractmethod
     def restore(self, state: State) -> None:
@@ -100,8 +104,8 @@ class AbstractTally(ABC):
         """Emitted, rounding, absorbed, escaped and lost power of a group, and ``closes`` (see `Solution.books`)."""
 
 
-def make(geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int) -> AbstractProcess:
+def make(geometry: Geometry, problem: Problem, method: "Method | Baseline", seed: int, replicates: int) -> AbstractProcess:
     """The process that runs a method."""
     geometry.prepare()
     module, cls = PROCESSES[method.machine].split(":")
-    return getattr(import_module(f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)
+    return getattr(import_module(module if module.startswith(".") else f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)

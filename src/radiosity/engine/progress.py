@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from .budget import Budget
+from .budget import DONE, Budget
 
 SLOPE = 0.6  # of the error against lines, as measured with low discrepancy numbers
 
@@ -87,6 +87,8 @@ class Teller:
     def _expected_lines(self) -> float | None:
         if self.budget.rays is not None:
             return self.budget.rays
+        if self.budget.quanta == DONE:
+            return None
         if self.budget.quanta is not None:
             return self.lines_a_quantum * self.budget.quanta or None
         if self.budget.error is None or not self.error > 0:

@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 from importlib.metadata import version
 
 from ..errors import MethodError, RadiosityWarning
-from ..method import Method
+from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import Solution
 from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder
@@ -30,7 +30,7 @@ PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
 class Run:
     """A problem, a method and a budget."""
 
-    def __init__(self, patches: Patches, method: Method, budget: Budget, replicates: int, seed: int, device: str,
+    def __init__(self, patches: Patches, method: Method | Baseline, budget: Budget, replicates: int, seed: int, device: str,
                  listener: Listener | None, resume: Solution | None):  # fmt: skip
         self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
         self.replicates, self.resume = replicates, resume
@@ -81,8 +81,10 @@ class Run:
             error = snapshot.error() if self.replicates > 1 and self._error_matters else math.nan
             lines = snapshot.lines
             self.teller.complete(lines, target, error)
-            if self.stop.asked:
+            if self.stop.asked and not snapshot.done:
                 status = "interrupted"
+                break
+            if snapshot.done:
                 break
             at = Progressed(target, lines, self.teller.elapsed, time.perf_counter() - started, error)
             target = next_quanta(self.budget, self.replicates, self.rung, at, replay=not process.nested)
@@ -98,6 +100,8 @@ class Run:
 
     def _reached(self, snapshot: Snapshot) -> bool:
         """The budget was used up; else the counters were. Where nothing is received there is no error to wait for."""
+        if snapshot.done:
+            return True
         if self.budget.error is not None:
             return not self.teller.error > self.budget.error
         if self.budget.quanta is not None:
@@ -127,6 +131,8 @@ class Run:
         """N of the first stage: the ladder's first rung, or less where the budget asks for less."""
         if self.budget.quanta is not None:
             return min(self.rung, int(self.budget.quanta))
+        if isinstance(self.method, Baseline):
+            return self.rung
         if self.budget.rays is None or self.budget.rays >= MANY * self.rung * self.replicates:
             return self.rung
         return self._few_quanta(self.budget.rays / self.replicates)
@@ -156,7 +162,8 @@ class Run:
 
     def _solution(self, snapshot: Snapshot, status: str, pending) -> Solution:
         ends = snapshot.lines / self.replicates / len(self.patches)
-        if self.method.machine == "matrix" and self.method.lines != "local" and ends < ENDS_ENOUGH:
+        global_factors = self.method.machine == "matrix" and self.method.lines != "local"
+        if global_factors and ends < ENDS_ENOUGH:
             warnings.warn(
                 f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over that "
                 "number, and not in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",

@@ -22,6 +22,11 @@ class Snapshot:
         return int(self.state["quanta"])
 
     @property
+    def done(self) -> bool:
+        """More quanta would change nothing."""
+        return bool(self.state.get("done", False))
+
+    @property
     def lines(self) -> int:
         return self.tally.lines(self.problem, self.state)
 

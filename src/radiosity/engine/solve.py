@@ -1,50 +1,41 @@
 """Scene in, solution out."""
 
 from ..errors import MethodError
-from ..method import Method, resolve
+from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..scene.model import Scene
 from ..solution.model import Solution
+from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
 from .progress import Listener
 
 
 def solve(
     scene: Scene | Patches,
-    method: str | Method = "random-walk",
+    method: str | Method | Baseline = "random-walk",
     *,
     rays: float | None = None,
     seconds: float | None = None,
     error: float | None = None,
     quanta: int | None = None,
-    replicates: int = 8,
+    replicates: int | None = None,
     seed: int = 0,
     device: str = "auto",
-    equation: str | None = None,
-    lines: str | None = None,
-    order: str | None = None,
-    numbers: str | None = None,
-    estimator: str | None = None,
-    absorption: str | None = None,
-    first_shot: float | None = None,
-    control_variate: bool | None = None,
-    warm_up: bool | None = None,
-    reconstruction: str | None = None,
-    coherent: bool | None = None,
     progress: Listener | None = None,
     resume: Solution | None = None,
+    **choices,
 ) -> Solution:
     """Solve B = E + rho F B.
 
     Args:
         scene: a `Scene` (cut into about 20 000 patches) or the `Patches` of one.
-        method: a preset's name or a `Method`.
-        equation, lines, order, numbers, estimator, absorption, first_shot, control_variate, warm_up, reconstruction, coherent:
-            replace its choices; see `Method`. Without ``warm_up`` another order than the method's drops its warm-up.
-        rays, seconds, error, quanta: exactly one: lines traced in all (replicates together); wall time (the first stage is
+        method: a preset's name, a `Method` or a `Baseline`.
+        choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. Without ``warm_up``
+            another order than the method's drops its warm-up.
+        rays, seconds, error, quanta: exactly one (none with a baseline, which then goes on until it is done): lines traced in all (replicates together); wall time (the first stage is
             completed whatever it takes); relative error of the scene (`Solution.error`); or N of each replicate, which
             replays a run bit for bit.
-        replicates: independent randomised runs; from 2 on there are standard errors.
+        replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
         seed: with the same inputs, the same bits.
         device: "auto", "cpu" or "cuda".
         progress: called with a `Progress` after each sweep.
@@ -61,16 +52,17 @@ def solve(
         SceneError: nothing emits. MethodError: a choice or budget that makes no sense, or a solution that cannot be
             resumed. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C before the first stage was complete.
     """
-    budget = Budget(rays, seconds, error, quanta)
-    chosen = resolve(
-        method, equation=equation, lines=lines, order=order, numbers=numbers, estimator=estimator, absorption=absorption,
-        first_shot=first_shot, control_variate=control_variate, warm_up=warm_up, reconstruction=reconstruction,
-        coherent=coherent,
-    )  # fmt: skip
-    replicates, seed = _whole(replicates, "replicates", 1), _whole(seed, "seed", 0)
+    chosen = resolve(method, **choices)
+    if isinstance(chosen, Baseline):
+        budget = chosen_budget(chosen, rays=rays, seconds=seconds, error=error, quanta=quanta)
+    else:
+        budget = Budget(rays, seconds, error, quanta)
+    usual = 1 if isinstance(chosen, Baseline) else 8
+    replicates = usual if replicates is None else _whole(replicates, "replicates", 1)
+    seed = _whole(seed, "seed", 0)
     budget.check(replicates)
     if isinstance(scene, Scene):
-        scene = subdivide(scene)
+        scene = subdivide(scene, **cut_for(chosen))
     if not isinstance(scene, Patches):
         raise MethodError(f"solve takes a Scene or Patches, not {type(scene).__name__}; load a file with load_scene")
     if resume is not None and not isinstance(resume, Solution):

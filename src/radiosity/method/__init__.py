@@ -1,6 +1,7 @@
-"""The four choices, and the named algorithms made of them."""
+"""The four choices and the named algorithms made of them, and the baselines, which have choices of their own."""
 
+from .baseline import Baseline
 from .model import AXES, Method
-from .presets import PRESETS, Preset, resolve
+from .presets import BASELINES, PRESETS, Preset, resolve
 
-__all__ = ["AXES", "PRESETS", "Method", "Preset", "resolve"]
+__all__ = ["AXES", "BASELINES", "PRESETS", "Baseline", "Method", "Preset", "resolve"]

@@ -13,17 +13,24 @@ DEFAULT_PATCHES = 20_000
 MOST_PATCHES = 2**31 - 2**16
 
 
-def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = None, powers_of_two: bool = False) -> Patches:
+def subdivide(
+    scene: Scene,
+    *,
+    size: float | None = None,
+    cells: int | None = None,
+    about: int = DEFAULT_PATCHES,
+    powers_of_two: bool = False,
+) -> Patches:
     """Cut every face into patches.
 
     Args:
         size: metres. A parallelogram's cell edges are at most this long, a triangle's cell has at most half its
             square as area. Surfaces with a patch size of their own in the scene keep it.
         cells: every face into cells x cells instead (1: a patch for each face and radiating side).
-            Neither: a size at which the faces large enough to be cut give about 20 000 patches; the others are one
-            for each side.
+            Neither: a size at which the faces large enough to be cut give about as many patches as ``about`` says; the
+            others are one for each side.
         powers_of_two: columns and rows are rounded up to powers of two, so that the patches are the leaves of a `Hierarchy`;
-            what is said of size, cells and 20 000 patches holds still.
+            what is said of size, cells and about holds still.
 
     Raises:
         SceneError: both or senseless values, or more patches than can be counted.
@@ -32,6 +39,8 @@ def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = No
         raise SceneError(f"subdivide takes a Scene, not {type(scene).__name__}; load a file with load_scene")
     if size is not None and cells is not None:
         raise SceneError("give size or cells, not both")
+    if isinstance(about, bool) or not isinstance(about, int) or about < 1:
+        raise SceneError(f"about is {about!r}; it must be a whole number of patches, 1 or more")
     if cells is not None:
         if isinstance(cells, bool) or not isinstance(cells, Real) or not np.isfinite(cells) or int(cells) != cells or cells < 1:
             raise SceneError(f"cells is {cells!r}; it must be a whole number of 1 or more")
@@ -39,7 +48,7 @@ def subdivide(scene: Scene, *, size: float | None = None, cells: int | None = No
     else:
         if size is not None and not (isinstance(size, Real) and np.isfinite(size) and size > 0):
             raise SceneError(f"patch size is {size!r}; it must be a positive number of metres")
-        size = _default_size(scene, powers_of_two) if size is None else float(size)
+        size = _default_size(scene, powers_of_two, about) if size is None else float(size)
         columns, rows = _by_size(scene, size, powers_of_two)
     return _checked(scene, columns, rows)
 
@@ -65,8 +74,8 @@ def _by_size(scene: Scene, size: float, powers_of_two: bool) -> tuple[np.ndarray
     return tuple(_rounded(np.minimum(count, 2**31), powers_of_two) for count in (columns, rows))  # type: ignore[return-value]
 
 
-def _default_size(scene: Scene, powers_of_two: bool) -> float:
-    """A size at which the faces that are cut at all give about 20 000 patches: walls are cut however many tiny faces
+def _default_size(scene: Scene, powers_of_two: bool, about: int) -> float:
+    """A size at which the faces that are cut at all give about so many patches: walls are cut however many tiny faces
     there are beside them."""
     sides = np.where(scene.back == Back.RADIATES, 2, 1)
     high = float(max(edge.max() for edge in _edges(scene)))
@@ -75,7 +84,7 @@ def _default_size(scene: Scene, powers_of_two: bool) -> float:
         middle = np.sqrt(low * high)
         columns, rows = _by_size(scene, middle, powers_of_two)
         patches = columns * rows * sides
-        low, high = (middle, high) if patches[columns * rows > 1].sum() > DEFAULT_PATCHES else (low, middle)
+        low, high = (middle, high) if patches[columns * rows > 1].sum() > about else (low, middle)
     return high
 
 

@@ -1,9 +1,11 @@
 """Named algorithms of the literature: each a `Method`, what it is and when to take it, and its citation."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 from ...errors import MethodError
+from ..baseline import Baseline
 from ..model import Method
+from .baselines import BASELINES
 from .citations import Citation
 from .global_lines import GLOBAL
 from .iterations import ITERATIONS
@@ -12,22 +14,29 @@ from .walks import WALKS
 
 PRESETS: dict[str, Preset] = WALKS | ITERATIONS | GLOBAL
 
-__all__ = ["PRESETS", "Citation", "Preset", "resolve"]
+__all__ = ["BASELINES", "PRESETS", "Citation", "Preset", "resolve"]
 
 
-def resolve(method: "str | Method" = "random-walk", **choices) -> Method:
+def resolve(method: "str | Method | Baseline" = "random-walk", **choices) -> "Method | Baseline":
     """A preset's method, or one given as such, with the choices that are not None put in its place.
 
     Raises:
-        MethodError: unknown name, unknown value, or a senseless combination.
+        MethodError: unknown name, unknown value, a choice that it does not have, or a senseless combination.
     """
+    known = PRESETS | BASELINES
     if isinstance(method, str):
-        if method not in PRESETS:
-            raise MethodError(f"method '{method}' does not exist; known are {', '.join(PRESETS)}")
-        method = PRESETS[method].method
-    if not isinstance(method, Method):
-        raise MethodError(f"method is {method!r}; give a name ({', '.join(PRESETS)}) or a Method")
-    given = {axis: value for axis, value in choices.items() if value is not None}
-    if given.get("order", method.order) != method.order and "warm_up" not in given:
+        if method not in known:
+            raise MethodError(f"method '{method}' does not exist; known are {', '.join(known)}")
+        method = known[method].method
+    if not isinstance(method, Method | Baseline):
+        raise MethodError(f"method is {method!r}; give a name ({', '.join(known)}), a Method or a Baseline")
+    given = {choice: value for choice, value in choices.items() if value is not None}
+    names = [field.name for field in fields(method)]
+    for choice in given:
+        if choice not in names:
+            raise MethodError(f"'{choice}' is no choice of {method}; it has {', '.join(names)}")
+    if isinstance(method, Method) and given.get("order", method.order) != method.order and "warm_up" not in given:
         given["warm_up"] = False  # belongs to the order that was replaced
+    if isinstance(method, Baseline) and given.get("factors", method.factors) != method.factors:
+        given = {"samples": None, "resolution": 64, "rotated": True} | given  # belong to the factors that were replaced
     return replace(method, **given)

@@ -2,23 +2,24 @@
 
 from dataclasses import dataclass
 
+from ..baseline import Baseline
 from ..model import Method
 from .citations import CITATIONS, Citation
 
 
 @dataclass(frozen=True)
 class Preset:
-    """A named algorithm: a `Method`, and what a user should know of it.
+    """A named algorithm: a `Method` or a `Baseline`, and what a user should know of it.
 
     Attributes:
         method: the choices.
         about: what it is, in a few sentences.
         when: when to take it.
         key: of its citation.
-        parameters: options of `Method` that are its own, each with its meaning.
+        parameters: options of `Method` or `Baseline` that are its own, each with its meaning.
     """
 
-    method: Method
+    method: Method | Baseline
     about: str
     when: str
     key: str

@@ -1,0 +1,83 @@
+"""What a baseline will take, before it begins: refused where memory would not do, told where it takes long."""
+
+import os
+import time
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import MethodError, RadiosityWarning
+from .rows import AbstractRows
+
+BYTES_A_FACTOR = 48  # 12 in the matrix; the rest while pairs are joined and sorted
+SHARE = 0.7  # of the memory that is free now
+LONG = 60.0  # seconds that are worth a word
+TRIAL_ROWS = 4
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Memory in bytes, time in seconds (NaN: unknown), and what they are for; ``way_out`` says what would take less."""
+
+    memory: float
+    seconds: float
+    what: str
+    way_out: str
+
+    def check(self) -> None:
+        """Refuse what will not fit; tell what takes long.
+
+        Raises:
+            MethodError: more memory than there is.
+        """
+        free = free_memory()
+        if self.memory > SHARE * free:
+            raise MethodError(f"{self.what} would take about {self.memory / 2**30:.3g} GiB of memory, and {free / 2**30:.3g} GiB are "
+                              f"free; {self.way_out}")  # fmt: skip
+        if self.seconds > LONG:
+            warnings.warn(
+                f"{self.what} takes about {self.memory / 2**30:.2g} GiB and {self.seconds / 60:.2g} minutes on this machine; "
+                f"{self.way_out}",
+                RadiosityWarning,
+                stacklevel=8,
+            )
+
+
+def free_memory() -> float:
+    """Bytes that a new array may take; infinite where the system does not tell."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as file:
+            facts = dict(line.split(":", 1) for line in file)
+        return 1024.0 * int(facts["MemAvailable"].split()[0])
+    except (OSError, KeyError, ValueError):
+        pass
+    try:
+        return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    except (AttributeError, OSError, ValueError):
+        return np.inf
+
+
+def full_matrix(rows: AbstractRows, n: int, replicates: int) -> Estimate:
+    """Of n patches; the time from a few rows that are made and thrown away, twice, since the first time compiles kernels."""
+    factors = float(n) * n
+    what = f"the matrix of {n} patches ({factors:.2g} form factors)"
+    way_out = "take larger patches, or a method that forms no matrix, such as random-walk"
+    memory = factors * BYTES_A_FACTOR
+    if memory > SHARE * free_memory():
+        return Estimate(memory, np.nan, what, way_out)
+    some = np.unique(np.linspace(0, n - 1, min(TRIAL_ROWS, n)).astype(np.int64))
+    seconds = 0.0
+    for _ in range(2):
+        begun = time.perf_counter()
+        rows.make(some, 0, lambda lines: None)
+        seconds = time.perf_counter() - begun
+    return Estimate(memory, seconds / len(some) * n * replicates, what, way_out)
+
+
+def progressive(n: int) -> Estimate:
+    """Of n patches: a few numbers for each, and the rows that are kept for a while."""
+    from .progressive.recent import AHEAD, MOST_ENTRIES
+
+    memory = 400.0 * n + 32.0 * MOST_ENTRIES + 64.0 * AHEAD * n
+    return Estimate(memory, np.nan, f"progressive refinement of {n} patches", "take larger patches")

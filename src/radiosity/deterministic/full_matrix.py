@@ -1,0 +1,86 @@
+"""Full matrix radiosity: all form factors, then the equation.
+
+C. M. Goral, K. E. Torrance, D. P. Greenberg and B. Battaile, "Modeling the interaction of light between diffuse surfaces",
+SIGGRAPH 1984; with shadows, M. Cohen and D. Greenberg, "The hemi-cube", and T. Nishita and E. Nakamae, "Continuous tone
+representation of three-dimensional objects taking account of shadows and interreflection", both SIGGRAPH 1985.
+"""
+
+import numpy as np
+
+from ..engine.process import AbstractProcess, State, Swept
+from ..errors import MethodError
+from . import estimate, solvers
+from .matrix import Matrix
+from .polygon_rows import PolygonRows
+from .reciprocity import restored
+from .rows import rows_for
+from .symmetric_pairs import symmetric_pairs
+from .tally import SolvedTally
+
+
+class FullMatrix(AbstractProcess):
+    """One stage: replicate after replicate, the matrix is made, solved and forgotten."""
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.rows = rows_for(self.geometry, self.problem, self.method, self.seed, self.replicates)
+        estimate.full_matrix(self.rows, len(self.problem.patches), self.replicates).check()
+        self.n, self.lines, self.solved = len(self.problem.patches), 0, []
+
+    @property
+    def quanta(self) -> int:
+        return int(bool(self.solved))
+
+    @property
+    def nested(self) -> bool:
+        return True
+
+    def advance(self, quanta: int, swept: Swept) -> None:
+        while len(self.solved) < self.replicates:
+            self.solved.append(self._solve(self._matrix(len(self.solved), swept)))
+
+    def _matrix(self, replicate: int, swept: Swept) -> Matrix:
+        if isinstance(self.rows, PolygonRows) and self.rows.symmetric:
+            made, lines = symmetric_pairs(self.rows, self.n, replicate, swept)
+        else:
+            rows = self.rows.make(np.arange(self.n), replicate, swept)
+            made, lines = Matrix.of(rows, self.n), rows.lines
+        self.lines += lines
+        area = self.problem.patches.area
+        if self.method.reciprocal:
+            if self.geometry.some_backs_pass:
+                source = self.problem.patches.scene.source
+                raise MethodError(f"{source}: some backs let lines pass, so what a patch sees is not what sees it, and reciprocity "
+                                  "cannot be restored; leave it out")  # fmt: skip
+            made = restored(made, area)
+        return made.sent(area) if self.geometry.some_backs_pass else made
+
+    def _solve(self, matrix: Matrix) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Power received and missed, entries of each column, and the history of convergence."""
+        groups, area = self.problem.groups, self.problem.patches.area
+        system = solvers.System(matrix.factors, groups.emission, groups.reflectance, area)
+        found = solvers.solve(self.method.solver, system)
+        received = area[:, None] * (matrix.factors @ found.radiosity)
+        power = area[:, None] * found.radiosity
+        missed = np.stack([matrix.escaped @ power, matrix.lost @ power])
+        seen = np.bincount(matrix.factors.indices, minlength=self.n)
+        return received, missed, seen, np.column_stack([np.arange(len(found.history)) + 1, found.history])
+
+    def capture(self) -> State:
+        if len(self.solved) < self.replicates:
+            return {"quanta": np.array(0)}
+        received, missed, seen, history = zip(*self.solved, strict=True)
+        return {
+            "quanta": np.array(1), "done": np.array(True), "lines": np.array(self.lines), "received": np.array(received),
+            "missed": np.array(missed), "seen": np.sum(seen, axis=0), "history": history[0],
+        }  # fmt: skip
+
+    def restore(self, state: State) -> None:
+        raise MethodError("a full matrix is made whole or not at all: there is nothing to go on from")
+
+    def unfinished(self, state: State) -> bool:
+        return "received" not in state
+
+    @property
+    def tally(self) -> SolvedTally:
+        return SolvedTally()

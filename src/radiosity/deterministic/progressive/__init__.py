@@ -1,0 +1,1 @@
+"""Progressive refinement radiosity: shot after shot, rows of form factors on demand."""

@@ -1,0 +1,56 @@
+"""Named methods that form the matrix."""
+
+from ..baseline import Baseline
+from .model import Preset
+
+FACTORS = ("factors", "polygons (exact, with the visible share), hemicube, or lines")
+HEMICUBE = (("resolution", "pixels along an edge of a hemicube's top"), ("rotated", "hemicubes turned by random angles"))
+SAMPLES = ("samples", "lines of a pair of patches (polygons), or of a patch (lines)")
+
+BASELINES = {
+    "full-matrix": Preset(
+        Baseline("full-matrix"),
+        "All form factors first: exact ones of polygons times the share that sees each other, from hemicubes, or from local "
+        "lines; then the equation is solved. Memory and time grow with the square of the number of patches.",
+        "Small scenes as an oracle; scenes whose emission or reflectance changes often.",
+        "goral1984",
+        (FACTORS, *HEMICUBE, SAMPLES, ("solver", "jacobi, gauss-seidel, southwell or conjugate-gradients"),
+         ("reciprocal", "make A_i F_ij symmetric, and rows sum to what does not escape")),
+    ),
+    "full-matrix-hemicube": Preset(
+        Baseline("full-matrix", factors="hemicube"),
+        "The same with hemicubes, as most radiosity programs of their time had it: only the middle of a patch looks at the scene.",
+        "To compare; near and small things alias, docs/baselines.md shows how much.",
+        "cohen1985",
+        (FACTORS, *HEMICUBE, ("solver", "jacobi, gauss-seidel, southwell or conjugate-gradients"),
+         ("reciprocal", "make A_i F_ij symmetric, and rows sum to what does not escape")),
+    ),
+    "progressive-refinement": Preset(
+        Baseline("progressive", factors="hemicube"),
+        "The patch with the most unshot power shoots it to all others along a row of form factors made for it; then the next. "
+        "The matrix is never kept.",
+        "To compare; a first picture after few shots. With ambient, it is as bright as the last one from the start.",
+        "cohen1988",
+        (FACTORS, *HEMICUBE, SAMPLES, ("ambient", "add an estimate of the light not shot yet"),
+         ("overshooting", "shoot a part of the light that is still to come, too")),
+    ),
+    "hierarchical": Preset(
+        Baseline("hierarchical"),
+        "Faces are cut into quadtrees of elements, and links join elements as large as their exchange allows: light is gathered "
+        "over links, pushed down to the patches and pulled up again.",
+        "Few large faces, which it needs a link for a patch, not one for each pair.",
+        "hanrahan1991",
+        (("epsilon", "the largest error of a link, relative to the brightest emission"),
+         ("samples", "lines of a link, to find how much of one element the other sees"),
+         ("refinement", "brightness-factor, error-radiance or error-power")),
+    ),
+    "hierarchical-error-control": Preset(
+        Baseline("hierarchical", refinement="error-radiance"),
+        "The same, but a link is cut where an estimate of its error says so, from how much the kernel varies over the link.",
+        "As hierarchical, where shadows and contacts need finer links and smooth exchange coarser ones.",
+        "bekaert1996",
+        (("epsilon", "the largest error of a link, relative to the brightest emission"),
+         ("samples", "lines of a link, to find how much of one element the other sees"),
+         ("refinement", "brightness-factor, error-radiance or error-power")),
+    ),
+}  # fmt: skip
