@@ -10,17 +10,18 @@ def methods(name: str | None = None, /) -> int:
         Of a method, or of one of the four axes: equation, lines, order, numbers.
     """
     from ..errors import MethodError
-    from ..method import PRESETS
+    from ..method import BASELINES, PRESETS
     from ..method.model import AXES
 
+    known = PRESETS | BASELINES
     if name is None:
         _list()
     elif name in AXES:
         _axis(name)
-    elif name in PRESETS:
+    elif name in known:
         _explain(name)
     else:
-        raise MethodError(f"method '{name}' does not exist; known are {', '.join(PRESETS)}; and the axes {', '.join(AXES)}")
+        raise MethodError(f"method '{name}' does not exist; known are {', '.join(known)}; and the axes {', '.join(AXES)}")
     return 0
 
 
@@ -28,7 +29,7 @@ def _list() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from ..method import PRESETS
+    from ..method import BASELINES, PRESETS
     from ..method.model import AXES
 
     table = Table(box=None, pad_edge=False)
@@ -39,7 +40,17 @@ def _list() -> None:
         more = ", ".join(str(preset.method).split("/")[len(AXES) :])
         fields = dict(preset.source.fields)
         table.add_row(name, *axes, more, f"{_family(fields['author'])} {fields['year']}")
-    Console(highlight=False, width=1000).print(table)
+    console = Console(highlight=False, width=1000)
+    console.print(table)
+    print("\nBaselines, which form the matrix (docs/baselines.md):")
+    table = Table(box=None, pad_edge=False)
+    for head in ("method", "scheme", "choices", "from"):
+        table.add_column(head, no_wrap=True)
+    for name, preset in BASELINES.items():
+        scheme, *choices = str(preset.method).split("/")
+        fields = dict(preset.source.fields)
+        table.add_row(name, scheme, ", ".join(choices), f"{_family(fields['author'])} {fields['year']}")
+    console.print(table)
     print("\n`radiosity methods NAME` explains one; `radiosity methods numbers` (equation, lines, order) the choices of an axis,")
     print("which replace a method's own: radiosity solve room --method particle-tracing --numbers sobol")
 
@@ -80,14 +91,15 @@ def _numbers(name: str) -> str:
 def _explain(name: str) -> None:
     import textwrap
 
-    from ..method import PRESETS
+    from ..method import BASELINES, PRESETS
 
-    preset = PRESETS[name]
+    preset = (PRESETS | BASELINES)[name]
     print(f"{name}: {preset.method}\n")
     for text in (preset.about, f"When: {preset.when}"):
         print(textwrap.fill(text, 100) + "\n")
     if preset.parameters:
-        print("Its own parameters, besides equation, lines, order and numbers:")
+        axes = "" if name in BASELINES else ", besides equation, lines, order and numbers"
+        print(f"Its own parameters{axes}:")
         for parameter, meaning in preset.parameters:
             print(f"  {parameter:<16} {meaning}")
         print()

@@ -30,7 +30,6 @@ def _seed(text: str) -> int:
 
 
 Count = Annotated[int | None, Parameter(converter=_by(amounts.count))]
-Copies = Annotated[int, Parameter(converter=_by(amounts.count))]
 Seed = Annotated[int, Parameter(converter=_by(_seed))]
 Stops = Annotated[float | None, Parameter(converter=_by(amounts.stops))]
 DeviceName = Literal["auto", "cpu", "cuda"]
@@ -39,6 +38,7 @@ Share = Annotated[float | None, Parameter(converter=_by(amounts.share))]
 Length = Annotated[float | None, Parameter(converter=_by(amounts.length))]
 Point = Annotated[str | None, Parameter(converter=_by(_point))]
 Pair = Annotated[str | None, Parameter(converter=_by(_pair))]
+Chosen = Annotated[bool | None, Parameter(negative=(), show_default=False)]
 Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
 Outputs = Annotated[
     tuple[Path, ...], Parameter(name=["--output", "-o"], consume_multiple=(1, None), negative=(), show_default=False)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ..errors import MethodError
 from . import outputs
-from .options import Copies, Count, DeviceName, Flag, Length, Outputs, Seconds, Seed, Share, Stops
+from .options import Chosen, Count, DeviceName, Flag, Length, Outputs, Seconds, Seed, Share, Stops
 
 DEFAULT_RAYS = 10_000_000
 INTERRUPTED = 130
@@ -30,9 +30,19 @@ def solve(
     control_variate: bool | None = None,
     warm_up: bool | None = None,
     reconstruction: str | None = None,
+    factors: str | None = None,
+    solver: str | None = None,
+    reciprocal: Chosen = None,
+    resolution: Count = None,
+    rotated: bool | None = None,
+    samples: Count = None,
+    ambient: Chosen = None,
+    overshooting: Chosen = None,
+    epsilon: Share = None,
+    refinement: str | None = None,
     patch_size: Length = None,
     cells: Count = None,
-    replicates: Copies = 8,
+    replicates: Count = None,
     seed: Seed = 0,
     device: DeviceName = "auto",
     resume: Path | None = None,
@@ -50,7 +60,7 @@ def solve(
     output
         Files to write: .npz .glb .ply .vtp .csv .png .exr, several at once.
     rays
-        Lines to trace in all, such as 10M (the default), 500k or 1e7.
+        Lines to trace in all, such as 10M (the default), 500k or 1e7. Baselines go on until they are done instead.
     seconds
         Or: for how long to trace, such as 60, 5min or 1h.
     error
@@ -79,12 +89,32 @@ def solve(
         Of regular iterations: begin with incremental ones.
     reconstruction
         Of particles: patches (landings are counted) or local-linear (planes are fitted to them).
+    factors
+        Of baselines: where form factors come from: polygons, hemicube, lines.
+    solver
+        Of full-matrix: jacobi, gauss-seidel, southwell, conjugate-gradients.
+    reciprocal
+        Of full-matrix: make A_i F_ij symmetric, and rows sum to what does not escape.
+    resolution
+        Of hemicubes: pixels along an edge of the top.
+    rotated
+        Of hemicubes: turned by random angles (the default), or aligned with their faces.
+    samples
+        Of baselines: lines of a pair of patches or of a link (16), or of a patch with factors lines (4096).
+    ambient
+        Of progressive refinement: add an estimate of the light that was not shot yet.
+    overshooting
+        Of progressive refinement: shoot a part of the light that is still to come, too.
+    epsilon
+        Of hierarchical radiosity: the largest error of a link, relative to the brightest emission, such as 1% or 0.01.
+    refinement
+        Of hierarchical radiosity: brightness-factor, error-radiance, error-power.
     patch_size
-        Longest edge of a patch, in metres. Default: what gives about 20 000 patches.
+        Longest edge of a patch, in metres. Default: what gives about 20 000 patches, of baselines 2 000.
     cells
         Or: cut every face into CELLS x CELLS patches.
     replicates
-        Independent randomised runs, from which the errors come.
+        Independent randomised runs, from which the errors come. Default: 8, of baselines 1.
     seed
         Of all randomisation; equal seeds give equal results.
     device
@@ -111,20 +141,27 @@ def solve(
 
     from .progress import bar
 
+    choices = {
+        "equation": equation, "lines": lines, "order": order, "numbers": numbers, "estimator": estimator,
+        "absorption": absorption, "first_shot": first_shot, "control_variate": control_variate, "warm_up": warm_up,
+        "reconstruction": reconstruction, "coherent": coherent or None, "factors": factors, "solver": solver,
+        "reciprocal": reciprocal, "resolution": resolution, "rotated": rotated, "samples": samples, "ambient": ambient,
+        "overshooting": overshooting, "epsilon": epsilon, "refinement": refinement,
+    }  # fmt: skip
+    chosen = rd.method.resolve(method, **choices)
+    if not given and isinstance(chosen, rd.Method):
+        asked["rays"] = DEFAULT_RAYS
     loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict)
     before = None if resume is None else rd.load_solution(resume)
-    if before is not None and patch_size is None and cells is None and before.patches.scene.hash == loaded.hash:
+    patches = loaded
+    if patch_size is not None or cells is not None:
+        patches = rd.subdivide(loaded, size=patch_size, cells=cells, powers_of_two=chosen.needs_powers_of_two)
+    elif before is not None and before.patches.scene.hash == loaded.hash:
         patches = before.patches
-    else:
-        patches = rd.subdivide(loaded, size=patch_size, cells=cells)
     with bar() as progress:
         solution = rd.solve(
-            patches, method, rays=rays if given else DEFAULT_RAYS, seconds=seconds, error=error, quanta=quanta,
-            equation=equation, lines=lines, order=order, numbers=numbers, replicates=replicates, seed=seed, device=device,
-            estimator=estimator, absorption=absorption, first_shot=first_shot, control_variate=control_variate,
-            warm_up=warm_up, reconstruction=reconstruction,
-            coherent=coherent or None, progress=progress, resume=before,
-        )  # fmt: skip
+            patches, chosen, **asked, replicates=replicates, seed=seed, device=device, progress=progress, resume=before
+        )
     print(solution.report())
     outputs.write(solution, output, exposure=exposure)
     return INTERRUPTED if solution.status == "interrupted" else 0

@@ -26,4 +26,4 @@ def cut_for(method: "Method | Baseline") -> dict:
     """Arguments of `subdivide` for a scene that is not cut yet."""
     if not isinstance(method, Baseline):
         return {}
-    return {"about": PATCHES, "powers_of_two": method.scheme == "hierarchical"}
+    return {"about": PATCHES, "powers_of_two": method.needs_powers_of_two}

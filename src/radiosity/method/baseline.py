@@ -103,6 +103,11 @@ class Baseline:
         return self.samples or OF_PATCH
 
     @property
+    def needs_powers_of_two(self) -> bool:
+        """Patches must be the leaves of quadtrees (`radiosity.subdivide`)."""
+        return self.scheme == "hierarchical"
+
+    @property
     def order(self) -> str:
         """As a `Method` has one: the ladder of stages goes by it."""
         return self.scheme

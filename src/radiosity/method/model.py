@@ -56,6 +56,11 @@ class Method:
         machine(self)
 
     @property
+    def needs_powers_of_two(self) -> bool:
+        """Patches of any cut will do."""
+        return False
+
+    @property
     def machine(self) -> str:
         """The process that runs it, a name of `engine.process.PROCESSES`."""
         return machine(self)

@@ -78,6 +78,13 @@ class Solution:
         fallback = (self.irradiance[rows], self.irradiance_standard_error[rows])
         return relative_error(reflected, self.standard_error[rows], self.patches.area[rows], fallback)
 
+    @property
+    def history(self) -> np.ndarray:
+        """(k, 2) float64, of baselines: steps, and what was left after them: the largest residual relative to the largest radiosity
+        (full-matrix, an iteration a step), unshot over emitted power (progressive, a shot a step), or the largest change relative
+        to the largest radiosity (hierarchical, an iteration a step). Empty for methods that do not converge step by step."""
+        return np.asarray(self.state.get("history", np.zeros((0, 2))))
+
     def surface_table(self) -> list[dict]:
         """A row for each surface: area, means, relative error, and its power balance in W or lm."""
         from .table import surface_table

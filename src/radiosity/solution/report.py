@@ -16,8 +16,7 @@ def report(solution) -> str:
     lines = [
         f"scene     {scene.source}: {scene.n_faces} faces, {len(scene.names)} surfaces, {len(solution.patches)} patches",
         f"method    {solution.provenance['method']}, seed {solution.provenance['seed']}",
-        f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({rate / 1e6:.1f} million a second), "
-        f"{solution.replicates} replicates of {solution.quanta:,} quanta",
+        f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({rate / 1e6:.1f} million a second), {_counted(solution)}",
         f"error     {error}",
         f"status    {solution.status}",
     ]
@@ -31,6 +30,13 @@ def report(solution) -> str:
             f"+ escaped {book['escaped']:.4g} + lost on backs {book['lost']:.4g} ({closed})"
         )
     return "\n".join([*lines, "", *_surfaces(solution)])
+
+
+def _counted(solution) -> str:
+    if not len(solution.history):
+        return f"{solution.replicates} replicates of {solution.quanta:,} quanta"
+    steps, left = solution.history[-1]
+    return f"{steps:,.0f} steps, which left {left:.2g}"
 
 
 def _error(solution) -> str:
