@@ -56,7 +56,7 @@ def facing(hierarchy: Hierarchy, one: Shapes, other: Shapes) -> tuple[np.ndarray
     low, high = hierarchy.patches.scene.bounds
     tolerance = PLANE * float((high - low).max())
     corners = np.stack([one.in_front(other, tolerance), other.in_front(one, tolerance)])
-    return corners.any(axis=2).all(axis=0), corners.all(axis=(0, 2))
+    return np.all(np.any(corners, axis=2), axis=0), np.all(corners, axis=(0, 2))
 
 
 def unoccluded(hierarchy: Hierarchy, receiver: Shapes, source: Shapes) -> np.ndarray:

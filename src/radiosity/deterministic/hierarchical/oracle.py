@@ -3,8 +3,8 @@
 brightness-factor (P. Hanrahan, D. Salzman, L. Aupperle, "A rapid hierarchical radiosity algorithm", SIGGRAPH 1991): by the power
 that a link carries, F B_s A_r; the error of an irradiance held constant over the receiver is at most a share of it.
 
-error-radiance and error-power (Ph. Bekaert, Y. D. Willems, "Error control for radiosity", Eurographics Workshop on Rendering 1996):
-by the link's part of delta in equation 6 of the paper, at the point of the receiver where it is largest,
+error-radiance and error-power (P. Bekaert, Y. Willems, "Error control for radiosity", Eurographics Workshop on Rendering, 1996)
+judge by the link's part of delta in equation 6 of the paper, at the point of the receiver where it is largest,
 
     rho_r (dK B_s + F max |B(y) - B_s|),
 

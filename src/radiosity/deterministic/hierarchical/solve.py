@@ -37,9 +37,9 @@ class Pass:
 class HierarchicalResult:
     """Attributes:
     irradiance, radiosity: (n_patches, n_bands) float64, W/m² or lm/m².
-    indicated: (n_patches, n_bands) float64: the errors of irradiance of all links, summed without their signs and sent on as light
-        is (equation 6 of the paper): well above the true error. NaN for brightness-factor, which tells no error.
-    links: how many at the end; hidden: how many of them carry nothing, since no ray came through.
+    indicated: (n_patches, n_bands) float64: the errors of irradiance of all links, summed without their signs and sent on as
+        light is (equation 6 of the paper): well above the true error. NaN for brightness-factor, which tells no error.
+    links, hidden: how many at the end, and how many of them carry nothing, since no ray came through.
     elements: how many there are in the trees that the links ask for.
     pairs: form factors computed, for links replaced later too.
     rays: traced.
