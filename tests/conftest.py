@@ -35,3 +35,12 @@ def cube() -> rd.Scene:
     names = ("south", "north", "west", "east", "floor", "ceiling")
     faces = box((0, 0, 0), (1, 1, 1), inward=True)
     return join([(name, 0.5, 1.0, [face]) for name, face in zip(names, faces, strict=True)], source="cube")
+
+
+@pytest.fixture(scope="session")
+def geometry_of():
+    """Patches on the device that there is."""
+    from radiosity.engine.device import choose
+    from radiosity.engine.geometry import Geometry
+
+    return lambda patches: Geometry(patches, choose())

@@ -27,9 +27,9 @@ def is_quad(hierarchy: Hierarchy, element: np.ndarray) -> np.ndarray:
 
 def corners(hierarchy: Hierarchy, element: np.ndarray) -> np.ndarray:
     """(m, 4, 3) float64, metres, counterclockwise seen from the element's own side; a triangle repeats its last one."""
-    side, level, *place = hierarchy.place(element)
+    side, level, column, row, inverted = hierarchy.place(element)
     quad = hierarchy.patches.scene.is_quad[hierarchy.side_face[side]]
-    uv = cells.corners(*place, *hierarchy.grid(side, level), quad)
+    uv = cells.corners(column, row, inverted, *hierarchy.grid(side, level), quad)
     turned = np.where(quad[:, None], [0, 3, 2, 1], [0, 2, 1, 1])
     order = np.where(hierarchy.side_is_back[side][:, None], turned, [0, 1, 2, 3])
     return _points(hierarchy, side, np.take_along_axis(uv, order[:, :, None], axis=1))

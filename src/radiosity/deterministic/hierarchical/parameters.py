@@ -1,0 +1,52 @@
+"""What hierarchical radiosity is told."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import MethodError
+
+REFINEMENTS = ("brightness-factor", "error-radiance", "error-power")
+
+
+@dataclass(frozen=True)
+class Hierarchical:
+    """Attributes:
+    epsilon: up to what a link is left as it is; a pure number, so that neither units nor the scene's size or brightness matter.
+        brightness-factor: F B_s A_r over the total emitted power of the scene. error-radiance: the link's error of radiosity
+        over the largest emitted radiosity. error-power: that error times A_r, over the total emitted power. See `oracle`.
+    refinement: one of `REFINEMENTS`.
+    rays: of a link, for the share of it that meets no obstacle; 0 where there are none to meet.
+    coarsest: the first round's epsilon over ``epsilon``, a power of ``step``: rounds go from there down to ``epsilon``.
+    step: from round to round.
+    tolerance: of the solution with given links, relative to the largest radiosity of a band.
+    seed: of the rays.
+
+    Raises:
+        MethodError: values without sense.
+    """
+
+    epsilon: float = 1e-4
+    refinement: str = "brightness-factor"
+    rays: int = 16
+    coarsest: float = 64.0
+    step: float = 4.0
+    tolerance: float = 1e-8
+    seed: int = 0
+
+    def __post_init__(self):
+        if self.refinement not in REFINEMENTS:
+            raise MethodError(f"refinement '{self.refinement}' does not exist; known are {', '.join(REFINEMENTS)}")
+        for name, low, high in (("epsilon", 0.0, np.inf), ("tolerance", 0.0, 1.0)):
+            if not low < getattr(self, name) < high:
+                raise MethodError(f"{name} is {getattr(self, name)!r}; it must be more than {low:g} and less than {high:g}")
+        if self.coarsest < 1 or self.step <= 1:
+            raise MethodError(f"coarsest is {self.coarsest!r} and step {self.step!r}; they must be at least 1, and more than 1")
+        if self.rays < 0:
+            raise MethodError(f"rays of a link are {self.rays!r}; they must be 0 or more")
+
+    @property
+    def rounds(self) -> tuple[float, ...]:
+        """The epsilons of multigridding, from the coarsest to ``epsilon``."""
+        count = max(round(np.log(self.coarsest) / np.log(self.step)), 0)
+        return tuple(self.epsilon * self.step**k for k in range(count, -1, -1))
