@@ -33,8 +33,10 @@ class Estimate:
         """
         free = free_memory()
         if self.memory > SHARE * free:
-            raise MethodError(f"{self.what} would take about {self.memory / 2**30:.3g} GiB of memory, and {free / 2**30:.3g} GiB are "
-                              f"free; {self.way_out}")  # fmt: skip
+            raise MethodError(
+                f"{self.what} would take about {self.memory / 2**30:.3g} GiB of memory, "
+                f"and {free / 2**30:.3g} GiB are free; {self.way_out}"
+            )
         if self.seconds > LONG:
             warnings.warn(
                 f"{self.what} takes about {self.memory / 2**30:.2g} GiB and {self.seconds / 60:.2g} minutes on this machine; "

@@ -7,12 +7,12 @@ representation of three-dimensional objects taking account of shadows and interr
 
 import numpy as np
 
+from ..engine.matrix.balance import restored
+from ..engine.matrix.factors import Factors
 from ..engine.process import AbstractProcess, State, Swept
 from ..errors import MethodError
 from . import estimate, solvers
-from .matrix import Matrix
 from .polygon_rows import PolygonRows
-from .reciprocity import restored
 from .rows import rows_for
 from .symmetric_pairs import symmetric_pairs
 from .tally import SolvedTally
@@ -39,31 +39,32 @@ class FullMatrix(AbstractProcess):
         while len(self.solved) < self.replicates:
             self.solved.append(self._solve(self._matrix(len(self.solved), swept)))
 
-    def _matrix(self, replicate: int, swept: Swept) -> Matrix:
+    def _matrix(self, replicate: int, swept: Swept) -> Factors:
         if isinstance(self.rows, PolygonRows) and self.rows.symmetric:
             made, lines = symmetric_pairs(self.rows, self.n, replicate, swept)
         else:
             rows = self.rows.make(np.arange(self.n), replicate, swept)
-            made, lines = Matrix.of(rows, self.n), rows.lines
+            made, lines = rows.factors, rows.lines
         self.lines += lines
         area = self.problem.patches.area
         if self.method.reciprocal:
             if self.geometry.some_backs_pass:
-                source = self.problem.patches.scene.source
-                raise MethodError(f"{source}: some backs let lines pass, so what a patch sees is not what sees it, and reciprocity "
-                                  "cannot be restored; leave it out")  # fmt: skip
-            made = restored(made, area)
+                raise MethodError(
+                    f"{self.problem.patches.scene.source}: some backs let lines pass, so what a patch sees is not what sees it, "
+                    "and there is no reciprocity to restore; leave it out"
+                )
+            made = _symmetric(restored(made, area), area)
         return made.sent(area) if self.geometry.some_backs_pass else made
 
-    def _solve(self, matrix: Matrix) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def _solve(self, matrix: Factors) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Power received and missed, entries of each column, and the history of convergence."""
         groups, area = self.problem.groups, self.problem.patches.area
-        system = solvers.System(matrix.factors, groups.emission, groups.reflectance, area)
+        system = solvers.System(matrix.sparse(self.n), groups.emission, groups.reflectance, area)
         found = solvers.solve(self.method.solver, system)
-        received = area[:, None] * (matrix.factors @ found.radiosity)
+        received = area[:, None] * (system.factors @ found.radiosity)
         power = area[:, None] * found.radiosity
         missed = np.stack([matrix.escaped @ power, matrix.lost @ power])
-        seen = np.bincount(matrix.factors.indices, minlength=self.n)
+        seen = np.bincount(matrix.columns, minlength=self.n)
         return received, missed, seen, np.column_stack([np.arange(len(found.history)) + 1, found.history])
 
     def capture(self) -> State:
@@ -84,3 +85,12 @@ class FullMatrix(AbstractProcess):
     @property
     def tally(self) -> SolvedTally:
         return SolvedTally()
+
+
+def _symmetric(factors: Factors, area: np.ndarray) -> Factors:
+    """A_i F_ij equal both ways to rounding, as conjugate gradients need them; row sums move by what was missing to that."""
+    exchange = factors.values * area[factors.rows]
+    order, other = (np.lexsort(keys) for keys in ((factors.columns, factors.rows), (factors.rows, factors.columns)))
+    mean = np.empty_like(exchange)
+    mean[order] = (exchange[order] + exchange[other]) / 2
+    return Factors(factors.rows, factors.columns, mean / area[factors.rows], factors.escaped, factors.lost)

@@ -13,9 +13,11 @@ LAUNCH = 1 << 22  # lines at a time
 
 
 class LineRows(AbstractRows):
-    """F_ij = n_ij / n_i, from the first n_i lines of patch i (contract 2: the k-th line is a function of seed, replicate, i, k)."""
+    """F_ij = n_ij / n_i, from the first n_i lines of patch i; the k-th is a function of seed, replicate, i and k (contract 2)."""
 
-    def __init__(self, geometry: Geometry, problem: Problem, method: Baseline, seed: int, replicates: int, lines: int | None = None):
+    def __init__(
+        self, geometry: Geometry, problem: Problem, method: Baseline, seed: int, replicates: int, lines: int | None = None
+    ):
         self.n, self.replicates, self.lines = len(problem.patches), replicates, lines or method.lines_of_patch
         self.shooter = Shooter(geometry, problem.source, Method(), seed, replicates, 0)
 
@@ -44,6 +46,6 @@ class LineRows(AbstractRows):
             swept(len(some) * self.lines)
         keys, counts = np.unique(np.concatenate(found) if found else np.zeros(0, np.int64), return_counts=True)
         row, column, share = keys // width, keys % width, counts / self.lines
-        missed = [np.bincount(row[column == code], share[column == code], len(numbers)) for code in (self.n, self.n + 1)]
+        escaped, lost = (np.bincount(row[column == code], share[column == code], len(numbers)) for code in (self.n, self.n + 1))
         inside = column < self.n
-        return Rows.of(numbers, row[inside], column[inside], share[inside], *missed, len(numbers) * self.lines)
+        return Rows.of(numbers, row[inside], column[inside], share[inside], escaped, lost, len(numbers) * self.lines)

@@ -11,7 +11,7 @@ from .line_rows import LineRows
 from .rows import AbstractRows, Rows, Swept
 
 PAIRS = 1 << 16  # at a time
-MISSED_LINES = 256  # of a patch, to learn what share of its light escapes or is lost
+MISSED_LINES = 2048  # of a patch, to learn what share of its light escapes or is lost
 
 
 class PolygonRows(AbstractRows):
@@ -39,8 +39,8 @@ class PolygonRows(AbstractRows):
             lines += len(row) * self.samples
             swept(len(row) * self.samples)
         missed = self.missed.make(numbers, replicate, swept)
-        joined = (np.concatenate(x) for x in (rows, columns, values))
-        return Rows.of(numbers, *joined, missed.escaped, missed.lost, lines + missed.lines)
+        row, column, value = (np.concatenate(x) for x in (rows, columns, values))
+        return Rows.of(numbers, row, column, value, missed.escaped, missed.lost, lines + missed.lines)
 
     def pairs(self, one: np.ndarray, other: np.ndarray, replicate: int, label: np.ndarray):
         """Of pairs of patches that exchange light: label, other patch and A_i F_ij, m²."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..engine.geometry import Geometry
+from ..engine.matrix.factors import Factors
 from ..engine.problem import Problem
 
 Swept = Callable[[int], None]
@@ -48,9 +49,9 @@ class Rows:
         return self.columns[part], self.values[part]
 
     @property
-    def of_entry(self) -> np.ndarray:
-        """(m,) int64, the place in ``numbers`` of each entry's row."""
-        return np.repeat(np.arange(len(self.numbers)), np.diff(self.begin))
+    def factors(self) -> Factors:
+        """The same by the numbers of patches; ``escaped`` and ``lost`` are of these rows."""
+        return Factors(np.repeat(self.numbers, np.diff(self.begin)), self.columns, self.values, self.escaped, self.lost)
 
 
 class AbstractRows(ABC):

@@ -2,15 +2,13 @@
 
 import numpy as np
 
-from .matrix import Matrix
+from ..engine.matrix.factors import Factors
 from .polygon_rows import PAIRS, PolygonRows
 from .rows import Swept
 
 
-def symmetric_pairs(rows: PolygonRows, n: int, replicate: int, swept: Swept) -> tuple[Matrix, int]:
+def symmetric_pairs(rows: PolygonRows, n: int, replicate: int, swept: Swept) -> tuple[Factors, int]:
     """The whole matrix and the lines it took: A_i F_ij = A_j F_ji holds to the last bit of A_i F_ij."""
-    from scipy.sparse import coo_array
-
     ones, others, values, lines, first = [], [], [], 0, 0
     while first < n:
         last = first + 1
@@ -24,7 +22,7 @@ def symmetric_pairs(rows: PolygonRows, n: int, replicate: int, swept: Swept) -> 
         swept(len(one) * rows.samples)
         first = last
     one, other, value = (np.concatenate(x) for x in (ones, others, values))
-    places = np.concatenate([one, other]), np.concatenate([other, one])
     shares = np.concatenate([value / rows.area[one], value / rows.area[other]])
+    one, other = np.concatenate([one, other]), np.concatenate([other, one])
     missed = rows.missed.make(np.arange(n), replicate, swept)
-    return Matrix(coo_array((shares, places), shape=(n, n)).tocsr(), missed.escaped, missed.lost), lines + missed.lines
+    return Factors(one, other, shares, missed.escaped, missed.lost), lines + missed.lines

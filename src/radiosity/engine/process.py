@@ -108,4 +108,5 @@ def make(geometry: Geometry, problem: Problem, method: "Method | Baseline", seed
     """The process that runs a method."""
     geometry.prepare()
     module, cls = PROCESSES[method.machine].split(":")
-    return getattr(import_module(module if module.startswith(".") else f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)
+    path = module if module.startswith(".") else f".{module}"
+    return getattr(import_module(path, __package__), cls)(geometry, problem, method, seed, replicates)

@@ -32,9 +32,9 @@ def solve(
         method: a preset's name, a `Method` or a `Baseline`.
         choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. Without ``warm_up``
             another order than the method's drops its warm-up.
-        rays, seconds, error, quanta: exactly one (none with a baseline, which then goes on until it is done): lines traced in all (replicates together); wall time (the first stage is
-            completed whatever it takes); relative error of the scene (`Solution.error`); or N of each replicate, which
-            replays a run bit for bit.
+        rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
+            traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
+            scene (`Solution.error`); or N of each replicate, which replays a run bit for bit.
         replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
         seed: with the same inputs, the same bits.
         device: "auto", "cpu" or "cuda".

@@ -1,4 +1,4 @@
-"""The methods that Monte Carlo radiosity is set against: they form the matrix F, row by row or in links, and have axes of their own."""
+"""What Monte Carlo radiosity is set against: methods that form the matrix F, row by row or in links, with axes of their own."""
 
 from dataclasses import dataclass, fields
 
@@ -6,7 +6,7 @@ from ..errors import MethodError
 
 SCHEMES = {
     "full-matrix": "all form factors first, then the equation is solved",
-    "progressive": "the patch with the most unshot power shoots next; its row of form factors is made then, and not kept for long",
+    "progressive": "the patch with the most unshot power shoots next, along a row of form factors made for it",
     "hierarchical": "links between elements of all sizes, refined where they would err",
 }
 FACTORS = {
@@ -83,7 +83,7 @@ class Baseline:
         if unused:
             raise MethodError(f"{', '.join(unused)}: not a choice of {self.scheme}, which has {', '.join(USED[self.scheme])}")
         if self.factors != "hemicube" and {"resolution", "rotated"} & set(self._given):
-            raise MethodError(f"resolution and rotated are of hemicubes, not of factors '{self.factors}'; take --factors hemicube")
+            raise MethodError(f"resolution, rotated: not of factors '{self.factors}', but of hemicubes; take --factors hemicube")
         if self.factors == "hemicube" and self.samples is not None:
             raise MethodError("samples: a hemicube has as many lines as pixels; give its resolution")
 

@@ -80,9 +80,9 @@ class Solution:
 
     @property
     def history(self) -> np.ndarray:
-        """(k, 2) float64, of baselines: steps, and what was left after them: the largest residual relative to the largest radiosity
-        (full-matrix, an iteration a step), unshot over emitted power (progressive, a shot a step), or the largest change relative
-        to the largest radiosity (hierarchical, an iteration a step). Empty for methods that do not converge step by step."""
+        """(k, 2) float64, of baselines: steps, and what was left after them. Full-matrix: iterations, and the largest residual
+        over the largest radiosity; progressive: shots, and unshot over emitted power; hierarchical: passes, and the largest
+        change over the largest radiosity. Empty for methods that do not converge step by step."""
         return np.asarray(self.state.get("history", np.zeros((0, 2))))
 
     def surface_table(self) -> list[dict]:

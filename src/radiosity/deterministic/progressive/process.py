@@ -11,6 +11,7 @@ from ...engine.process import AbstractProcess, State, Swept
 from ...errors import MethodError
 from .. import estimate
 from ..rows import rows_for
+from ..tally import SolvedTally
 from .recent import RecentRows
 from .tally import ProgressiveTally, ambient
 
@@ -100,4 +101,4 @@ class Progressive(AbstractProcess):
 
     @property
     def tally(self) -> ProgressiveTally:
-        return ProgressiveTally(self.method.ambient)
+        return ProgressiveTally(self.method.ambient, SolvedTally())

@@ -21,7 +21,7 @@ class ProgressiveTally(AbstractTally):
     """As `SolvedTally`; with ``ambient`` irradiance is more by the ambient term, which the books leave out: it is for display."""
 
     ambient: bool
-    solved: SolvedTally = SolvedTally()
+    solved: SolvedTally
 
     def lines(self, problem: Problem, state: State) -> int:
         return self.solved.lines(problem, state)

@@ -1,4 +1,4 @@
-"""How is B = E + rho F B solved, once F is there? One file a solver; all bands together, and the history of convergence is kept."""
+"""How is B = E + rho F B solved, once F is there? One file a solver; all keep the history of their convergence."""
 
 from importlib import import_module
 

@@ -20,14 +20,14 @@ def solve(system: System) -> Solved:
         MethodError: the form factors are not reciprocal.
     """
     from scipy.sparse import diags_array
-    from scipy.sparse.linalg import LinearOperator, cg
+    from scipy.sparse.linalg import cg
 
     exchange = (diags_array(system.area) @ system.factors).tocsr()
     asymmetry = abs(exchange - exchange.T).max() if exchange.nnz else 0.0
     if asymmetry > ASYMMETRY * exchange.max():
         raise MethodError(
-            f"solver 'conjugate-gradients' needs reciprocal form factors, but A_i F_ij and A_j F_ji differ by up to {asymmetry:.3g} m²; "
-            "restore reciprocity (reciprocal=True, --reciprocal), or take gauss-seidel"
+            f"solver 'conjugate-gradients' needs reciprocal form factors, but A_i F_ij and A_j F_ji differ by up to "
+            f"{asymmetry:.3g} m²; restore reciprocity (reciprocal=True, --reciprocal), or take gauss-seidel"
         )
     radiosity, histories = system.emission.copy(), []
     for band in range(system.emission.shape[1]):
@@ -38,8 +38,7 @@ def solve(system: System) -> Solved:
         lit = exchange[shiny] @ np.where(shiny, 0.0, system.emission[:, band])
         inner, scale = exchange[shiny][:, shiny], system.area[shiny] / rho[shiny]
         right = scale * system.emission[shiny, band] + lit
-        operator = LinearOperator(inner.shape, matvec=lambda x, a=scale, m=inner: a * x - m @ x, dtype=float)
-        inverse = LinearOperator(inner.shape, matvec=lambda x, a=scale: x / a, dtype=float)
+        operator, inverse = (diags_array(scale) - inner).tocsr(), diags_array(1 / scale)
         history: list[float] = []
 
         def told(x, band=band, shiny=shiny, history=history):

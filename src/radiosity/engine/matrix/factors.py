@@ -31,6 +31,12 @@ class Factors:
         """(n,) irradiance, sum_j F_ij B_j."""
         return np.bincount(self.rows, weights=self.values * radiosity[self.columns], minlength=len(radiosity))
 
+    def sparse(self, n: int):
+        """(n, n) scipy CSR array, F_ij in row i."""
+        from scipy.sparse import coo_array
+
+        return coo_array((self.values, (self.rows, self.columns)), shape=(n, n)).tocsr()
+
     def dense(self) -> np.ndarray:
         """(n, n) float64, F_ij in row i."""
         n = len(self.escaped)

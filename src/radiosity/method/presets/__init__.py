@@ -12,7 +12,7 @@ from .iterations import ITERATIONS
 from .model import Preset
 from .walks import WALKS
 
-PRESETS: dict[str, Preset] = WALKS | ITERATIONS | GLOBAL
+PRESETS: dict[str, Preset[Method]] = WALKS | ITERATIONS | GLOBAL
 
 __all__ = ["BASELINES", "PRESETS", "Citation", "Preset", "resolve"]
 

@@ -19,7 +19,7 @@ BASELINES = {
     ),
     "full-matrix-hemicube": Preset(
         Baseline("full-matrix", factors="hemicube"),
-        "The same with hemicubes, as most radiosity programs of their time had it: only the middle of a patch looks at the scene.",
+        "The same with hemicubes, as radiosity programs of their time had it: only the middle of a patch looks at the scene.",
         "To compare; near and small things alias, docs/baselines.md shows how much.",
         "cohen1985",
         (FACTORS, *HEMICUBE, ("solver", "jacobi, gauss-seidel, southwell or conjugate-gradients"),

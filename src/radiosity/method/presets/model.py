@@ -1,14 +1,17 @@
 """What a named algorithm is."""
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 from ..baseline import Baseline
 from ..model import Method
 from .citations import CITATIONS, Citation
 
+Chosen = TypeVar("Chosen", Method, Baseline)
+
 
 @dataclass(frozen=True)
-class Preset:
+class Preset(Generic[Chosen]):
     """A named algorithm: a `Method` or a `Baseline`, and what a user should know of it.
 
     Attributes:
@@ -19,7 +22,7 @@ class Preset:
         parameters: options of `Method` or `Baseline` that are its own, each with its meaning.
     """
 
-    method: Method | Baseline
+    method: Chosen
     about: str
     when: str
     key: str
