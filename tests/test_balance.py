@@ -68,3 +68,13 @@ def test_an_empty_matrix():
     nothing = Factors(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.ones(3), np.zeros(3))
     assert len(restored(nothing, np.ones(3)).values) == 0
     assert not restored_matrix(np.zeros((3, 3)), np.ones(3), np.ones(3)).any()
+
+
+def test_rows_that_are_lost_but_for_rounding_become_empty():
+    truth, area = exact()
+    lost = np.zeros(15)
+    lost[6] = 1 + 2e-16 + 1e-15  # a patch under a box, as a hemicube sums it
+    found = restored(sparse(truth, lost), area).dense()
+    assert not found[6].any()
+    assert not found[:, 6].any()
+    assert found.sum(axis=1) == pytest.approx(1 - (np.arange(15) == 6), abs=1e-12)

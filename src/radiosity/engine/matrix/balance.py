@@ -37,7 +37,7 @@ def restored(factors: Factors, area: np.ndarray, weight: np.ndarray | None = Non
     rows, columns = split(keys[first])
     trust = weight[rows] + weight[columns]
     exchange = np.divide(sums, trust, out=np.zeros(len(sums)), where=trust > 0)
-    wanted = area * (1 - factors.escaped - factors.lost)
+    wanted = area * np.maximum(1 - factors.escaped - factors.lost, 0)  # a share of all of it may be one and some rounding
 
     def row_sums(values: np.ndarray) -> np.ndarray:
         return np.bincount(rows, weights=values, minlength=len(area))
@@ -57,7 +57,7 @@ def restored_matrix(matrix: np.ndarray, area: np.ndarray, missed: np.ndarray, we
     power = matrix * (weight * area)[:, None]
     trust = weight[:, None] + weight
     exchange = np.divide(power + power.T, trust, out=np.zeros_like(power), where=trust > 0)
-    wanted = area * (1 - missed)
+    wanted = area * np.maximum(1 - missed, 0)
     scale = _scaling(lambda d: d * (exchange @ d), wanted, SCALINGS)
     values = exchange * scale * scale[:, None]
     return values * (_ratio(wanted, values.sum(axis=1)) / area)[:, None]

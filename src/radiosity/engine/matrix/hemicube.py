@@ -129,8 +129,8 @@ def directions(resolution: int) -> np.ndarray:
 
 @lru_cache(2)
 def deltas(resolution: int) -> np.ndarray:
-    """(3 resolution²,) the pixels' form factors, exactly: differences of those of rectangles, from the point under the corner of a
-    parallel one and at the foot of a perpendicular one (Howell B-4, B-5). They sum to one; the kernel at pixels' middles times
+    """(3 resolution²,) the pixels' form factors, exactly: differences of those of rectangles, from the point under the corner of
+    a parallel one and at the foot of a perpendicular one (Howell B-4, B-5). They sum to one; the kernel at pixels' middles times
     their areas does not."""
     edges = np.linspace(-1, 1, resolution + 1)
     root = np.sqrt(1 + edges**2)
