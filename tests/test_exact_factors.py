@@ -6,13 +6,12 @@ from enclosures import cube
 from view_factors import parallel
 
 import radiosity as rd
-from radiosity.deterministic.factors import exchange, matrix
+from radiosity.deterministic.factors import exchange
 from radiosity.deterministic.factors.matrix import exact
 from radiosity.engine.device import choose
 from radiosity.engine.geometry import Geometry
 from radiosity.engine.matrix.balance import restored
 from radiosity.engine.matrix.missed import missed
-from radiosity.errors import MethodError
 from radiosity.scene.shapes import quad
 
 
@@ -76,8 +75,3 @@ def test_shares_that_escape_and_are_lost():
     single, _ = missed(geometry_of(scene.take(np.array([0])), 1), 1)
     assert single.tolist() == [1]
 
-
-def test_too_many_pairs_are_refused_before_any_work(monkeypatch):
-    monkeypatch.setattr(matrix, "LIMIT", 100)
-    with pytest.raises(MethodError, match="form factors of 54 patches"):
-        exact(geometry_of(cube(), 3))

@@ -60,8 +60,8 @@ def free_memory() -> float:
         return np.inf
 
 
-def full_matrix(rows: AbstractRows, n: int, replicates: int) -> Estimate:
-    """Of n patches; the time from a few rows that are made and thrown away, twice, since the first time compiles kernels."""
+def full_matrix(rows: AbstractRows, n: int, times: float) -> Estimate:
+    """Of n patches, so many times all rows; the time from a few rows that are made and thrown away, twice, since the first time compiles kernels."""
     factors = float(n) * n
     what = f"the matrix of {n} patches ({factors:.2g} form factors)"
     way_out = "take larger patches, or a method that forms no matrix, such as random-walk"
@@ -74,7 +74,7 @@ def full_matrix(rows: AbstractRows, n: int, replicates: int) -> Estimate:
         begun = time.perf_counter()
         rows.make(some, 0, lambda lines: None)
         seconds = time.perf_counter() - begun
-    return Estimate(memory, seconds / len(some) * n * replicates, what, way_out)
+    return Estimate(memory, seconds / len(some) * n * times, what, way_out)
 
 
 def progressive(n: int) -> Estimate:

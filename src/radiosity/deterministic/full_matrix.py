@@ -12,9 +12,8 @@ from ..engine.matrix.factors import Factors
 from ..engine.process import AbstractProcess, State, Swept
 from ..errors import MethodError
 from . import estimate, solvers
-from .polygon_rows import PolygonRows
+from .factors.matrix import exact
 from .rows import rows_for
-from .symmetric_pairs import symmetric_pairs
 from .tally import SolvedTally
 
 
@@ -24,7 +23,8 @@ class FullMatrix(AbstractProcess):
     def __init__(self, *arguments):
         super().__init__(*arguments)
         self.rows = rows_for(self.geometry, self.problem, self.method, self.seed, self.replicates)
-        estimate.full_matrix(self.rows, len(self.problem.patches), self.replicates).check()
+        halves = 2 if self.method.factors == "polygons" else 1
+        estimate.full_matrix(self.rows, len(self.problem.patches), self.replicates / halves).check()
         self.n, self.lines, self.solved = len(self.problem.patches), 0, []
 
     @property
@@ -40,12 +40,15 @@ class FullMatrix(AbstractProcess):
             self.solved.append(self._solve(self._matrix(len(self.solved), swept)))
 
     def _matrix(self, replicate: int, swept: Swept) -> Factors:
-        if isinstance(self.rows, PolygonRows) and self.rows.symmetric:
-            made, lines = symmetric_pairs(self.rows, self.n, replicate, swept)
+        def counted(lines: int) -> None:
+            self.lines += lines
+            swept(lines)
+
+        if self.method.factors == "polygons":  # each pair once
+            seed = self.seed + (replicate << 32)
+            made = exact(self.geometry, self.method.lines_of_pair, seed, swept=counted)
         else:
-            rows = self.rows.make(np.arange(self.n), replicate, swept)
-            made, lines = rows.factors, rows.lines
-        self.lines += lines
+            made = self.rows.make(np.arange(self.n), replicate, counted).factors
         area = self.problem.patches.area
         if self.method.reciprocal:
             if self.geometry.some_backs_pass:

@@ -55,6 +55,7 @@ def solve(system: System) -> Solved:
             if history and history[-1] <= system.enough:
                 break
         radiosity[shiny, band] = x
+        history.append(_relative(system, radiosity[:, [band]], band))
         histories.append(history)
     longest = max(map(len, histories), default=0)
     padded = [h + h[-1:] * (longest - len(h)) if h else [0.0] * longest for h in histories]
