@@ -1,1 +1,1 @@
-"""The baselines: radiosity methods that do form the matrix, or a hierarchy of it."""
+"""The baselines: radiosity methods that do form the matrix, or that compute its entries one by one."""
