@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from enclosures import cube, sphere
+from view_factors import parallel
 
 import radiosity as rd
 from radiosity.engine.device import choose
@@ -48,14 +49,6 @@ def test_triangles_of_a_sphere_see_each_other_whole():
     assert (share[apart] < 1).sum() <= 1
     assert share[apart].min() > 0.9
     assert (share[~apart] == 0).all()
-
-
-def parallel(a: float, b: float) -> float:
-    """A F of equal opposed rectangles a x b at unit distance (Howell C-11)."""
-    x, y = 1 + a * a, 1 + b * b
-    total = np.log(np.sqrt(x * y / (1 + a * a + b * b))) - a * np.arctan(a) - b * np.arctan(b)
-    total += a * np.sqrt(y) * np.arctan(a / np.sqrt(y)) + b * np.sqrt(x) * np.arctan(b / np.sqrt(x))
-    return 2 / np.pi * total
 
 
 def divided(back=rd.Back.ABSORBS) -> rd.Scene:

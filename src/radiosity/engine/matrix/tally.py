@@ -9,14 +9,15 @@ from ...solution.books import by_difference
 from ..problem import Problem
 from ..process import AbstractTally, State
 from .counts import WORD, split
-from .solve import Factors, irradiance, of_both_ways, of_rows
+from .factors import Factors
+from .solve import irradiance, of_both_ways, of_rows
 
 
 class MatrixTally(AbstractTally):
     """Reads counts; the last state's results are kept, since they are asked for more than once.
 
     Attributes:
-        both_ways: use each line at both its ends, see `matrix_solve.of_both_ways`.
+        both_ways: use each line at both its ends, see `solve.of_both_ways`.
         directed: patches do not see what sees them, see `Factors.sent`.
     """
 

@@ -1,0 +1,59 @@
+"""Exact exchange areas of pairs of convex polygons with nothing between them."""
+
+import numpy as np
+
+from .areas import over_both
+from .clipping import ROUNDING, heights, in_front, normal_of
+from .contour import around
+
+FAR = 10.0  # distance of middles over the sum of the radii, 5e-8 on both sides: farther off areas are integrated, else rims
+CHUNK = 1 << 13  # pairs at a time: about 100 MB
+
+
+def exchange(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(m,) float64, A_i F_ij = A_j F_ji in m², for m pairs of convex polygons as if nothing else were there.
+
+    Parts behind the other's plane are cut away first; polygons behind each other, or in one plane, give exactly zero. Neither
+    place nor size matters.
+
+    Args:
+        one, other: (m, 4, 3) float64, metres, corners counterclockwise seen from the radiating side; triangles repeat their last.
+    """
+    one, other = (np.asarray(x, np.float64).reshape(-1, 4, 3) for x in (one, other))
+    parts = [_chunk(one[at : at + CHUNK], other[at : at + CHUNK]) for at in range(0, len(one), CHUNK)]
+    return np.concatenate(parts) if parts else np.zeros(0)
+
+
+def _chunk(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    rounding = ROUNDING * np.maximum(np.abs(one).max(axis=(1, 2)), np.abs(other).max(axis=(1, 2)))
+    centre = (one.mean(axis=1, keepdims=True) + other.mean(axis=1, keepdims=True)) / 2
+    one, other = one - centre, other - centre
+    size = np.maximum(np.linalg.norm(one, axis=2).max(axis=1), np.linalg.norm(other, axis=2).max(axis=1))
+    size = np.maximum(size, np.finfo(np.float64).tiny)
+    one, other, rounding = one / size[:, None, None], other / size[:, None, None], rounding / size
+    above = heights(one, other.mean(axis=1), normal_of(other), rounding)
+    below = heights(other, one.mean(axis=1), normal_of(one), rounding)
+    faces = np.flatnonzero((above > 0).any(axis=1) & (below > 0).any(axis=1))
+    result = np.zeros(len(one))
+    result[faces] = _facing(one[faces], other[faces], above[faces], below[faces]) * size[faces] ** 2
+    return result
+
+
+def _facing(one: np.ndarray, other: np.ndarray, above: np.ndarray, below: np.ndarray) -> np.ndarray:
+    """(m,) of polygons of which some parts see each other; lengths about 1."""
+    cut = np.any(above < 0, axis=1) | np.any(below < 0, axis=1)
+    result = np.empty(len(one))
+    for rows in (np.flatnonzero(~cut), np.flatnonzero(cut)):
+        a, b = one[rows], other[rows]
+        if len(rows) and cut[rows[0]]:
+            a, b = in_front(a, above[rows]), in_front(b, below[rows])
+        middles, radii = zip(*((p.mean(axis=1), _radius(p)) for p in (a, b)), strict=True)
+        far = np.linalg.norm(middles[1] - middles[0], axis=1) > FAR * (radii[0] + radii[1])
+        for some, integral in ((np.flatnonzero(far), over_both), (np.flatnonzero(~far), around)):
+            if len(some):
+                result[rows[some]] = integral(a[some], b[some])
+    return np.maximum(result, 0)  # what is left of nearly coplanar polygons is rounding of either sign
+
+
+def _radius(polygons: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(polygons - polygons.mean(axis=1, keepdims=True), axis=2).max(axis=1)

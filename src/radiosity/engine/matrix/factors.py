@@ -1,0 +1,37 @@
+"""Sparse form factors."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Factors:
+    """Sparse form factors of one replicate.
+
+    Attributes:
+        rows, columns: (m,) int64, patches.
+        values: (m,) float64, F_ij: share of what leaves patch ``rows`` that arrives at patch ``columns``.
+        escaped, lost: (n,) float64, share of what leaves a patch that leaves the scene, or lands on absorbing backs.
+    """
+
+    rows: np.ndarray
+    columns: np.ndarray
+    values: np.ndarray
+    escaped: np.ndarray
+    lost: np.ndarray
+
+    def sent(self, area: np.ndarray) -> "Factors":
+        """As `gather` has to have them where light goes by the lines' own directions: A_i F_ij / A_j in place of F_ji. Backs that
+        let lines pass make the two different."""
+        values = self.values * area[self.rows] / area[self.columns]
+        return Factors(self.columns, self.rows, values, self.escaped, self.lost)
+
+    def gather(self, radiosity: np.ndarray) -> np.ndarray:
+        """(n,) irradiance, sum_j F_ij B_j."""
+        return np.bincount(self.rows, weights=self.values * radiosity[self.columns], minlength=len(radiosity))
+
+    def dense(self) -> np.ndarray:
+        """(n, n) float64, F_ij in row i."""
+        n = len(self.escaped)
+        return np.bincount(self.rows * n + self.columns, weights=self.values, minlength=n * n).reshape(n, n)
