@@ -51,6 +51,7 @@ def test_leaves_are_the_patches(cut):
     np.testing.assert_allclose(elements.area(tree, leaves), patches.area, rtol=1e-12)
     np.testing.assert_allclose(elements.normal(tree, leaves), patches.normal, atol=1e-12)
     np.testing.assert_allclose(elements.centroid(tree, leaves), patches.centroid, atol=1e-12)
+    np.testing.assert_allclose(elements.corners(tree, leaves), patches.corners, atol=1e-12)
 
 
 @settings(max_examples=40)

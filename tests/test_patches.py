@@ -94,7 +94,8 @@ def test_patches_cover_their_faces(scene, cut):
     cross = np.cross(c - a, d - b) / 2  # vector area of a quadrilateral, also where two corners are one
     np.testing.assert_allclose(cross, patches.area[:, None] * patches.normal, atol=1e-12 * scene.area.max())
     distinct = np.where(scene.is_quad[patches.face], 4, 3)[:, None]
-    twice = np.where(distinct == 3, c, 0)  # a triangle's repeated corner, from either side
+    twice = np.where(distinct == 3, d, 0)  # a triangle's repeated corner, its last from either side
+    assert np.array_equal((c == d).all(axis=1), distinct[:, 0] == 3)
     np.testing.assert_allclose(patches.centroid, (a + b + c + d - twice) / distinct, atol=1e-12 * np.abs(scene.bounds).max())
 
 

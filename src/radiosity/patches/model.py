@@ -62,13 +62,15 @@ class Patches:
 
     @property
     def corners(self) -> np.ndarray:
-        """(n_patches, 4, 3) float64, metres, counterclockwise seen from the patch's own side; a triangle repeats one."""
+        """(n_patches, 4, 3) float64, metres, counterclockwise seen from the patch's own side; a triangle repeats its
+        last one."""
         face = self.face
         uv = cells.corners(*self.place, self.columns[face], self.rows[face], self.scene.is_quad[face])
         origin, first, second = (edge[face][:, None, :] for edge in self.scene.frames)
         points = origin + uv[:, :, :1] * first + uv[:, :, 1:] * second
         back = self.is_back
-        points[back] = points[back][:, [0, 3, 2, 1]]
+        turned = np.where(self.scene.is_quad[face[back], None], [0, 3, 2, 1], [0, 2, 1, 1])
+        points[back] = np.take_along_axis(points[back], turned[:, :, None], axis=1)
         return points
 
     @cached_property

@@ -26,7 +26,7 @@ class Hierarchical:
         MethodError: values without sense.
     """
 
-    epsilon: float = 1e-4
+    epsilon: float = 1e-5
     refinement: str = "brightness-factor"
     rays: int = 16
     coarsest: float = 64.0
