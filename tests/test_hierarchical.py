@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity.deterministic.factors import from_points
 from radiosity.deterministic.hierarchical import REFINEMENTS, Hierarchical, roots, solve_hierarchical
 from radiosity.deterministic.hierarchical import refine as refining
 from radiosity.deterministic.hierarchical.exchange import Exchange
 from radiosity.deterministic.hierarchical.kernel import Shapes, unoccluded
 from radiosity.deterministic.hierarchical.levels import Levels
-from radiosity.deterministic.point_polygon import from_points
 from radiosity.patches import Hierarchy, elements
 
 MIXED = rd.Scene.from_arrays(

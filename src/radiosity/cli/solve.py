@@ -106,7 +106,7 @@ def solve(
     overshooting
         Of progressive refinement: shoot a part of the light that is still to come, too.
     epsilon
-        Of hierarchical radiosity: the largest error of a link, relative to the brightest emission, such as 1% or 0.01.
+        Of hierarchical radiosity: up to what a link is left as it is, relative to what the scene emits, such as 1e-5.
     refinement
         Of hierarchical radiosity: brightness-factor, error-radiance, error-power.
     patch_size

@@ -61,7 +61,8 @@ def free_memory() -> float:
 
 
 def full_matrix(rows: AbstractRows, n: int, times: float) -> Estimate:
-    """Of n patches, so many times all rows; the time from a few rows that are made and thrown away, twice, since the first time compiles kernels."""
+    """Of n patches, so many times all rows; the time from a few rows that are made and thrown away, twice, since the first time
+    compiles kernels."""
     factors = float(n) * n
     what = f"the matrix of {n} patches ({factors:.2g} form factors)"
     way_out = "take larger patches, or a method that forms no matrix, such as random-walk"

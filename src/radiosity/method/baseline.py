@@ -46,7 +46,7 @@ class Baseline:
         samples: lines of a pair of patches or elements (polygons, links), or of a patch (lines); None: 16, or 4096.
         ambient: progressive: add an estimate of the light not shot yet, the same on all patches.
         overshooting: progressive: shoot a part of the light that is still to come, too.
-        epsilon: hierarchical: the largest error of a link, relative to the brightest emission; see docs/hierarchical.md.
+        epsilon: hierarchical: up to what a link is left as it is, relative to what the scene emits; see docs/hierarchical.md.
         refinement: hierarchical: which links are cut.
 
     Raises:
@@ -62,7 +62,7 @@ class Baseline:
     samples: int | None = None
     ambient: bool = False
     overshooting: bool = False
-    epsilon: float = 0.01
+    epsilon: float = 1e-5
     refinement: str = "brightness-factor"
 
     def __post_init__(self):

@@ -1,54 +1,43 @@
-"""The form factor from a point to a polygon, exactly (J. H. Lambert, "Photometria", 1760; e.g. D. R. Baum, H. E. Rushmeier and
-J. M. Winget, "Improving radiosity solutions through the use of analytically determined form-factors", SIGGRAPH 1989)."""
+"""The share of what leaves a point that arrives at a polygon, without obstacles: exact, horizon included.
+
+J. H. Lambert, "Photometria", 1760: F = 1/(2 pi) sum over edges of n . g_i, with g_i of the angle's size under which the edge is
+seen, at right angles to the triangle of the point and the edge. What lies below the point's horizon is cut off.
+"""
 
 import numpy as np
 
-from .clipping import ROUNDING, heights, in_front, normal_of
-
-FAR = 1e4  # distance over radius: beyond it one point stands for the polygon (error 1e-8), below it sums of angles keep 8 digits
-CHUNK = 1 << 16
-
 
 def from_points(points: np.ndarray, normals: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(m,) float64 in [0, 1]: share of what leaves a point that arrives at a polygon, for m pairs, as if nothing else were there.
-
-    1 / (2 pi) times the sum over edges of the angle under which each is seen, times the cosine between the normal and that of the
-    triangle from the point to the edge. What lies below the point's horizon is cut away; from behind polygons give exactly zero.
+    """Form factors from m points to a polygon each.
 
     Args:
-        points, normals: (m, 3), metres and unit vectors.
-        corners: (m, 4, 3), metres, counterclockwise seen from the radiating side; triangles repeat their last one.
+        points: (m, 3) metres, not on the polygon's rim.
+        normals: (m, 3) unit normals of the points' surfaces.
+        corners: (m, 4, 3) metres, convex, counterclockwise seen from the polygon's radiating side; a triangle repeats one.
+
+    Returns:
+        (m,) float64 in [0, 1]; zero for points behind the polygon.
     """
-    points, normals = (np.asarray(x, np.float64).reshape(-1, 3) for x in (points, normals))
-    corners = np.asarray(corners, np.float64).reshape(-1, 4, 3)
-    rows = [slice(at, at + CHUNK) for at in range(0, len(points), CHUNK)]
-    parts = [_chunk(points[r], normals[r], corners[r]) for r in rows]
-    return np.concatenate(parts) if parts else np.zeros(0)
+    to = corners - points[:, None, :]
+    height = np.einsum("mki,mi->mk", to, normals)
+    above = height > 0
+    following, next_above = np.roll(to, -1, axis=1), np.roll(above, -1, axis=1)
+    fall = height - np.roll(height, -1, axis=1)
+    crossing = above != next_above
+    share = np.where(crossing, height / np.where(crossing, fall, 1), 0)[:, :, None]
+    cut = to + share * (following - to)  # where an edge meets the horizon
+    start, end = np.where(above[:, :, None], to, cut), np.where(next_above[:, :, None], following, cut)
+    total = _edge(start, end, normals, above | next_above).sum(axis=1)
+    # a polygon that is cut off goes on along the horizon, from where it sets to where it rises again
+    sets, rises = ((cut * mask[:, :, None]).sum(axis=1) for mask in (crossing & above, crossing & next_above))
+    total += _edge(sets[:, None], rises[:, None], normals, crossing.any(axis=1)[:, None])[:, 0]
+    return np.clip(total / -(2 * np.pi), 0, 1) + 0.0  # no -0
 
 
-def _chunk(points: np.ndarray, normals: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    rounding = ROUNDING * np.maximum(np.abs(points).max(axis=1), np.abs(corners).max(axis=(1, 2)))
-    rim, origin = corners - points[:, None, :], np.zeros_like(points)
-    area = normal_of(rim)
-    above = heights(rim, origin, normals, rounding)
-    seen = heights(origin[:, None, :], rim.mean(axis=1), area, rounding)[:, 0] > 0
-    cut = in_front(rim, above)
-    middle = cut.mean(axis=1)
-    distance = np.linalg.norm(middle, axis=1)
-    far = distance > FAR * np.linalg.norm(cut - middle[:, None, :], axis=2).max(axis=1)
-    result = np.where(far, _one_point(middle, normal_of(cut), normals), _angles(cut, normals))
-    return np.where(seen & (above > 0).any(axis=1), np.clip(result, 0, 1), 0)
-
-
-def _angles(rim: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    following = np.roll(rim, -1, axis=1)
-    cross = np.cross(following, rim)  # polygons are seen clockwise from the side that they do not radiate to
+def _edge(start: np.ndarray, end: np.ndarray, normals: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """(m, k): n . g of edges between vectors from the point, (m, k, 3) each; zero where masked out or seen end on."""
+    cross = np.cross(start, end)
     sine = np.linalg.norm(cross, axis=2)
-    angle = np.arctan2(sine, np.einsum("mkx,mkx->mk", rim, following))
-    cosine = np.einsum("mkx,mx->mk", cross, normals) / np.where(sine > 0, sine, 1)
-    return (angle * cosine).sum(axis=1) / (2 * np.pi)
-
-
-def _one_point(way: np.ndarray, area: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    square = np.maximum((way**2).sum(axis=1), np.finfo(np.float64).tiny)
-    return (way * normals).sum(axis=1) * -(way * area).sum(axis=1) / (np.pi * square * square)
+    angle = np.arctan2(sine, np.einsum("mki,mki->mk", start, end))
+    seen = mask & (sine > 0)
+    return np.where(seen, angle / np.where(seen, sine, 1) * np.einsum("mki,mi->mk", cross, normals), 0)

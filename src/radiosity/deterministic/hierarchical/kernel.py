@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...patches import Hierarchy, elements
-from ..point_polygon import from_points
+from ..factors import from_points
 from .quadrature import extremes, gauss
 
 NEAR, FAR = 3, 2  # points each way

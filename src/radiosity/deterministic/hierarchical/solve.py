@@ -1,36 +1,18 @@
-"""Hierarchical radiosity: refine, solve, and refine for the solution found, with smaller and smaller epsilon."""
+"""Hierarchical radiosity from begin to end, and what it found."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...engine.geometry import Geometry
-from ...patches import Hierarchy, Patches
+from ...patches import Patches
 from .exchange import Exchange
 from .levels import Levels
 from .links import Links
-from .making import Maker, Told
-from .oracle import Oracle, Radiosity
+from .making import Told
+from .oracle import Radiosity
 from .parameters import Hierarchical
-from .refine import refined
-from .roots import root_pairs
-
-ROUGH = 1e-3  # tolerance of solutions that links are refined for
-
-
-@dataclass(frozen=True)
-class Pass:
-    """One solution with given links.
-
-    Attributes:
-        epsilon: of its links.
-        links: how many.
-        change: the largest change of a radiosity since the pass before, over the largest radiosity of its band.
-    """
-
-    epsilon: float
-    links: int
-    change: float
+from .rounds import ROUGH, Pass, Rounds
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,40 +58,21 @@ def solve_hierarchical(
         SceneError: patches that are no leaves of a hierarchy.
         MethodError: more links than there is room for.
     """
-    parameters = parameters or Hierarchical()
-    hierarchy = Hierarchy(patches)
-    levels = Levels(hierarchy)
-    oracle = Oracle(levels, parameters)
-    maker = Maker(geometry if parameters.rays else None, hierarchy, parameters, told)
-    links = Links.joined([maker.make(*root_pairs(hierarchy))])
-    emission, reflectance = patches.emission, patches.reflectance
-    irradiance, history = np.zeros_like(emission), []
-    for epsilon in parameters.rounds:
-        new = True
-        while new:
-            before = emission + reflectance * irradiance
-            links, new = refined(links, oracle, maker, Radiosity.of(levels, before), epsilon)
-            if new or not history:
-                irradiance = Exchange(levels, links).solve(emission, reflectance, irradiance, ROUGH, told)
-                change = _change(before, emission + reflectance * irradiance)
-                history.append(Pass(epsilon, len(links), change))
-    exchange = Exchange(levels, links)
-    irradiance = exchange.solve(emission, reflectance, irradiance, parameters.tolerance, told)
-    radiosity = emission + reflectance * irradiance
+    rounds = Rounds(patches, geometry, parameters or Hierarchical(), told)
+    while not rounds.done:
+        rounds.advance()
+    levels, links, irradiance, oracle = rounds.levels, rounds.links, rounds.irradiance, rounds.oracle
+    reflectance = patches.reflectance
+    radiosity = patches.emission + reflectance * irradiance
     indicated = np.full_like(radiosity, np.nan)
     if oracle.by_error:
         here, there = oracle.parts(links, Radiosity.of(levels, radiosity))
         own = _delta(levels, links, here + there)
-        indicated = own + exchange.solve(reflectance * own, reflectance, np.zeros_like(own), ROUGH, told)
+        indicated = own + Exchange(levels, links).solve(reflectance * own, reflectance, np.zeros_like(own), ROUGH, told)
     return HierarchicalResult(
         irradiance, radiosity, indicated, len(links), int((links.factor == 0).sum()), _elements(levels, links),
-        maker.pairs, maker.rays, tuple(history), links,
+        rounds.maker.pairs, rounds.maker.rays, tuple(rounds.history), links,
     )  # fmt: skip
-
-
-def _change(before: np.ndarray, after: np.ndarray) -> float:
-    largest = after.max(axis=0)
-    return float((np.abs(after - before).max(axis=0) / np.where(largest > 0, largest, 1)).max())
 
 
 def _delta(levels: Levels, links: Links, errors: np.ndarray) -> np.ndarray:
