@@ -1,6 +1,7 @@
 """States of processes, for the suite of the orders: after stages, interrupted or not.
 
-A method runs on a small open scene in two bands, or in grey where it says that it cannot carry bands.
+A method runs on a small open scene whose faces radiate on both sides in two bands; or, where it says that it cannot carry bands,
+on one in grey with absorbing backs.
 """
 
 import io
@@ -34,7 +35,7 @@ def coloured() -> tuple[Geometry, Problem]:
     reflectance = np.column_stack([scene.reflectance[:, 0], scene.reflectance[::-1, 0] / 2])
     tinted = rd.Scene.from_arrays(
         scene.vertices, scene.faces, reflectance, scene.emission * [[1.0, 0.5]], surface=scene.surface, names=scene.names,
-        bands=["one", "other"],
+        bands=["one", "other"], two_sided=True, back_reflectance=0.4, back_emission=np.zeros((1, 2)),
     )  # fmt: skip
     patches = rd.subdivide(tinted, cells=2)
     return Geometry(patches, choose("cpu")), Problem.of(patches)
