@@ -15,6 +15,15 @@ def cube(reflectance=0.5, emission=1.0, n_bands=1) -> rd.Scene:
     )
 
 
+def cube_irradiance(reflectance: np.ndarray, emission: np.ndarray) -> np.ndarray:
+    """(6,) irradiance of the walls of `cube`, each one patch: the equation of the patches, with exact form factors."""
+    opposite = parallel_squares()[1]
+    factors = np.full((6, 6), (1 - opposite) / 4)
+    factors[np.arange(6), np.arange(6)] = 0.0
+    factors[np.arange(6), np.arange(6) ^ 1] = opposite
+    return factors @ np.linalg.solve(np.eye(6) - reflectance[:, None] * factors, emission)
+
+
 def sphere(reflectance: float, emission: float, subdivisions: int = 3) -> rd.Scene:
     """An icosphere seen from inside."""
     golden = (1 + 5**0.5) / 2

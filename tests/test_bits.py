@@ -1,4 +1,4 @@
-"""Contract 2: order, threads and stages do not change a single integer; the seed does."""
+"""Contract 2: the order does not change a single integer; the seed does. (Threads and stages: `test_axis_order.py`.)"""
 
 import numpy as np
 import pytest
@@ -30,43 +30,6 @@ def equal(one, two):
 @pytest.mark.parametrize("numbers", ["halton", "random"])
 def test_orders_end_in_equal_integers(patches, numbers):
     assert equal(counters(patches, numbers=numbers), counters(patches, numbers=numbers, order="depth-first"))
-
-
-def test_threads_do_not_matter(patches):
-    import drjit as dr
-
-    before = dr.thread_count()
-    results = []
-    try:
-        for threads in (1, 2):
-            dr.set_thread_count(threads)
-            results += [counters(patches), counters(patches, order="depth-first")]
-    finally:
-        dr.set_thread_count(before)
-    assert all(equal(results[0], other) for other in results[1:])
-
-
-@pytest.mark.parametrize("order", ["breadth-first", "depth-first"])
-def test_any_sequence_of_stages_equals_one_shot(patches, order):
-    from radiosity.engine.device import choose
-    from radiosity.engine.firing import Engine
-    from radiosity.engine.geometry import Geometry
-    from radiosity.method.order import run
-
-    geometry = Geometry(patches, choose("cpu"))
-    source = Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0])
-
-    def staged(stages):
-        engine = Engine(geometry, source, rd.Method(order=order), 5, 3)
-        for quanta in stages:
-            engine.set_quanta(quanta)
-            run(order, engine, lambda count: None)
-        return engine.counters()
-
-    one = staged([QUANTA])
-    assert equal(one, counters(patches))
-    assert equal(one, staged([1, 7, 1_000, 1_001, 20_000, QUANTA]))
-    assert equal(one, staged([QUANTA // 2, QUANTA // 2, QUANTA]))
 
 
 def test_seed_matters_and_replicates_do_not(patches):

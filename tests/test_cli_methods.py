@@ -10,18 +10,18 @@ def test_the_list_names_every_method(capsys):
     assert run(["methods"]) == 0
     out = capsys.readouterr().out
     rows = [line.split() for line in out.splitlines()]
-    assert {row[0] for row in rows if row} >= set(rd.PRESETS)
+    assert {row[0] for row in rows if row} >= set(rd.PRESETS | rd.BASELINES)
     assert next(row for row in rows if row and row[0] == "qmc-radiosity")[1:6] == [
         "continuous", "local", "breadth-first", "halton", "fractional",
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", rd.PRESETS)
+@pytest.mark.parametrize("name", rd.PRESETS | rd.BASELINES)
 def test_a_method_is_explained(name, capsys):
     assert run(["methods", name]) == 0
     out = capsys.readouterr().out
-    assert out.startswith(f"{name}: {rd.PRESETS[name].method}")
-    assert rd.PRESETS[name].source.bibtex in out
+    assert out.startswith(f"{name}: {(rd.PRESETS | rd.BASELINES)[name].method}")
+    assert (rd.PRESETS | rd.BASELINES)[name].source.bibtex in out
 
 
 @pytest.mark.parametrize("axis", ["equation", "lines", "order", "numbers"])

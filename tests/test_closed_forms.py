@@ -78,22 +78,3 @@ def test_exact_form_factors(case, cells, numbers):
     assert abs(share.mean() - exact) < SIGMAS * error
     assert error < 4e-3 * exact  # the discs' symmetric patches share one sequence, hence one error
     assert solution.escaped[0] == pytest.approx((1 - share.mean()) * patches.area[~receiver].sum(), rel=1e-3)
-
-
-def test_a_wrong_line_is_rejected(monkeypatch):
-    """Lines that are uniform over the hemisphere, not cosine distributed, fail the same comparison."""
-    import drjit as dr
-
-    from radiosity.engine import departure
-
-    def uniform(first, second):
-        sine = dr.sqrt(1 - second * second)
-        y, x = dr.sincos(first * (2 * np.pi))
-        return x * sine, y * sine, second
-
-    monkeypatch.setattr(departure, "hemisphere", uniform)
-    scene, exact = parallel_squares()
-    patches = rd.subdivide(scene, cells=3)
-    solution = rd.solve(patches, rays=200_000, replicates=16)
-    share = solution.state["arrivals"][:, patches.surface == 1].sum(axis=1) / solution.quanta
-    assert abs(share.mean() - exact) > 2 * SIGMAS * share.std(ddof=1) / 4

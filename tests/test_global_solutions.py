@@ -1,4 +1,4 @@
-"""Solutions by global lines: furnaces, comparison with the firing engine, books, stages, interruption.
+"""Solutions by global lines: furnaces, comparison with the firing engine, books, exchange in whole numbers.
 
 Bounds are in standard errors that replicates state, with fixed seeds: SIGMAS for a mean (Student, 15 degrees of freedom:
 p = 4e-4, about 40 comparisons), LARGEST for the largest of some hundred patches.
@@ -16,7 +16,6 @@ from radiosity.engine.global_lines.exchange import Exchange
 from radiosity.engine.global_lines.mixing import Mixed
 from radiosity.engine.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
 from radiosity.engine.problem import Problem
-from radiosity.engine.process import make
 from radiosity.scene.shapes import quad
 
 SIGMAS, LARGEST = 4.5, 6.5
@@ -138,59 +137,6 @@ def test_multipath_books_close_to_the_last_unit():
         for book in rd.solve(rd.subdivide(scene, cells=2), rd.Method(lines="global", order="multipath"), rays=200_000).books:
             assert book["closes"] is True
             assert abs(book["rounding"]) < 0.05 * book["emitted"]
-
-
-@some
-def test_same_bits_however_often_interrupted(method):
-    """A run that is stopped between two looks at the clock, anywhere, ends as one that was not."""
-    patches = rd.subdivide(opening(), cells=1)
-    problem, geometry = Problem.of(patches), Geometry(patches, choose("cpu"))
-
-    class Stopped(Exception):
-        pass
-
-    def stop(lines):
-        raise Stopped
-
-    whole = make(geometry, problem, method, 3, 2)
-    for quanta in (2048, 6000):
-        whole.advance(quanta, lambda lines: None)
-    parts = make(geometry, problem, method, 3, 2)
-    for quanta in (2048, 6000):
-        for _ in range(100):
-            try:
-                parts.advance(quanta, stop)
-                break
-            except Stopped:
-                state = parts.capture()
-                parts = make(geometry, problem, method, 3, 2)
-                parts.restore(state)
-        else:
-            pytest.fail("never complete")
-    one, two = whole.capture(), parts.capture()
-    assert set(one) == set(two)
-    for name in one:
-        assert np.array_equal(one[name], two[name]), name
-    assert not whole.unfinished(one)
-
-
-@pytest.mark.parametrize("order", ["multipath", "regular"])
-@pytest.mark.parametrize("lines", KINDS)
-def test_state_depends_on_the_number_of_lines_alone(lines, order):
-    """In one stage or many, without a first shot."""
-    if (lines, order) == ("bundles", "multipath"):
-        return
-    patches = rd.subdivide(opening(), cells=1)
-    problem, geometry = Problem.of(patches), Geometry(patches, choose("cpu"))
-    states = []
-    for stages in ((5000,), (1, 700, 2048, 2049, 5000)):
-        process = make(geometry, problem, rd.Method(lines=lines, order=order), 3, 2)
-        assert process.nested
-        for quanta in stages:
-            process.advance(quanta, lambda lines: None)
-        states.append(process.capture())
-    for name, values in states[0].items():
-        assert values == pytest.approx(states[1][name], rel=1e-12), name
 
 
 def test_mixed_order_holds_the_same_spans():

@@ -1,4 +1,4 @@
-"""Sums of iterations do not depend on threads, and interrupted runs go on to the bits of one run."""
+"""Interrupted runs by iterations go on to the bits of one run, from one file to the next."""
 
 import os
 import signal
@@ -44,68 +44,9 @@ def stopped(patches, method, folder, **budget) -> rd.Solution:
 
 
 @pytest.mark.parametrize("name", VARIANTS)
-def test_threads_do_not_matter(patches, name):
-    import drjit as dr
-
-    before, results = dr.thread_count(), []
-    try:
-        for threads in (1, 2):
-            dr.set_thread_count(threads)
-            results.append(rd.solve(patches, rd.Method(**VARIANTS[name]), quanta=20_000, replicates=3))
-    finally:
-        dr.set_thread_count(before)
-    assert same(*results)
-
-
-@pytest.mark.parametrize("name", VARIANTS)
 def test_an_interrupted_run_goes_on_to_the_same_bits(patches, name, tmp_path):
     method, budget = rd.Method(**VARIANTS[name]), {"quanta": 1_200_000, "replicates": 2}
     assert same(stopped(patches, method, tmp_path, **budget), rd.solve(patches, method, **budget))
-
-
-def test_a_warm_up_may_be_interrupted(patches):
-    """The first stage of a run gives nothing back when it is interrupted; its state can be restored all the same."""
-    from radiosity.engine.device import choose
-    from radiosity.engine.geometry import Geometry
-    from radiosity.engine.problem import Problem
-    from radiosity.engine.process import make
-    from radiosity.engine.progress import Interrupted
-
-    geometry, problem = Geometry(patches, choose("cpu")), Problem.of(patches)
-    arguments = geometry, problem, rd.Method(**VARIANTS["regular, everything"]), 4, 2
-
-    def stop(after):
-        calls = []
-
-        def swept(lines):
-            calls.append(lines)
-            if len(calls) == after:
-                raise Interrupted("test")
-
-        return swept
-
-    whole = make(*arguments)
-    whole.advance(30_000, lambda lines: None)
-    for after in (1, 2, 4, 12):
-        begun, state = make(*arguments), {}
-        with pytest.raises(Interrupted):
-            begun.advance(30_000, stop(after))
-        state = begun.capture()
-        assert begun.unfinished(state)
-        other = make(*arguments)
-        other.restore(state)
-        other.advance(other.quanta, lambda lines: None)
-        expected, found = whole.capture(), other.capture()
-        assert set(expected) == set(found)
-        assert all(np.array_equal(expected[key], found[key]) for key in expected)
-
-
-def test_replicates_do_not_depend_on_their_number(patches):
-    for name in ("incremental", "regular, control variate"):
-        three, one = (rd.solve(patches, rd.Method(**VARIANTS[name]), quanta=5_000, replicates=r).state for r in (3, 1))
-        assert np.array_equal(three["fired"][0], one["fired"][0])
-        assert np.array_equal(three["arrivals"][0], one["arrivals"][0])
-        assert not np.array_equal(three["arrivals"][0], three["arrivals"][1])
 
 
 def test_going_on_needs_the_counters(patches):

@@ -6,7 +6,7 @@ about 1 % for a false alarm, and seeds are fixed.
 
 import numpy as np
 import pytest
-from enclosures import coaxial_discs, cube, parallel_squares, perpendicular_squares, sphere_in_box
+from enclosures import coaxial_discs, cube, sphere_in_box
 from iterations import open_room
 from replicates import difference, powers
 
@@ -19,30 +19,17 @@ LINES = ("local", "global", "global-disc", "spans", "bundles")
 GLOBAL = LINES[1:]
 
 
-@pytest.mark.parametrize("case", [parallel_squares, perpendicular_squares])
-@pytest.mark.parametrize("lines", LINES)
-@pytest.mark.parametrize("numbers", ["halton", "random"])
-def test_exact_form_factors(case, lines, numbers):
-    scene, exact = case()
-    patches = rd.subdivide(scene, cells=3)
-    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines, numbers=numbers), rays=1_000_000, replicates=16)
-    factors = form_factors(Problem.of(patches), solution.state, patches.surface, both_ways=lines == "local")
-    error = factors[:, 0, 1].std(ddof=1) / 4
-    assert abs(factors[:, 0, 1].mean() - exact) < 5 * error
-    assert error < 5e-3
-    assert np.allclose(factors.sum(axis=2), 1, atol=1e-12)  # what does not land escapes or is lost
-    assert (factors[:, 0, 0] == 0).all()  # a plane does not see itself
-
-
 @pytest.mark.parametrize("lines", LINES)
 def test_exact_form_factors_of_discs(lines):
     scene, exact = coaxial_discs()
     patches = rd.subdivide(scene, cells=1)
     solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=1_000_000, replicates=16)
-    factors = form_factors(Problem.of(patches), solution.state, patches.surface, both_ways=lines == "local")[:, 0, 1]
-    error = factors.std(ddof=1) / 4
-    assert abs(factors.mean() - exact) < 5 * error
+    factors = form_factors(Problem.of(patches), solution.state, patches.surface, both_ways=lines == "local")
+    error = factors[:, 0, 1].std(ddof=1) / 4
+    assert abs(factors[:, 0, 1].mean() - exact) < 5 * error
     assert error < 0.02 * exact
+    assert np.allclose(factors.sum(axis=2), 1, atol=1e-12)  # what does not land escapes or is lost
+    assert (factors[:, 0, 0] == 0).all()  # a plane does not see itself
 
 
 @pytest.mark.parametrize("lines", LINES)
@@ -116,50 +103,6 @@ def test_colours_share_the_factors():
     z = (together.irradiance - firing.irradiance) / np.hypot(together.irradiance_standard_error, firing.irradiance_standard_error)
     assert np.abs(z).max() < 6.5
     assert 0.7 < np.sqrt(np.mean(z**2)) < 1.4
-
-
-@pytest.mark.parametrize("lines", LINES)
-def test_stages_threads_and_interruptions_do_not_matter(lines, monkeypatch):
-    import drjit as dr
-
-    from radiosity.engine.device import choose
-    from radiosity.engine.geometry import Geometry
-    from radiosity.engine.matrix import process as matrix
-    from radiosity.engine.process import make
-    from radiosity.engine.progress import Interrupted
-
-    patches = rd.subdivide(open_room(), cells=3)
-    arguments = Geometry(patches, choose("cpu")), Problem.of(patches), rd.Method(order="matrix", lines=lines), 4, 2
-    monkeypatch.setattr(matrix, "LAUNCH", 6_000)
-
-    def stop(lines):
-        raise Interrupted("test")
-
-    def same(one, other):
-        assert set(one) == set(other)
-        assert all(np.array_equal(one[key], other[key]) for key in one)
-
-    before, whole = dr.thread_count(), []
-    try:
-        for threads in (1, 2):
-            dr.set_thread_count(threads)
-            whole.append(make(*arguments))
-            whole[-1].advance(20_000, lambda lines: None)
-    finally:
-        dr.set_thread_count(before)
-    same(*(process.capture() for process in whole))
-    staged = make(*arguments)
-    staged.advance(7_000, lambda lines: None)
-    with pytest.raises(Interrupted):
-        staged.advance(20_000, stop)
-    state = staged.capture()
-    assert staged.unfinished(state)
-    resumed = make(*arguments)
-    resumed.restore(state)
-    resumed.advance(resumed.quanta, lambda lines: None)
-    same(whole[0].capture(), resumed.capture())
-    with pytest.raises(rd.MethodError, match="lacks the counts"):
-        make(*arguments).restore({})
 
 
 def test_counts_are_those_of_a_dictionary(random):

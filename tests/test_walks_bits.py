@@ -1,5 +1,5 @@
-"""Walks are functions of seed, replicate, patch and index: sums do not depend on order, threads, stages or interruptions; and the
-two equations are told apart."""
+"""Walks are functions of seed, replicate, patch and index: sums do not depend on order; books; and the two equations are told
+apart."""
 
 from dataclasses import replace
 
@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine.progress import Interrupted
 
 QUANTA = 30_000
 KINDS = {
@@ -41,54 +40,6 @@ def test_orders_end_in_equal_sums(colours, kind):
     ]
     assert equal(solutions[0], solutions[1])
     assert equal(solutions[0], solutions[2])
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_threads_do_not_matter(colours, kind):
-    import drjit as dr
-
-    before, results = dr.thread_count(), []
-    try:
-        for threads in (1, 2):
-            dr.set_thread_count(threads)
-            results.append(rd.solve(colours, KINDS[kind], quanta=QUANTA, replicates=2))
-    finally:
-        dr.set_thread_count(before)
-    assert equal(*results)
-
-
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "fractional"])
-def test_stages_do_not_matter(colours, kind):
-    few = rd.solve(colours, KINDS[kind], quanta=QUANTA // 3, replicates=2)
-    assert equal(rd.solve(colours, KINDS[kind], quanta=QUANTA, replicates=2, resume=few),
-                 rd.solve(colours, KINDS[kind], quanta=QUANTA, replicates=2))  # fmt: skip
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_an_interrupted_stage_goes_on_to_the_same_sums(colours, kind, monkeypatch):
-    """Stopped between two launches of one stage, captured, put back into a new process, and gone on."""
-    from radiosity.engine import lanes
-    from radiosity.engine.device import choose
-    from radiosity.engine.geometry import Geometry
-    from radiosity.engine.problem import Problem
-    from radiosity.engine.process import make
-
-    monkeypatch.setattr(lanes, "CHUNK", 1 << 14)
-    geometry, problem = Geometry(colours, choose("cpu")), Problem.of(colours)
-
-    def stop(lines):
-        raise Interrupted("here")
-
-    first, second, whole = (make(geometry, problem, KINDS[kind], 4, 2) for _ in range(3))
-    with pytest.raises(Interrupted):
-        first.advance(QUANTA, stop)
-    state = {name: np.array(value) for name, value in first.capture().items()}
-    assert first.unfinished(state)
-    second.restore(state)
-    second.advance(QUANTA, lambda lines: None)
-    whole.advance(QUANTA, lambda lines: None)
-    assert not whole.unfinished(whole.capture())
-    assert all(np.array_equal(a, b) for a, b in zip(second.capture().values(), whole.capture().values(), strict=True))
 
 
 def test_books_of_collisions_close_in_whole_numbers(colours):

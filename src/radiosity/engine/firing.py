@@ -74,7 +74,8 @@ class Engine:
             numbers = upload(types.UInt32, _not_alone(numbers[numbers < self.total], self.total))
         else:
             numbers = dr.compress(self.touched)
-            numbers = dr.gather(types.UInt32, numbers, dr.compress(numbers < self.total))  # less the slots behind the patches
+            if dr.width(numbers):  # a stage that was complete has touched nothing
+                numbers = dr.gather(types.UInt32, numbers, dr.compress(numbers < self.total))  # less the slots behind the patches
         if self.landed is None:
             self.touched = dr.opaque(types.Bool, False, self.total + 2 * self.replicates)
         self.everywhere, self.landed = False, None

@@ -104,6 +104,15 @@ class AbstractTally(ABC):
         """Emitted, rounding, absorbed, escaped and lost power of a group, and ``closes`` (see `Solution.books`)."""
 
 
+class AbstractBiasedTally(AbstractTally):
+    """A tally whose values have a bias that it can tell the size of."""
+
+    @abstractmethod
+    def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
+        """(n_patches,) the size of the bias of the values' mean, in the unit of `irradiance`; NaN where unknown. Stated standard
+        errors hold it."""
+
+
 def make(geometry: Geometry, problem: Problem, method: "Method | Baseline", seed: int, replicates: int) -> AbstractProcess:
     """The process that runs a method."""
     geometry.prepare()

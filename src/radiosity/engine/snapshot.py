@@ -6,7 +6,7 @@ import numpy as np
 
 from ..solution.errors import mean_and_error, relative_error
 from .problem import Problem
-from .process import AbstractTally, State
+from .process import AbstractBiasedTally, AbstractTally, State
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +45,8 @@ class Snapshot:
     def _irradiance(self, group: int) -> tuple[np.ndarray, np.ndarray]:
         values, unit = self.tally.irradiance(self.problem, self.state, group)
         mean, error = mean_and_error(values)
+        if isinstance(self.tally, AbstractBiasedTally):
+            error = np.hypot(error, self.tally.bias(self.problem, self.state, group))
         area = self.problem.patches.area
         return mean * (unit / area), error * (unit / area)
 

@@ -70,7 +70,9 @@ class Regions:
         return points @ np.column_stack([first, np.cross(normal, first)])
 
 
-def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.ndarray, *, least: int = 1):
+def weights(
+    regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.ndarray, *, least: int = 1, planes: bool = True
+):
     """(m, n_patches) sparse matrix W: W times power over area of the patches is the estimate at m points, each in the plane of
     the region ``of`` it. Rows sum to one.
 
@@ -79,6 +81,7 @@ def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.n
         points: (m, 3) metres; of: (m,) region numbers.
         least: cells that a kernel reaches at least: 1 about their centres, where a cell larger than the kernel stands alone;
             at vertices `CORNER`, since a plane needs three.
+        planes: fitted; else the kernel's means, whose weights are not negative.
     """
     from scipy.sparse import csr_matrix
     from scipy.spatial import KDTree
@@ -98,7 +101,8 @@ def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.n
         lists = tree.query_ball_point(here, reach)
         row = np.repeat(np.arange(len(at)), [len(found) for found in lists])
         column = np.concatenate([np.asarray(found, np.int64) for found in lists])
-        value = _fit((cells[column] - here[row]) / reach[row, None], regions.patches.area[members[column]], row, len(at))
+        of_kernel = _fit if planes else _mean
+        value = of_kernel((cells[column] - here[row]) / reach[row, None], regions.patches.area[members[column]], row, len(at))
         rows.append(at[row])
         columns.append(members[column])
         values.append(value)
@@ -106,9 +110,19 @@ def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.n
     return csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
 
 
+def _kernel(t: np.ndarray, area: np.ndarray) -> np.ndarray:
+    return area * np.maximum(1 - (t * t).sum(axis=1), 1e-6)
+
+
+def _mean(t: np.ndarray, area: np.ndarray, row: np.ndarray, m: int) -> np.ndarray:
+    """The weight of each cell of each row in the kernel's mean."""
+    kernel = _kernel(t, area)
+    return kernel / np.bincount(row, kernel, m)[row]
+
+
 def _fit(t: np.ndarray, area: np.ndarray, row: np.ndarray, m: int) -> np.ndarray:
     """The weight of each cell of each row in the plane fitted at t = 0; the kernel's mean where cells lie on a line."""
-    kernel = area * np.maximum(1 - (t * t).sum(axis=1), 1e-6)
+    kernel = _kernel(t, area)
 
     def total(values):
         return np.bincount(row, values, m)

@@ -17,7 +17,8 @@ class Solution:
     Attributes:
         patches: the patches solved for.
         irradiance: (n_patches, n_bands) float64, W/m² or lm/m².
-        irradiance_standard_error: the same shape; NaN (unknown) without replicates.
+        irradiance_standard_error: the same shape; NaN (unknown) without replicates. Of density estimation, with the size of its
+            bias: the root of their sum of squares.
         arrivals: (n_patches,) int64, lines that landed, all replicates together. 0: never visited, so zero is no measurement.
         rays: lines traced in all.
         seconds: wall time.

@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...solution.books import by_difference
-from ...solution.local_linear import Regions, weights
+from ...solution.smoothing import Smoother
 from ..problem import Problem
-from ..process import AbstractTally, State
+from ..process import AbstractBiasedTally, AbstractTally, State
 
 
 @dataclass(frozen=True)
-class DensityTally(AbstractTally):
+class DensityTally(AbstractBiasedTally):
     """Another tally's powers, smoothed replicate by replicate with the bandwidths of all landings together.
 
     Attributes:
@@ -29,19 +29,22 @@ class DensityTally(AbstractTally):
 
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
         values, unit = self.counted.irradiance(problem, state, group)
-        patches, smooth = problem.patches, self._smoother(problem, state)
-        return np.stack([smooth @ (row / patches.area) * patches.area for row in values]), unit
+        return self._smoother(problem, state).smooth(values), unit
 
-    def _smoother(self, problem: Problem, state: State):
+    def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
+        values, _ = self.counted.irradiance(problem, state, group)
+        smoother = self._smoother(problem, state)
+        return smoother.bias(values, smoother.smooth(values))
+
+    def _smoother(self, problem: Problem, state: State) -> Smoother:
         """The same for all bands and for the books of a state; the last one is kept."""
         if self._known.get("counts") is not state["arrivals"]:
-            regions = Regions.find(problem.patches)
-            fit = weights(regions, self.arrivals(problem, state), problem.patches.centroid, regions.of)
-            self._known.update(counts=state["arrivals"], fit=fit)
+            self._known.update(counts=state["arrivals"], fit=Smoother.of(problem.patches, self.arrivals(problem, state)))
         return self._known["fit"]
 
     def books(self, problem: Problem, state: State, group: int) -> dict:
-        """Of the smoothed irradiance: what smoothing moved from one patch to another does not balance exactly."""
+        """Of the smoothed irradiance: what smoothing moved between patches of one region, where their reflectances differ, does
+        not balance exactly."""
         exact = self.counted.books(problem, state, group)
         values, unit = self.irradiance(problem, state, group)
         received = values.mean(axis=0) * unit

@@ -1,0 +1,101 @@
+"""States of processes, for the suite of the orders: after stages, interrupted or not.
+
+A method runs on a small open scene whose faces radiate on both sides in two bands; or, where it says that it cannot carry bands,
+on one in grey with absorbing backs.
+"""
+
+import io
+from functools import cache
+
+import numpy as np
+from iterations import open_room
+
+import radiosity as rd
+from radiosity.engine.device import choose
+from radiosity.engine.geometry import Geometry
+from radiosity.engine.problem import Problem
+from radiosity.engine.process import AbstractProcess, State, make
+from radiosity.engine.progress import Interrupted
+
+STAGES = (1_000, 6_000)  # quanta; the first stage of a run is short
+ODD = (1, 7, 1_000, 1_001, 3_000, 3_000, 6_000)
+SUMS = 1e-12  # of sums in doubles, whose order is that of stages
+MOST = 100  # interruptions
+
+
+@cache
+def grey() -> tuple[Geometry, Problem]:
+    patches = rd.subdivide(open_room(), cells=2)
+    return Geometry(patches, choose("cpu")), Problem.of(patches)
+
+
+@cache
+def coloured() -> tuple[Geometry, Problem]:
+    scene = open_room()
+    reflectance = np.column_stack([scene.reflectance[:, 0], scene.reflectance[::-1, 0] / 2])
+    tinted = rd.Scene.from_arrays(
+        scene.vertices, scene.faces, reflectance, scene.emission * [[1.0, 0.5]], surface=scene.surface, names=scene.names,
+        bands=["one", "other"], two_sided=True, back_reflectance=0.4, back_emission=np.zeros((1, 2)),
+    )  # fmt: skip
+    patches = rd.subdivide(tinted, cells=2)
+    return Geometry(patches, choose("cpu")), Problem.of(patches)
+
+
+@cache
+def scene_of(method: rd.Method) -> tuple[Geometry, Problem]:
+    """The coloured one, unless the method refuses it."""
+    try:
+        rd.solve(coloured()[1].patches, method, quanta=1, replicates=1)
+    except rd.MethodError:
+        return grey()
+    return coloured()
+
+
+def begun(method: rd.Method, seed: int = 4) -> AbstractProcess:
+    return make(*scene_of(method), method, seed, 2)
+
+
+def whole(method: rd.Method, stages=STAGES, seed: int = 4) -> State:
+    """The state after these stages, never interrupted."""
+    process = begun(method, seed)
+    for quanta in stages:
+        process.advance(quanta, lambda lines: None)
+    return process.capture()
+
+
+def filed(state: State) -> State:
+    """Through the bytes of an NPZ file."""
+    file = io.BytesIO()
+    np.savez(file, **state)
+    file.seek(0)
+    with np.load(file, allow_pickle=False) as read:
+        return {name: read[name] for name in read.files}
+
+
+def interrupted(method: rd.Method) -> tuple[State, int]:
+    """The same, stopped wherever the process can be, each time saved, loaded and put into a new one; and how often."""
+
+    def stop(lines):
+        raise Interrupted("test")
+
+    process, stops = begun(method), 0
+    for quanta in STAGES:
+        while stops < MOST:
+            try:
+                process.advance(quanta, stop)
+                break
+            except Interrupted:
+                state = filed(process.capture())
+                stops += 1
+                process = begun(method)
+                process.restore(state)
+                assert process.quanta == quanta
+    return process.capture(), stops
+
+
+def same(one: State, other: State, sums: float = 0.0) -> bool:
+    return one.keys() == other.keys() and all(
+        np.array_equal(one[name], other[name])
+        or (sums > 0 and one[name].dtype.kind == "f" and np.allclose(one[name], other[name], rtol=sums, atol=0))
+        for name in one
+    )

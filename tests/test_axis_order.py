@@ -1,0 +1,131 @@
+"""Contract of an order: what every member of `ORDERS` must keep, with each kind of lines, estimator, option and preset that goes
+with it (`members.varied`). States are compared whole, to the bit (`states.py`): no statistics, no tolerance but that of sums in
+doubles. Orders that break it are rejected.
+"""
+
+import drjit as dr
+import numpy as np
+import pytest
+from enclosures import cube
+from members import accepted, each, plainest, varied
+from states import MOST, ODD, STAGES, SUMS, begun, interrupted, same, scene_of, whole
+
+import radiosity as rd
+from radiosity.engine import lanes
+from radiosity.engine.global_lines import mixing, multipath, pooling
+from radiosity.engine.matrix import process as matrix
+from radiosity.engine.walks.launches import AbstractLaunches
+from radiosity.method.order import ORDERS, breadth_first
+
+pytestmark = pytest.mark.filterwarnings("ignore::radiosity.errors.RadiosityWarning")  # of few lines
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Launches of few lines, so that stages have many of them."""
+    for module, name, value in (
+        (lanes, "CHUNK", 1 << 12),
+        (matrix, "LAUNCH", 3_000),
+        (mixing, "VISITS", 8),
+        (multipath, "BATCH", 1),
+        (pooling, "BATCH", 1),
+    ):
+        monkeypatch.setattr(module, name, value)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_some_process_takes_it(order):
+    assert plainest("order", order)
+    assert ORDERS[order]
+
+
+@each(varied, "order")
+class TestContract:
+    def test_bits_repeat_on_any_number_of_threads_and_change_with_the_seed(self, method):
+        before, states = dr.thread_count(), []
+        try:
+            for threads in (1, 2):
+                dr.set_thread_count(threads)
+                states.append(whole(method))
+        finally:
+            dr.set_thread_count(before)
+        assert same(*states)
+        assert not same(states[0], whole(method, seed=5))
+
+    def test_an_interrupted_run_goes_on_to_the_same_bits(self, method, short):
+        state, stops = interrupted(method)
+        assert len(STAGES) < stops < MOST  # within a stage, too, not at its end alone
+        assert same(state, whole(method))
+        assert not begun(method).unfinished(state)
+
+    def test_stages_do_not_matter_where_it_says_so(self, method):
+        if begun(method).nested:
+            assert same(whole(method, STAGES[-1:]), whole(method, ODD), SUMS)
+
+    def test_lines_only_grow(self, method):
+        process, (_, problem) = begun(method), scene_of(method)
+        lines = [0]
+        for quanta in (500, *STAGES):
+            process.advance(quanta, lambda lines: None)
+            assert process.quanta == quanta
+            lines.append(process.tally.lines(problem, process.capture()))
+        assert (np.diff(lines) > 0).all()
+
+    def test_an_empty_state_is_refused(self, method):
+        with pytest.raises(rd.MethodError):
+            begun(method).restore({})
+
+    def test_books_balance_and_say_whether_they_close(self, method):
+        patches = scene_of(method)[1].patches
+        books = rd.solve(patches, method, quanta=STAGES[-1], replicates=2).books
+        for book in books:
+            assert book["closes"] in (True, None)
+            left = book["emitted"] + book["rounding"]
+            assert left == pytest.approx(book["absorbed"] + book["escaped"] + book["lost"], rel=1e-9)
+
+    def test_black_walls_end_the_walk(self, method):
+        solution = rd.solve(rd.subdivide(cube(0.0, 1.0), cells=2), method, quanta=STAGES[-1], replicates=2)
+        assert solution.status == "complete"
+        assert np.array_equal(solution.radiosity, solution.patches.emission)
+        assert solution.irradiance.mean() == pytest.approx(1, abs=0.02)
+
+    def test_one_face_and_few_lines(self, method):
+        """Arrays of one entry, and runs that hit nothing at all; everything escapes."""
+        square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+        one, two = (
+            rd.subdivide(rd.Scene.from_arrays(square[:corners], [list(range(corners))], 0.5, 1.0), cells=1) for corners in (3, 4)
+        )
+        budgets = ({"rays": 1}, {"rays": 1000}, {"quanta": 1}, {"quanta": 3, "replicates": 1})
+        for patches, budget in zip((one, two, two, one), budgets, strict=True):
+            solution = rd.solve(patches, method, **budget)
+            assert solution.irradiance == 0
+            assert solution.radiosity == 1
+
+
+def test_an_order_with_a_memory_of_its_own_is_rejected(monkeypatch, short):
+    """It leaves sweeps out by numbers of its own, which no state holds."""
+    drawn = np.random.default_rng(0)
+
+    def run(engine, progress):
+        batch, largest = engine.due()
+        while batch is not None and drawn.random() < 0.8:
+            engine.fire(batch, largest)
+            progress(batch.total)
+            batch, largest = engine.due()
+
+    monkeypatch.setattr(breadth_first, "run", run)
+    method = rd.Method(order="breadth-first")
+    assert not same(whole(method), whole(method))
+    assert not same(interrupted(method)[0], whole(method))
+    assert not same(whole(method, STAGES[-1:]), whole(method, ODD), SUMS)
+
+
+def test_a_state_that_leaves_out_where_it_was_is_rejected(monkeypatch, short):
+    restore = AbstractLaunches.restore
+    monkeypatch.setattr(AbstractLaunches, "restore", lambda self, state: restore(self, state | {"launches": np.array(0)}))
+    method = rd.Method(equation="continuous")
+    assert not same(interrupted(method)[0], whole(method))
+
+
+def test_every_method_has_one_order():
+    assert {method.order for method in accepted()} == set(ORDERS)
