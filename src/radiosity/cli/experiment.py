@@ -14,7 +14,7 @@ def experiment(which: str, /, *, quick: Flag = False, image: Flag = False, outpu
     ----------
     which
         1 (sampling order), 2 (local and global lines), 3 (discrete, continuous, Keller), 4 (number generators), 5 (beyond the
-        paper: bits and error bars), or all.
+        paper: bits and error bars), 6 (against the methods that form the matrix), or all.
     quick
         Up to 2^17 lines instead of 2^23: about two minutes for all.
     image

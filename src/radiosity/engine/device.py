@@ -99,6 +99,14 @@ def frozen(array) -> np.ndarray:
     return np.asarray(type(array)(array))
 
 
+def give_back_memory() -> None:
+    """To the system, what Dr.Jit keeps of it for reuse."""
+    import drjit as dr
+
+    dr.sync_thread()
+    dr.flush_malloc_cache()
+
+
 @contextmanager
 def threads(count: int):
     """Dr.Jit with so many threads for a while."""

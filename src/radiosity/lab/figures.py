@@ -55,6 +55,27 @@ def convergence(results: Results, arms: tuple[Arm, ...], scenes: tuple[str, ...]
         panels[0].legend(fontsize=7)
 
 
+def contests(found: dict, title: str, path: Path) -> None:
+    """Error against seconds and against memory, a row a scene and size; Monte Carlo methods solid, baselines dashed.
+
+    Args:
+        found: by (scene, patches), `contest.Entry` of every run.
+    """
+    from .contest import ARMS
+
+    with drawn(path, (8.4, 2.9 * len(found)), title) as figure:
+        rows = figure.subplots(len(found), 2, squeeze=False)
+        for panels, ((scene, n), entries) in zip(rows, found.items(), strict=True):
+            for panel, what, scale in zip(panels, ("seconds", "memory"), (1, 2**20), strict=True):
+                label = "seconds" if what == "seconds" else "MiB beyond the scene"
+                panel.set(xscale="log", yscale="log", title=f"{scene}, {n} patches", xlabel=label, ylabel="RMS error")
+                for colour, (name, arm) in zip(COLOURS, ARMS.items(), strict=True):
+                    points = [(getattr(e, what) / scale, e.error) for e in entries if e.arm == name]
+                    style = "-" if arm.monte_carlo else "--"
+                    panel.plot(*zip(*points, strict=True) if points else ([], []), style, color=colour, marker=".", label=name)
+        rows[0][0].legend(fontsize=6)
+
+
 def starts(found: dict[str, list[Start]], title: str, path: Path) -> None:
     """The first lines of runs in different orders, a panel a scene."""
     with drawn(path, (4.2 * len(found) + 1.5, 3.6), title) as figure:

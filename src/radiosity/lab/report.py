@@ -61,7 +61,7 @@ def findings(results: Results, claims: list[Claim]) -> str:
         f"<p>Relative error of the reference of {html.escape(scene)}, {equation} equation: {error:.2g}.</p>"
         for (scene, equation), error in results.reference_error.items()
     )
-    return f"{references}{_claims(claims)}{_table(results)}"
+    return f"{references}{verdicts(claims)}{_table(results)}"
 
 
 def figure(path: Path) -> str:
@@ -88,7 +88,8 @@ def table(heads: list[str], rows: list[list[str]]) -> str:
     return "<div class='scroll'><table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table></div>"
 
 
-def _claims(claims: list[Claim]) -> str:
+def verdicts(claims: list[Claim]) -> str:
+    """What the paper says, and whether this run agrees."""
     rows = []
     for claim in claims:
         kind, word = VERDICTS[claim.agrees]
