@@ -4,6 +4,7 @@ Slopes have five replicates; an interval at alpha = 1e-3 (Student, 4 degrees of 
 """
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -75,7 +76,7 @@ def test_order_has_no_influence(study, scene):
         assert ray.value - walk.value < WIDER * np.hypot(ray.half, walk.half)
 
 
-@pytest.mark.parametrize("number", [n for n in EXPERIMENTS if n != 5])
+@pytest.mark.parametrize("number", [n for n in EXPERIMENTS if hasattr(module(n), "SCENES")])
 def test_every_claim_has_a_verdict_and_figures(study, number):
     for claim in module(number).claims(study(number)):
         assert claim.agrees in (True, False, None)
@@ -163,7 +164,38 @@ def test_the_command_writes_a_report_that_stands_alone(tmp_path, capsys):
     assert "All runs of one seed end in the same bits" in report
     assert "src=" not in report.replace("src='data:", "")
     assert command(["experiment", "9", "-o", str(tmp_path)]) == 2
-    assert "known are 1, 2, 3, 4, 5 and all" in capsys.readouterr().err
+    assert "known are 1, 2, 3, 4, 5, 6 and all" in capsys.readouterr().err
+
+
+def test_the_page_of_baselines_compares_runs_in_processes_of_their_own(tmp_path, monkeypatch):
+    from radiosity.lab import contest
+    from radiosity.lab.experiments import baselines
+
+    arms = {name: contest.ARMS[name] for name in ("random walk", "full matrix, hemicubes", "progressive, hemicubes")}
+    runs = (("8 pixels", {"resolution": 8}), ("32 pixels", {"resolution": 32}))
+    arms["full matrix, hemicubes"] = replace(arms["full matrix, hemicubes"], runs=runs)
+    arms["progressive, hemicubes"] = replace(arms["progressive, hemicubes"], most=10)
+    monkeypatch.setattr(contest, "ARMS", arms)
+    monkeypatch.setattr(baselines, "ARMS", arms)
+    monkeypatch.setattr(baselines, "QUICK_REFERENCE", 3_000_000)
+    figure, *_, verdict, table = baselines.extras(QUICK, tmp_path)
+    assert "<svg" in figure
+    assert "random walk has" in verdict
+    assert "not run: it would take too long with more than 10 patches" in table
+    rows = [row.split("</td><td>") for row in table.split("<tr>")[2:]]
+    errors = {(row[0][4:], row[3]): float(row[4].strip("%")) for row in rows if row[4]}
+    for scene in ("room", "hall"):
+        assert errors[scene, "1e+06 lines"] < errors[scene, "1e+05 lines"]
+        assert errors[scene, "32 pixels"] < 1.05 * errors[scene, "8 pixels"]
+    assert all(float(row[7].split("<")[0]) < 500 for row in rows if row[4])  # MiB of a few hundred patches
+
+
+def test_a_baseline_that_does_not_fit_has_a_row_that_says_so():
+    from radiosity.lab.footprint import footprints
+
+    found = footprints("room", 3_000_000, "full-matrix-hemicube", [("64 pixels", {})], warm=False)
+    assert isinstance(found, str)
+    assert "GiB are free" in found
 
 
 def test_figures_tables_and_stores(tmp_path, monkeypatch):

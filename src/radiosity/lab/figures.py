@@ -69,7 +69,7 @@ def contests(found: dict, title: str, path: Path) -> None:
             for panel, what, scale in zip(panels, ("seconds", "memory"), (1, 2**20), strict=True):
                 label = "seconds" if what == "seconds" else "MiB beyond the scene"
                 panel.set(xscale="log", yscale="log", title=f"{scene}, {n} patches", xlabel=label, ylabel="RMS error")
-                for colour, (name, arm) in zip(COLOURS, ARMS.items(), strict=True):
+                for colour, (name, arm) in zip(COLOURS, ARMS.items(), strict=False):
                     points = [(getattr(e, what) / scale, e.error) for e in entries if e.arm == name]
                     style = "-" if arm.monte_carlo else "--"
                     panel.plot(*zip(*points, strict=True) if points else ([], []), style, color=colour, marker=".", label=name)
