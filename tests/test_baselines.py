@@ -255,10 +255,24 @@ def test_what_does_not_fit_is_refused_with_numbers_and_the_way_out(room, monkeyp
         rd.solve(room[0], "progressive-refinement")
 
 
+def test_faces_that_are_too_many_for_links_are_refused_at_once(room, monkeypatch):
+    from radiosity.deterministic.hierarchical import roots
+
+    monkeypatch.setattr(roots, "MOST_PAIRS", 10)
+    with pytest.raises(rd.MethodError, match="merge small faces"):
+        rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), "hierarchical")
+
+
 def test_what_takes_long_is_told_beforehand(room, monkeypatch):
     monkeypatch.setattr(estimate, "LONG", 0.0)
     with pytest.warns(rd.RadiosityWarning, match="minutes on this machine"):
         rd.solve(room[0], "full-matrix")
+
+
+def test_replicates_of_hemicubes_say_what_their_errors_leave_out(room):
+    with pytest.warns(rd.RadiosityWarning, match="one point stands for a patch"):
+        solution = rd.solve(room[0], "full-matrix-hemicube", resolution=16, replicates=3)
+    assert 0 < solution.error < error(solution, room[1])  # they agree with each other more than with the truth
 
 
 def test_rays_and_seconds_stop_shots_early(room):

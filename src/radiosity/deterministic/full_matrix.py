@@ -5,12 +5,14 @@ SIGGRAPH 1984; with shadows, M. Cohen and D. Greenberg, "The hemi-cube", and T. 
 representation of three-dimensional objects taking account of shadows and interreflection", both SIGGRAPH 1985.
 """
 
+import warnings
+
 import numpy as np
 
 from ..engine.matrix.balance import restored
 from ..engine.matrix.factors import Factors
 from ..engine.process import AbstractProcess, State, Swept
-from ..errors import MethodError
+from ..errors import MethodError, RadiosityWarning
 from . import estimate, solvers
 from .factors.matrix import exact
 from .rows import rows_for
@@ -25,6 +27,13 @@ class FullMatrix(AbstractProcess):
         self.rows = rows_for(self.geometry, self.problem, self.method, self.seed, self.replicates)
         halves = 2 if self.method.factors == "polygons" else 1
         estimate.full_matrix(self.rows, len(self.problem.patches), self.replicates / halves).check()
+        if self.replicates > 1 and self.method.factors == "hemicube":
+            warnings.warn(
+                "standard errors of hemicubes hold what turning them changes, not what all of them have in common: one point "
+                "stands for a patch (docs/baselines.md says how much that is)",
+                RadiosityWarning,
+                stacklevel=7,
+            )
         self.n, self.lines, self.solved = len(self.problem.patches), 0, []
 
     @property

@@ -20,7 +20,7 @@ REFINEMENTS = {
     "error-power": "a link is cut where its estimated error of power is large (Bekaert and Willems 1996)",
 }
 SOLVERS = ("jacobi", "gauss-seidel", "southwell", "conjugate-gradients")  # of deterministic.solvers
-MOST_RESOLUTION, MOST_SAMPLES = 4096, 65535
+MOST_RESOLUTION, MOST_SAMPLES = 2048, 65535
 OF_PAIR, OF_PATCH = 16, 4096  # samples by default
 
 ROWS = ("factors", "resolution", "rotated", "samples")

@@ -5,7 +5,9 @@ import numpy as np
 from ...engine.matrix.missed import missed
 from ...engine.process import AbstractProcess, State, Swept
 from ...errors import MethodError
+from ...patches import Hierarchy
 from ..tally import SolvedTally
+from . import roots
 from .parameters import Hierarchical as Parameters
 from .rounds import Rounds
 
@@ -19,6 +21,7 @@ class Hierarchical(AbstractProcess):
             raise MethodError(
                 "hierarchical radiosity follows one sequence of refinements and has no replicates; compare seeds instead"
             )
+        roots.check(Hierarchy(self.problem.patches))
         method, self.wanted, self.lines, self._swept = self.method, 0, 0, None
         parameters = Parameters(method.epsilon, method.refinement, method.lines_of_pair, seed=self.seed)
         self.rounds = Rounds(self.problem.patches, self.geometry, parameters, self._told)

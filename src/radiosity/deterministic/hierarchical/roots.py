@@ -33,13 +33,22 @@ def estimate(hierarchy: Hierarchy) -> Estimate:
     return _of(sides * (sides - 1) - 2 * int(hierarchy.side_is_back.sum()))
 
 
+def check(hierarchy: Hierarchy) -> None:
+    """Refuse what cannot be begun.
+
+    Raises:
+        MethodError: too many pairs of sides.
+    """
+    _refuse(estimate(hierarchy), MOST_PAIRS)
+
+
 def root_pairs(hierarchy: Hierarchy) -> tuple[np.ndarray, np.ndarray]:
     """Receivers and sources, root elements, that face each other.
 
     Raises:
         MethodError: too many of them.
     """
-    _refuse(estimate(hierarchy), MOST_PAIRS)
+    check(hierarchy)
     roots = hierarchy.first[:-1]
     corners, normal = elements.corners(hierarchy, roots), elements.normal(hierarchy, roots)
     low, high = hierarchy.patches.scene.bounds
