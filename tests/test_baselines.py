@@ -275,6 +275,18 @@ def test_replicates_of_hemicubes_say_what_their_errors_leave_out(room):
     assert 0 < solution.error < error(solution, room[1])  # they agree with each other more than with the truth
 
 
+def test_lines_of_baselines_are_not_counted_in_32_bits(room, monkeypatch):
+    from radiosity.engine import run
+
+    monkeypatch.setattr(run, "FULL", 1000.0)  # as if a replicate of counters held no more
+    patches = rd.subdivide(rd.load_scene("room"), cells=1)
+    for name in rd.BASELINES:
+        assert rd.solve(patches, name).status == "complete"
+    assert rd.solve(patches, "hierarchical", rays=10**10).status == "complete"
+    with pytest.raises(rd.MethodError, match="counters full"):
+        rd.solve(patches, rays=100_000)
+
+
 def test_rays_and_seconds_stop_shots_early(room):
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -103,12 +103,12 @@ class Progressed:
     error: float
 
 
-def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, *, replay: bool) -> int | None:
+def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, most: float, *, replay: bool) -> int | None:
     """N of the next stage, or None where the budget is used up.
 
     The stages of any run are the rungs of the ladder below its last N, then N: so N alone replays a run also where
     bands make the result depend on the stages (``replay``); there a stage between two rungs is the last. Integers alone
-    do not depend on stages, and may go on from any N.
+    do not depend on stages, and may go on from any N. A replicate counts ``most`` lines at most.
     """
     if replay and not on_ladder(at.quanta, first):
         return None
@@ -117,7 +117,7 @@ def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, *, 
     if wanted is None or wanted <= at.quanta * 1.01:
         return None
     target = min(rung, wanted)
-    if at.lines / replicates * target / at.quanta > FULL:
+    if at.lines / replicates * target / at.quanta > most:
         return None  # 32-bit counters hold no more
     return target
 

@@ -42,6 +42,7 @@ class Run:
                 f"order '{method.order}' cannot carry {bands} different bands: "
                 "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
             )
+        self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = first_rung(method.order, replicates, self.problem.source.share)
         self.teller, self.stop = Teller(budget, listener), Stop()
         self.teller.tell("compiling")
@@ -87,7 +88,7 @@ class Run:
             if snapshot.done:
                 break
             at = Progressed(target, lines, self.teller.elapsed, time.perf_counter() - started, error)
-            target = next_quanta(self.budget, self.replicates, self.rung, at, replay=not process.nested)
+            target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=not process.nested)
         if snapshot is None:
             if self.resume is None:
                 if status == COUNTERS_FULL:
@@ -121,7 +122,7 @@ class Run:
         self.teller.tell("tracing")
         if self.stop.asked:
             raise Interrupted("interrupted")
-        if self.teller.lines / self.replicates > FULL:
+        if self.teller.lines / self.replicates > self.most:
             raise Interrupted(COUNTERS_FULL)
         seconds = self.budget.seconds
         if seconds is not None and self.teller.stage and self.teller.elapsed > PATIENCE * seconds + 1:

@@ -53,14 +53,14 @@ def solve(
             resumed. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C before the first stage was complete.
     """
     chosen = resolve(method, **choices)
+    usual = 1 if isinstance(chosen, Baseline) else 8
+    replicates = usual if replicates is None else _whole(replicates, "replicates", 1)
+    seed = _whole(seed, "seed", 0)
     if isinstance(chosen, Baseline):
         budget = chosen_budget(chosen, rays=rays, seconds=seconds, error=error, quanta=quanta)
     else:
         budget = Budget(rays, seconds, error, quanta)
-    usual = 1 if isinstance(chosen, Baseline) else 8
-    replicates = usual if replicates is None else _whole(replicates, "replicates", 1)
-    seed = _whole(seed, "seed", 0)
-    budget.check(replicates)
+        budget.check(replicates)
     if isinstance(scene, Scene):
         scene = subdivide(scene, **cut_for(chosen))
     if not isinstance(scene, Patches):
