@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import MethodError, RadiosityWarning
 from .rows import AbstractRows
 
-BYTES_A_FACTOR = 96  # 12 in the matrix; the rest while pairs are joined and sorted (measured: 91 in a closed cube, where all see all)
+BYTES_A_FACTOR = 96  # 12 in the matrix, the rest while pairs are sorted; 91 were measured in a closed cube
 SHARE = 0.7  # of the memory that is free now
 LONG = 60.0  # seconds that are worth a word
 TRIAL_ROWS = 4
