@@ -3,8 +3,6 @@
 Bounds of what is sampled are stated beside each comparison; all seeds are fixed.
 """
 
-import warnings
-
 import numpy as np
 import pytest
 from enclosures import cube
@@ -14,6 +12,9 @@ from replicates import difference, powers
 import radiosity as rd
 from radiosity.deterministic import estimate
 from radiosity.deterministic.progressive import recent
+
+# coarse hemicubes and few samples say that they are off; one test looks for it
+pytestmark = pytest.mark.filterwarnings("ignore:.*out of balance:radiosity.RadiosityWarning")
 
 FACTORS = ("polygons", "hemicube", "lines")
 SCHEMES = ("full-matrix", "progressive")
@@ -233,6 +234,7 @@ def test_equal_seeds_give_equal_bits_and_a_single_face_is_solved(name):
         ({"factors": "hemicube", "resolution": 15}, "must be even"),
         ({"factors": "hemicube", "samples": 15}, "give its resolution"),
         ({"samples": 0}, "whole number from 1"),
+        ({"epsilon": 1e-5}, "not a choice of full-matrix"),
         ({"epsilon": 0.5}, "not a choice of full-matrix"),
     ],
 )
@@ -275,6 +277,29 @@ def test_replicates_of_hemicubes_say_what_their_errors_leave_out(room):
     assert 0 < solution.error < error(solution, room[1])  # they agree with each other more than with the truth
 
 
+@pytest.fixture(scope="module")
+def cove():
+    """A lamp 5 mm below the ceiling of a unit cube, and shining up: little of a patch of the ceiling sees it."""
+    from radiosity.scene.shapes import box, join, quad
+
+    lamp = [quad((0.35, 0.35, 0.995), (0.3, 0, 0), (0, 0.3, 0))]
+    walls = box((0, 0, 0), (1, 1, 1), inward=True)
+    scene = join([("walls", 0.6, 0.0, walls), ("lamp", 0.3, 10.0, lamp)], source="cove", backs={"lamp": 0.3})
+    patches = rd.subdivide(scene, cells=8)
+    return patches, rd.solve(patches, rays=20_000_000)
+
+
+@pytest.mark.parametrize("name", ["hierarchical", "hierarchical-error-control", "full-matrix"])
+def test_a_lamp_close_to_the_ceiling(cove, name):
+    assert error(rd.solve(cove[0], name, samples=64), cove[1]) < 0.02
+
+
+def test_hemicubes_are_blind_for_it_and_say_so(cove):
+    with pytest.warns(rd.RadiosityWarning, match="take factors polygons"):
+        solution = rd.solve(cove[0], "full-matrix-hemicube")
+    assert error(solution, cove[1]) > 0.05
+
+
 def test_lines_of_baselines_are_not_counted_in_32_bits(room, monkeypatch):
     from radiosity.engine import run
 
@@ -288,9 +313,8 @@ def test_lines_of_baselines_are_not_counted_in_32_bits(room, monkeypatch):
 
 
 def test_rays_and_seconds_stop_shots_early(room):
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        some = rd.solve(room[0], "progressive-refinement", rays=300_000, resolution=16)
-        short = rd.solve(room[0], "progressive-refinement", seconds=1e-3, resolution=16)
-    assert some.quanta < 2000
+    some = rd.solve(room[0], "progressive-refinement", rays=30_000, resolution=16)
+    short = rd.solve(room[0], "progressive-refinement", seconds=1e-3, resolution=16)
+    assert 15_000 < some.rays < 90_000
+    assert some.history[-1, 1] > 0.01
     assert short.quanta == 64  # the first stage is completed whatever it takes

@@ -60,7 +60,8 @@ def solve(
     output
         Files to write: .npz .glb .ply .vtp .csv .png .exr, several at once.
     rays
-        Lines to trace in all, such as 10M (the default), 500k or 1e7. Baselines go on until they are done instead.
+        Lines to trace in all, such as 10M (the default), 500k or 1e7. Baselines go on until they are done, or progressive and
+        hierarchical ones until so many lines are traced.
     seconds
         Or: for how long to trace, such as 60, 5min or 1h.
     error
@@ -121,7 +122,7 @@ def solve(
         auto, cpu or cuda.
     resume
         Go on from this .npz of the same scene, method, seed and replicates, also an interrupted one. Its lines count.
-        Default of the patches: as it has them.
+        Default of the patches: as it has them. Not for full-matrix and hierarchical.
     coherent
         Trace packets of like lines: faster, but not equal bit for bit where a line meets two faces in one point.
     max_reflectance

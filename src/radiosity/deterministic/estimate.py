@@ -60,13 +60,13 @@ def free_memory() -> float:
         return np.inf
 
 
-def full_matrix(rows: AbstractRows, n: int, times: float) -> Estimate:
+def full_matrix(rows: AbstractRows, n: int, times: float, *, reciprocal: bool) -> Estimate:
     """Of n patches, so many times all rows; the time from a few rows that are made and thrown away, twice, since the first time
     compiles kernels."""
     factors = float(n) * n
     what = f"the matrix of {n} patches ({factors:.2g} form factors)"
     way_out = "take larger patches, or a method that forms no matrix, such as random-walk"
-    memory = factors * BYTES_A_FACTOR
+    memory = factors * BYTES_A_FACTOR * (2 if reciprocal else 1)
     if memory > SHARE * free_memory():
         return Estimate(memory, np.nan, what, way_out)
     some = np.unique(np.linspace(0, n - 1, min(TRIAL_ROWS, n)).astype(np.int64))

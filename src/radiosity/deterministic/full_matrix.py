@@ -26,7 +26,8 @@ class FullMatrix(AbstractProcess):
         super().__init__(*arguments)
         self.rows = rows_for(self.geometry, self.problem, self.method, self.seed, self.replicates)
         halves = 2 if self.method.factors == "polygons" else 1
-        estimate.full_matrix(self.rows, len(self.problem.patches), self.replicates / halves).check()
+        times = self.replicates / halves
+        estimate.full_matrix(self.rows, len(self.problem.patches), times, reciprocal=self.method.reciprocal).check()
         if self.replicates > 1 and self.method.factors == "hemicube":
             warnings.warn(
                 "standard errors of hemicubes hold what turning them changes, not what all of them have in common: one point "

@@ -1,9 +1,12 @@
-"""How far a baseline goes, and how finely a scene is cut for it where nobody says."""
+"""How far a baseline goes, how finely a scene is cut for it where nobody says, and what its books tell of its form factors."""
 
-from ..errors import MethodError
+import warnings
+
+from ..errors import MethodError, RadiosityWarning
 from ..method import Baseline, Method
 from .budget import DONE, Budget
 
+MISSING = 0.01  # of the emitted power: more than this out of balance is told
 PATCHES = 2_000  # of a scene that is not cut yet: pairs of them still fit everywhere
 
 
@@ -27,3 +30,16 @@ def cut_for(method: "Method | Baseline") -> dict:
     if not isinstance(method, Baseline):
         return {}
     return {"about": PATCHES, "powers_of_two": method.needs_powers_of_two}
+
+
+def warn_of_missing(method: Baseline, books: tuple[dict, ...], state: dict) -> None:
+    """Tell of power that form factors lose or make, or that had to be cut (`deterministic.progressive`)."""
+    off = max((abs(book["rounding"]) / book["emitted"] for book in books if book["emitted"] > 0), default=0.0)
+    off = max(off, float(state.get("cut", 0.0)))
+    if off > MISSING and state.get("done", False):
+        way_out = "factors polygons (a hemicube is one point)" if method.factors == "hemicube" else "more samples"
+        warnings.warn(
+            f"{off:.1%} of the emitted power is out of balance, so far off are form factors; take {way_out}, or smaller patches",
+            RadiosityWarning,
+            stacklevel=6,
+        )

@@ -10,6 +10,7 @@ from ..errors import MethodError, RadiosityWarning
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import Solution
+from .baseline_budget import warn_of_missing
 from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder
 from .device import choose
 from .geometry import Geometry
@@ -171,11 +172,14 @@ class Run:
                 RadiosityWarning,
                 stacklevel=5,
             )
+        books = snapshot.books()
+        if isinstance(self.method, Baseline):
+            warn_of_missing(self.method, books, snapshot.state)
         mean, error = snapshot.irradiance()
         return Solution(
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
             snapshot.quanta, self.replicates,
-            snapshot.books(), status, self._provenance(), pending or snapshot.state,
+            books, status, self._provenance(), pending or snapshot.state,
         )  # fmt: skip
 
     def _provenance(self) -> dict:

@@ -34,7 +34,7 @@ CHOICES = {"scheme": tuple(SCHEMES), "factors": tuple(FACTORS), "solver": SOLVER
 
 @dataclass(frozen=True)
 class Baseline:
-    """One deterministic method.
+    """One method that forms the matrix.
 
     Attributes:
         scheme: how the equation is solved.

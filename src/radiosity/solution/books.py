@@ -42,8 +42,8 @@ class Books:
 
 
 def by_difference(emitted: float, absorbed: float, escaped: float, lost: float) -> dict:
-    """The books of a method that does not carry power line by line: what does not balance is its statistical error, shown
-    as rounding, and ``closes`` is None."""
+    """The books of a method that does not carry power line by line: what does not balance is its error (of form factors, or
+    statistical), shown as rounding, and ``closes`` is None."""
     rounding = absorbed + escaped + lost - emitted
     return {"emitted": emitted, "rounding": rounding, "absorbed": absorbed, "escaped": escaped, "lost": lost, "closes": None}
 

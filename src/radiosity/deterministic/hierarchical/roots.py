@@ -1,11 +1,13 @@
 """The first links: all pairs of whole sides that face each other, and whether there is room for them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...errors import MethodError
 from ...patches import Hierarchy, elements
+from ..estimate import SHARE, free_memory
 from .kernel import PLANE
 from .refine import MOST_LINKS
 
@@ -42,8 +44,8 @@ def check(hierarchy: Hierarchy) -> None:
     _refuse(estimate(hierarchy), MOST_PAIRS)
 
 
-def root_pairs(hierarchy: Hierarchy) -> tuple[np.ndarray, np.ndarray]:
-    """Receivers and sources, root elements, that face each other.
+def root_pairs(hierarchy: Hierarchy, told: Callable[[int], None] = lambda rays: None) -> tuple[np.ndarray, np.ndarray]:
+    """Receivers and sources, root elements, that face each other; ``told(0)`` is called now and then, and may raise.
 
     Raises:
         MethodError: too many of them.
@@ -59,6 +61,7 @@ def root_pairs(hierarchy: Hierarchy) -> tuple[np.ndarray, np.ndarray]:
         sees, seen = _in_front(normal[rows], height[rows], corners), _in_front(normal, height, corners[rows]).T
         receiver, source = np.nonzero(sees & seen & (hierarchy.side_face[rows][:, None] != hierarchy.side_face))
         found += len(receiver)
+        told(0)
         _refuse(_of(found), MOST_LINKS)
         parts.append((roots[rows][receiver], roots[source]))
     receiver, source = (np.concatenate(column) for column in zip(*parts, strict=True))
@@ -75,8 +78,9 @@ def _of(pairs: int) -> Estimate:
 
 
 def _refuse(wanted: Estimate, most: int) -> None:
-    if wanted.pairs > most:
+    free = free_memory()
+    if wanted.pairs > most or (most == MOST_LINKS and wanted.bytes > SHARE * free):
         raise MethodError(
-            f"hierarchical radiosity begins with a link for all faces that see each other: {wanted} or more, and {most:.3g} are "
-            "the most; merge small faces in the scene, or take a method that forms no matrix"
+            f"hierarchical radiosity begins with a link for all faces that see each other: {wanted} or more; {most:.3g} are the "
+            f"most, and {free / 2**30:.3g} GiB are free; merge small faces in the scene, or take a method that forms no matrix"
         )

@@ -59,7 +59,7 @@ class Rounds:
     def advance(self) -> None:
         """The next round; if ``told`` ends it by raising, what it began is lost and it may be called again."""
         epsilon = self.parameters.rounds[self.complete]
-        links = Links.joined([self.maker.make(*root_pairs(self.hierarchy))]) if self.complete == 0 else self.links
+        links = Links.joined([self.maker.make(*root_pairs(self.hierarchy, self.told))]) if self.complete == 0 else self.links
         irradiance, history, new = self.irradiance, list(self.history), True
         while new:
             before = self.emission + self.reflectance * irradiance

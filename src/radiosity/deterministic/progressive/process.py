@@ -33,7 +33,7 @@ class Progressive(AbstractProcess):
         self.wanted, self.shots, self.history = 0, 0, [(0.0, 1.0)]
         self.unshot, self.received = groups.emission.copy(), np.zeros_like(groups.emission)
         self.missed, self.seen = np.zeros((2, groups.n_groups)), np.zeros(len(self.area), np.int64)
-        self.emitted = self.area @ groups.emission
+        self.emitted, self.cut = self.area @ groups.emission, np.zeros(groups.n_groups)
 
     @property
     def quanta(self) -> int:
@@ -52,7 +52,11 @@ class Progressive(AbstractProcess):
     @property
     def _left(self) -> float:
         """Unshot power over what was emitted, of the worst group."""
-        return float(((self.area @ np.abs(self.unshot)) / np.where(self.emitted > 0, self.emitted, 1)).max())
+        return float(self._share(self.area @ np.abs(self.unshot)))
+
+    def _share(self, power: np.ndarray) -> np.ndarray:
+        """Over what was emitted, of the worst group."""
+        return (power / np.where(self.emitted > 0, self.emitted, 1)).max()
 
     @property
     def _done(self) -> bool:
@@ -67,7 +71,9 @@ class Progressive(AbstractProcess):
         i = int(np.argmax(urgency))
         columns, values, escaped, lost = self.recent.get(i, urgency, swept)
         # F_ij A_i / A_j = F_ji cannot exceed one, but estimates from one point can where j is small and near
-        arriving = np.minimum(values, self.area[columns] / self.area[i])[:, None] * power[i]
+        possible = np.minimum(values, self.area[columns] / self.area[i])
+        arriving = possible[:, None] * power[i]
+        self.cut += (values - possible).sum() * np.abs(power[i])
         self.received[columns] += arriving
         self.unshot[columns] += self.reflectance[columns] * arriving / self.area[columns, None]
         self.unshot[i] -= power[i] / self.area[i]
@@ -82,15 +88,15 @@ class Progressive(AbstractProcess):
             "quanta": np.array(self.wanted), "shots": np.array(self.shots), "done": np.array(self._done),
             "lines": np.array(self.recent.lines), "received": self.received[None].copy(), "missed": self.missed[None].copy(),
             "unshot": self.unshot.copy(), "seen": self.seen.copy(), "history": np.array(self.history),
-            "recent": self.recent.numbers,
+            "recent": self.recent.numbers, "cut_power": self.cut.copy(), "cut": self._share(self.cut),
         }  # fmt: skip
 
     def restore(self, state: State) -> None:
         if "unshot" not in state or state["unshot"].shape != self.unshot.shape:
             raise MethodError("the solution to go on from lacks the unshot power of its patches, or has other sizes; start anew")
         self.wanted, self.shots = int(state["quanta"]), int(state["shots"])
-        self.received, self.missed, self.unshot = (state[k].copy() for k in ("received", "missed", "unshot"))
-        self.received, self.missed, self.seen = self.received[0], self.missed[0], state["seen"].copy()
+        self.received, self.missed = state["received"][0].copy(), state["missed"][0].copy()
+        self.unshot, self.seen, self.cut = (state[name].copy() for name in ("unshot", "seen", "cut_power"))
         self.history = [tuple(row) for row in state["history"]]
         if len(state["recent"]):
             self.recent.make([int(i) for i in state["recent"]], lambda lines: None)

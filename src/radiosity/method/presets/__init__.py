@@ -3,7 +3,7 @@
 from dataclasses import fields, replace
 
 from ...errors import MethodError
-from ..baseline import Baseline
+from ..baseline import USED, Baseline
 from ..model import Method
 from .baselines import BASELINES
 from .citations import Citation
@@ -35,6 +35,11 @@ def resolve(method: "str | Method | Baseline" = "random-walk", **choices) -> "Me
     for choice in given:
         if choice not in names:
             raise MethodError(f"'{choice}' is no choice of {method}; it has {', '.join(names)}")
+    if isinstance(method, Baseline):
+        scheme = given.get("scheme", method.scheme)
+        unused = [choice for choice in given if choice != "scheme" and choice not in USED.get(scheme, names)]
+        if unused:
+            raise MethodError(f"{', '.join(unused)}: not a choice of {scheme}, which has {', '.join(USED[scheme])}")
     if isinstance(method, Method) and given.get("order", method.order) != method.order and "warm_up" not in given:
         given["warm_up"] = False  # belongs to the order that was replaced
     if isinstance(method, Baseline) and given.get("factors", method.factors) != method.factors:

@@ -38,7 +38,7 @@ BASELINES = {
         Baseline("hierarchical"),
         "Faces are cut into quadtrees of elements, and links join elements as large as their exchange allows: light is gathered "
         "over links, pushed down to the patches and pulled up again.",
-        "Few large faces, which it needs a link for a patch, not one for each pair.",
+        "Few large faces: it keeps some links for each patch, not one for each pair. First more samples, then a smaller epsilon.",
         "hanrahan1991",
         (("epsilon", "up to what a link is left as it is, relative to what the scene emits"),
          ("samples", "lines of a link, to find how much of one element the other sees"),
