@@ -267,8 +267,14 @@ def test_faces_that_are_too_many_for_links_are_refused_at_once(room, monkeypatch
 
 def test_what_takes_long_is_told_beforehand(room, monkeypatch):
     monkeypatch.setattr(estimate, "LONG", 0.0)
-    with pytest.warns(rd.RadiosityWarning, match="minutes on this machine"):
-        rd.solve(room[0], "full-matrix")
+    for name in ("full-matrix", "progressive-refinement"):
+        with pytest.warns(rd.RadiosityWarning, match="minutes on this machine"):
+            rd.solve(room[0], name)
+    from radiosity.deterministic.hierarchical import roots
+
+    monkeypatch.setattr(roots, "LONG", 0.0)
+    with pytest.warns(rd.RadiosityWarning, match="begins with .* pairs of radiating sides"):
+        rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), "hierarchical")
 
 
 def test_replicates_of_hemicubes_say_what_their_errors_leave_out(room):

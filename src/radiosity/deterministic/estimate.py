@@ -13,7 +13,7 @@ from .rows import AbstractRows
 BYTES_A_FACTOR = 96  # 12 in the matrix, the rest while pairs are sorted; 91 were measured in a closed cube
 SHARE = 0.7  # of the memory that is free now
 LONG = 60.0  # seconds that are worth a word
-TRIAL_ROWS = 4
+TRIAL_ROWS = 16
 
 
 @dataclass(frozen=True)
@@ -61,26 +61,32 @@ def free_memory() -> float:
 
 
 def full_matrix(rows: AbstractRows, n: int, times: float, *, reciprocal: bool) -> Estimate:
-    """Of n patches, so many times all rows; the time from a few rows that are made and thrown away, twice, since the first time
-    compiles kernels."""
+    """Of n patches, so many times all rows."""
     factors = float(n) * n
     what = f"the matrix of {n} patches ({factors:.2g} form factors)"
     way_out = "take larger patches, or a method that forms no matrix, such as random-walk"
     memory = factors * BYTES_A_FACTOR * (2 if reciprocal else 1)
     if memory > SHARE * free_memory():
         return Estimate(memory, np.nan, what, way_out)
-    some = np.unique(np.linspace(0, n - 1, min(TRIAL_ROWS, n)).astype(np.int64))
+    return Estimate(memory, seconds_a_row(rows, n) * n * times, what, way_out)
+
+
+def seconds_a_row(rows: AbstractRows, n: int) -> float:
+    """From a few rows that are made and thrown away, twice, since the first time compiles kernels."""
+    some = np.unique(np.linspace(0, n - 1, min(TRIAL_ROWS, rows.at_once, n)).astype(np.int64))
     seconds = 0.0
     for _ in range(2):
         begun = time.perf_counter()
         rows.make(some, 0, lambda lines: None)
         seconds = time.perf_counter() - begun
-    return Estimate(memory, seconds / len(some) * n * times, what, way_out)
+    return seconds / len(some)
 
 
-def progressive(n: int) -> Estimate:
-    """Of n patches: a few numbers for each, and the rows that are kept for a while."""
+def progressive(rows: AbstractRows, n: int) -> Estimate:
+    """Of n patches: a few numbers for each, and the rows that are kept for a while; about one row a patch is made."""
     from .progressive.recent import AHEAD, MOST_ENTRIES
 
     memory = 400.0 * n + 32.0 * MOST_ENTRIES + 64.0 * AHEAD * n
-    return Estimate(memory, np.nan, f"progressive refinement of {n} patches", "take larger patches")
+    what, way_out = f"progressive refinement of {n} patches", "take larger patches, or stop it early (seconds, rays)"
+    fits = memory <= SHARE * free_memory()
+    return Estimate(memory, seconds_a_row(rows, n) * n if fits else np.nan, what, way_out)

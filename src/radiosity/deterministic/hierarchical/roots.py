@@ -1,13 +1,14 @@
 """The first links: all pairs of whole sides that face each other, and whether there is room for them."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import MethodError
+from ...errors import MethodError, RadiosityWarning
 from ...patches import Hierarchy, elements
-from ..estimate import SHARE, free_memory
+from ..estimate import LONG, SHARE, free_memory
 from .kernel import PLANE
 from .refine import MOST_LINKS
 
@@ -65,6 +66,12 @@ def root_pairs(hierarchy: Hierarchy, told: Callable[[int], None] = lambda rays: 
         _refuse(_of(found), MOST_LINKS)
         parts.append((roots[rows][receiver], roots[source]))
     receiver, source = (np.concatenate(column) for column in zip(*parts, strict=True))
+    if _of(found).seconds > LONG:
+        warnings.warn(
+            f"hierarchical radiosity begins with {_of(found)}, and refinement adds to it; a larger epsilon takes less",
+            RadiosityWarning,
+            stacklevel=10,
+        )
     return receiver, source
 
 

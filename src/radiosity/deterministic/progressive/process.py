@@ -27,7 +27,7 @@ class Progressive(AbstractProcess):
         if self.replicates > 1:
             raise MethodError("progressive refinement follows one sequence of shots and has no replicates; compare seeds instead")
         rows = rows_for(self.geometry, self.problem, self.method, self.seed, 1)
-        estimate.progressive(len(self.problem.patches)).check()
+        estimate.progressive(rows, len(self.problem.patches)).check()
         groups, self.area = self.problem.groups, self.problem.patches.area
         self.recent, self.reflectance = RecentRows(rows), groups.reflectance
         self.wanted, self.shots, self.history = 0, 0, [(0.0, 1.0)]
