@@ -12,6 +12,7 @@ from replicates import difference, powers
 import radiosity as rd
 
 REPLICATES = 16
+EDGES = 1e-3  # of a surface's power: few lines meet an edge otherwise on the other device; another seed's lines change up to 1e-2
 START_UP = 2e-4  # iterations leave so much of the light out, in a furnace, where they have no spread
 
 
@@ -71,3 +72,14 @@ def test_agrees_with_the_processor(name):
     seen = other.min(axis=0) > 0.2 * other.mean(axis=0)  # many arrivals in each replicate, so that means are near normal
     assert seen.sum() > 5
     assert np.abs(difference(one, other))[seen].max() < critical(REPLICATES, int(seen.sum()))
+
+
+@pytest.mark.filterwarnings("ignore:.*out of balance")  # of hemicubes, on both
+@pytest.mark.parametrize("name", sorted(rd.BASELINES))
+def test_baselines_agree_with_the_processor(name):
+    """With equal seeds, so that the lines are the same."""
+    needed = rd.BASELINES[name].method.needs_powers_of_two
+    patches = rd.subdivide(rd.load_scene("room"), cells=4, powers_of_two=needed)
+    one, other = (rd.solve(patches, name, device=device).irradiance[:, 0] for device in ("cuda", "cpu"))
+    one, other = (np.bincount(patches.surface, patches.area * irradiance) for irradiance in (one, other))
+    assert np.abs(one / other - 1).max() < EDGES
