@@ -43,6 +43,7 @@ def test_a_method_prints_as_its_choices():
         ({"first_shot": float("nan"), "lines": "global", "order": "multipath"}, "below 1"),
         ({"control_variate": True}, "take --order incremental or regular"),
         ({"warm_up": True}, "only regular iterations"),
+        ({"lines": "global", "order": "regular", "warm_up": True}, "warm-up of their own"),
         ({"reconstruction": "local-linear"}, "equation continuous"),
         ({"reconstruction": "magic"}, "known are patches, local-linear"),
         ({"coherent": True, "order": "staged"}, "leave one out"),

@@ -50,6 +50,7 @@ def test_few_ends_for_form_factors_warn(coloured):
 def test_another_order_drops_the_warm_up(coloured):
     solution = rd.solve(coloured, "stochastic-jacobi", order="incremental", rays=100_000)
     assert solution.provenance["method"] == "discrete/local/incremental/halton"
+    assert not rd.method.resolve("stochastic-jacobi", lines="global").warm_up
 
 
 def test_going_on_by_another_method_names_what_differs(coloured):

@@ -31,7 +31,7 @@ def solve(
         scene: a `Scene` (cut into about 20 000 patches) or the `Patches` of one.
         method: a preset's name, a `Method` or a `Baseline`.
         choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. Without ``warm_up``
-            another order than the method's drops its warm-up.
+            another order or other lines than the method's drop its warm-up.
         rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
             scene (`Solution.error`); or N of each replicate, which replays a run bit for bit.

@@ -87,6 +87,8 @@ def _refuse_options(method, found: str) -> None:
         raise MethodError("a constant control variate is taken out of what iterations send; take --order incremental or regular")
     if method.warm_up and method.order != "regular":
         raise MethodError("only regular iterations can begin with incremental ones (warm_up)")
+    if method.warm_up and found != "iteration":
+        raise MethodError("iterations by global lines have a warm-up of their own; leave warm_up out, or take --lines local")
     if method.reconstruction not in RECONSTRUCTIONS:
         raise MethodError(f"reconstruction '{method.reconstruction}' does not exist; known are {', '.join(RECONSTRUCTIONS)}")
     if method.reconstruction == "local-linear" and (found != "walks" or method.equation != "continuous"

@@ -40,8 +40,8 @@ def resolve(method: "str | Method | Baseline" = "random-walk", **choices) -> "Me
         unused = [choice for choice in given if choice != "scheme" and choice not in USED.get(scheme, names)]
         if unused:
             raise MethodError(f"{', '.join(unused)}: not a choice of {scheme}, which has {', '.join(USED[scheme])}")
-    if isinstance(method, Method) and given.get("order", method.order) != method.order and "warm_up" not in given:
-        given["warm_up"] = False  # belongs to the order that was replaced
+    if isinstance(method, Method) and any(given.get(c, getattr(method, c)) != getattr(method, c) for c in ("order", "lines")):
+        given = {"warm_up": False} | given  # belongs to what was replaced
     if isinstance(method, Baseline) and given.get("factors", method.factors) != method.factors:
         given = {"samples": None, "resolution": 64, "rotated": True} | given  # belong to the factors that were replaced
     return replace(method, **given)
