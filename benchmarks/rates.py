@@ -50,9 +50,9 @@ def _rays(engine: Engine, lines: int):
     """The rays of the first sweep, in memory, in the order in which they are fired."""
     types = engine.types
     engine.set_quanta(lines)
-    batch, largest = engine.due()
+    sweep, largest = engine.due()
     parts, total = [], 0
-    for chunk in batch.chunks(types):
+    for chunk in (chunk for batch in engine.batches(sweep) for chunk in batch.chunks(types)):
         number, index, record = chunk.read(types)
         none = dr.zeros(types.UInt32, chunk.width)
         randomisation = [word for half in (0, 1) for word in dr.gather(types.Array4u, engine.randomisation, none + half)]
@@ -62,7 +62,7 @@ def _rays(engine: Engine, lines: int):
         parts.append(ray)
         total += chunk.width
     dr.sync_thread()
-    engine.fire(batch, largest)
+    engine.fire(sweep, largest)
     return parts, total
 
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from ..patches.model import Patches
 from .device import upload
-from .lanes import paired
 from .quanta import Source
 
 QUANTUM = 2**31  # fixed point units of a quantum: an arrival adds at most one, and 2^32 of them fit in 64 bits
@@ -69,7 +68,7 @@ class BandTally:
     """
 
     def __init__(self, engine, groups: BandGroups):
-        self.engine, self.n = engine, groups.n_groups
+        self.n = groups.n_groups
         types, areas = engine.types, engine.geometry.patches.area
         self.share = upload(types.Float64, engine.source.share)
         self.shares = [upload(types.Float64, groups.emission[:, g] * areas / engine.source.power) for g in range(self.n)]
@@ -78,65 +77,52 @@ class BandTally:
         self.before = dr.opaque(types.UInt64, 0, engine.total * self.n)
         self.arrivals_before = dr.opaque(types.UInt32, 0, engine.total)
         self.fired = dr.opaque(types.UInt64, 0, self.n * engine.replicates)
-        self.weights: list = []
         self.quanta_before = 0
 
-    def weigh(self, numbers, rows) -> None:
-        """Before a sweep: what the lines of the patches ``numbers[rows]`` carry; ``numbers`` are all that received since the
-        last one."""
-        types = self.engine.types
-        weights = self._weights(numbers)
+    def weigh(self, engine, numbers) -> list:
+        """Before a sweep: what each line of the patches ``numbers`` carries, of each group; they are all that received since
+        the last one. No expression may still wait to read the arrays that are written here, or Dr.Jit copies them whole."""
+        types, weights = engine.types, self._weights(engine, numbers)
+        dr.eval(weights)
         for g in range(self.n):
             dr.scatter(self.before, dr.gather(types.UInt64, self.received, numbers * self.n + g), numbers * self.n + g)
-        dr.scatter(self.arrivals_before, dr.gather(types.UInt32, self.engine.arrivals, numbers), numbers)
+        dr.scatter(self.arrivals_before, dr.gather(types.UInt32, engine.arrivals, numbers), numbers)
         dr.eval(self.before, self.arrivals_before)
-        rows = paired(types, rows)
-        self.weights = [dr.gather(types.UInt32, weight, rows) for weight in weights]
-        dr.eval(self.weights)
-        self.quanta_before = self.engine.quanta
+        self.quanta_before = engine.quanta
+        return weights
 
-    def _weights(self, numbers):
-        """What lines of patch numbers carry, evaluated: no expression may still wait to read the arrays that are written
-        next, or Dr.Jit copies them whole."""
-        engine, types = self.engine, self.engine.types
+    def _weights(self, engine, numbers) -> list:
+        types = engine.types
         wide = types.Float64
+
+        def fraction(rho):
+            return wide(dr.gather(types.UInt32, rho, patch)) * 2.0**-32
+
         patch = numbers - engine.replicate(numbers) * engine.n_opaque
         new = dr.opaque(wide, float(engine.quanta - self.quanta_before))
         arrivals = dr.gather(types.UInt32, engine.arrivals, numbers)
         since = arrivals - dr.gather(types.UInt32, self.arrivals_before, numbers)
-        owed = dr.fma(dr.gather(wide, self.share, patch), new, self._fraction(engine.rho, patch) * wide(since))
+        owed = dr.fma(dr.gather(wide, self.share, patch), new, fraction(engine.rho) * wide(since))
         weights = []
         for g, (share, rho) in enumerate(zip(self.shares, self.rhos, strict=True)):
             received = dr.gather(types.UInt64, self.received, numbers * self.n + g)
             since = received - dr.gather(types.UInt64, self.before, numbers * self.n + g)
-            power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, self._fraction(rho, patch) * wide(since))
+            power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, fraction(rho) * wide(since))
             carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
             weights.append(types.UInt32(dr.floor(carried + 0.5)))
-        dr.eval(weights)
         return weights
 
-    def _fraction(self, rho, patch):
-        types = self.engine.types
-        return types.Float64(dr.gather(types.UInt32, rho, patch)) * 2.0**-32
-
-    def deposit(self, rank, landed, active, mode) -> None:
+    def deposit(self, types, weights, rank, landed, active, mode) -> None:
         """In a kernel: lines of the batch's patches (by rank) land in slots."""
-        types = self.engine.types
-        for g, weight in enumerate(self.weights):
-            dr.scatter_add(
-                self.received,
-                types.UInt64(dr.gather(types.UInt32, weight, rank)),
-                landed * self.n + g,
-                active=active,
-                mode=mode,
-            )
+        for g, weight in enumerate(weights):
+            power = types.UInt64(dr.gather(types.UInt32, weight, rank))
+            dr.scatter_add(self.received, power, landed * self.n + g, active=active, mode=mode)
         dr.schedule(self.received)
 
-    def count_fired(self, batch) -> None:
-        """After a sweep: the power that left, summed from the lines' side."""
-        engine, types = self.engine, self.engine.types
-        replicate = engine.replicate(batch.numbers)
-        for g, weight in enumerate(self.weights):
+    def count_fired(self, engine, batch) -> None:
+        """After a batch: the power that left, summed from the lines' side."""
+        types, replicate = engine.types, engine.replicate(batch.numbers)
+        for g, weight in enumerate(batch.weights):
             power = types.UInt64(weight) * types.UInt64(batch.counts)
             dr.scatter_add(self.fired, power, replicate + g * engine.replicates)
         dr.schedule(self.fired)

@@ -4,6 +4,8 @@ Patch i of replicate r has number r * n_patches + i in every array: replicates g
 patches. After the patches, ``arrivals`` has two slots a replicate: lines escaped, and lines lost on absorbing backs.
 """
 
+from collections.abc import Iterator
+
 import drjit as dr
 import numpy as np
 
@@ -14,7 +16,7 @@ from . import quanta as contract
 from .bands import BandGroups, BandTally
 from .device import frozen, upload
 from .geometry import Geometry
-from .lanes import Batch, Chunk, boxes_for
+from .lanes import Batch, Chunk, Sweep, boxes_for, lines_of
 from .lines import land, local_line, patch_of
 
 DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
@@ -61,6 +63,11 @@ class Engine:
         arrivals = flat[: self.total].reshape(self.replicates, self.n)
         return arrivals, fired.reshape(self.replicates, self.n), flat[self.total :].reshape(2, self.replicates)
 
+    @property
+    def lines(self) -> int:
+        """Fired so far."""
+        return lines_of(self.types, self.fired)
+
     # ---- what is owed ----------------------------------------------------------------------------------------------
 
     def candidates(self):
@@ -92,35 +99,30 @@ class Engine:
         low = wide(rho) * wide(dr.gather(types.UInt32, self.arrivals, numbers)) + wide(fraction) + wide(phase)
         return dr.gather(types.UInt32, self.whole, patch) + types.UInt32(low >> 32)
 
-    def due(self) -> tuple[Batch | None, int]:
-        """The patches that owe lines now, and the largest line number among them."""
-        types = self.types
-        numbers = self.candidates()
-        self.owes = dr.width(numbers) > 0
-        if not self.owes:
-            return None, 0
-        owed, fired = self.owed(numbers), dr.gather(types.UInt32, self.fired, numbers)
-        deficit, largest = owed - fired, dr.max(owed)
-        dr.eval(owed, fired, deficit, largest)
-        rows = dr.compress(deficit > 0)
-        if self.bands is not None:
-            self.bands.weigh(numbers, rows)
-        self.owes = dr.width(rows) > 0
-        return self._batch(numbers, rows, deficit, fired, largest)
+    def due(self) -> tuple[Sweep | None, int]:
+        """What is owed now, and the largest line number among it."""
+        everywhere, numbers = self.everywhere, self.candidates()
+        sweep, largest = self._sweep(numbers, everywhere)
+        self.owes = sweep is not None
+        return sweep, largest
 
-    def due_between(self, low: int, high: int) -> tuple[Batch | None, int]:
+    def due_between(self, low: int, high: int) -> tuple[Sweep | None, int]:
         """As `due`, of the patch numbers from ``low`` to below ``high`` alone; grey scenes only."""
         numbers = dr.arange(self.types.UInt32, high - low) + dr.opaque(self.types.UInt32, low)
-        owed, fired = self.owed(numbers), dr.gather(self.types.UInt32, self.fired, numbers)
-        deficit, largest = owed - fired, dr.max(owed)
-        dr.eval(numbers, owed, fired, deficit, largest)
-        return self._batch(numbers, dr.compress(deficit > 0), deficit, fired, largest)
+        dr.eval(numbers)
+        return self._sweep(numbers, everywhere=False)
 
-    def _batch(self, numbers, rows, deficit, fired, largest) -> tuple[Batch | None, int]:
-        if dr.width(rows) == 0:
+    def _sweep(self, numbers, everywhere: bool) -> tuple[Sweep | None, int]:
+        if dr.width(numbers) == 0:
             return None, 0
-        columns = (dr.gather(self.types.UInt32, column, rows) for column in (numbers, deficit, fired))
-        return Batch.of(self.types, *columns, self.record), int(largest[0])
+        types = self.types
+        owed = self.owed(numbers)
+        counts, largest = owed - dr.gather(types.UInt32, self.fired, numbers), dr.max(owed)
+        dr.eval(counts, largest)
+        del owed
+        total = lines_of(types, counts)
+        weights = [] if self.bands is None else self.bands.weigh(self, numbers)
+        return (Sweep(None if everywhere else numbers, counts, weights, total), int(largest[0])) if total else (None, 0)
 
     def record(self, number):
         """Face and place of a patch number, see `Geometry.patch_records`."""
@@ -136,22 +138,29 @@ class Engine:
 
     # ---- firing ----------------------------------------------------------------------------------------------------
 
-    def fire(self, batch: Batch, largest: int) -> None:
-        """Trace all lines of a batch and count where they land."""
+    def fire(self, sweep: Sweep, largest: int) -> None:
+        """Trace all lines of a sweep and count where they land."""
         types = self.types
         bits = self.numbers.bits_for(largest)
-        boxes = boxes_for(types, batch.counts) if self.method.coherent else None
-        few, dense = batch.total <= FEW, batch.total > DENSE * self.total
+        boxes = boxes_for(types, sweep.counts) if self.method.coherent else None
+        few, dense = sweep.total <= FEW, sweep.total > DENSE * self.total
         # a copy of the counters for each thread spares atomic additions, where there are many lines to a counter
         mode = dr.ReduceMode.Expand if dense else dr.ReduceMode.Direct
-        for chunk in batch.chunks(types):
-            landed = self._fire(chunk, 32 if few else bits, boxes, few, dense, mode)
-            self.landed = frozen(landed)[: batch.total] if few else None
-        self.everywhere = dense
-        dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
-        if self.bands is not None:
-            self.bands.count_fired(batch)
-        dr.eval(self.fired)
+        landed = []
+        for batch in self.batches(sweep):
+            for chunk in batch.chunks(types):
+                places = self._fire(chunk, 32 if few else bits, boxes, few, dense, mode)
+                if few:
+                    landed.append(frozen(places)[: chunk.lines])
+            dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
+            if self.bands is not None:
+                self.bands.count_fired(self, batch)
+            dr.eval(self.fired)
+        self.everywhere, self.landed = dense, np.concatenate(landed) if few else None
+
+    def batches(self, sweep: Sweep) -> Iterator[Batch]:
+        """Of a sweep."""
+        return sweep.batches(self.types, self.fired, self.record)
 
     def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, dense: bool, mode):
         number, index, record = chunk.read(self.types, boxes)
@@ -163,7 +172,7 @@ class Engine:
         elif not dense:
             dr.scatter(self.touched, self.types.Bool(True), landed, active=real)
         if self.bands is not None:
-            self.bands.deposit(chunk.rank, landed, real, mode)
+            self.bands.deposit(self.types, chunk.batch.weights, chunk.rank, landed, real, mode)
         dr.eval(self.arrivals, self.touched)
         return landed
 

@@ -11,11 +11,44 @@ from .device import upload
 
 CHUNK = 1 << 20  # lanes of one launch on a CPU: enough to keep all cores busy, and little memory to touch
 CUDA_CHUNK = 1 << 24  # and on a GPU, which has many more lanes at work at a time, and memory for them
+PIECE = 1 << 19  # patches looked through for a batch: what a batch holds of each need not be there of all patches at a time
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What is fired before anything else is asked: fixed before the first line, so that the pieces it is fired in do not matter.
+
+    Attributes:
+        numbers: UInt32, patch numbers; None where they are all patches in their order.
+        counts: UInt32, lines that each of them fires, none or more.
+        weights: UInt32 arrays, the power that each line of theirs carries, one a group of bands; none in grey scenes.
+        total: lines of all.
+    """
+
+    numbers: Any
+    counts: Any
+    weights: list
+    total: int
+
+    def batches(self, types, fired, records) -> "Iterator[Batch]":
+        """The patches that fire, a piece at a time, with what each has ``fired`` and ``records`` that gives two words for numbers."""
+        width = dr.width(self.counts)
+        for start in range(0, width, PIECE):
+            here = dr.arange(types.UInt32, max(min(PIECE, width - start), 2)) + dr.opaque(types.UInt32, start)
+            inside = here < dr.opaque(types.UInt32, width)
+            rows = dr.compress(inside & (dr.gather(types.UInt32, self.counts, here, inside) > 0))
+            if dr.width(rows):
+                yield self._batch(types, rows + dr.opaque(types.UInt32, start), fired, records)
+
+    def _batch(self, types, rows, fired, records) -> "Batch":
+        numbers = rows if self.numbers is None else dr.gather(types.UInt32, self.numbers, rows)
+        columns = dr.gather(types.UInt32, self.counts, rows), dr.gather(types.UInt32, fired, numbers)
+        return Batch.of(types, numbers, *columns, records, [dr.gather(types.UInt32, weight, rows) for weight in self.weights])
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Patches that fire in a sweep.
+    """Patches that fire in a piece of a sweep.
 
     Attributes:
         numbers: UInt32, patch numbers.
@@ -25,6 +58,7 @@ class Batch:
         entries: UInt32, in fours, all that a lane asks: the number; what turns the how-manieth lane of all into the
             how-manieth line of the patch (fired + 1 - begins; 32-bit arithmetic goes round, and the sum is right); and the
             patch's record, see `Geometry.patch_records`.
+        weights: as of a `Sweep`.
         total: lines of all.
     """
 
@@ -33,23 +67,26 @@ class Batch:
     begins: Any
     fired: Any
     entries: Any
+    weights: list
     total: int
 
     @staticmethod
-    def of(types, numbers, counts, fired, records) -> "Batch":
-        """From the patches that fire, one or more of them, how often they do and did, and ``records`` that gives two words
-        for numbers."""
+    def of(types, numbers, counts, fired, records, weights=()) -> "Batch":
+        """From the patches that fire, one or more of them, how often they do and did, ``records`` that gives two words for
+        numbers, and what lines carry."""
+        columns = [numbers, counts, fired, *weights]
         if dr.width(numbers) == 1:
             both = paired(types, dr.arange(types.UInt32, 1))
-            numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
-            counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
-        dr.eval(numbers, counts, fired)
+            columns = [dr.gather(types.UInt32, column, both) for column in columns]
+            columns[1] = dr.select(dr.arange(types.UInt32, 2) == 0, columns[1], 0)
+        dr.eval(columns)
+        numbers, counts, fired, *weights = columns
         begins = dr.prefix_sum(types.UInt64(counts))
         face, place = records(numbers)
         entries = dr.ravel(types.Array4u(numbers, fired + 1 - types.UInt32(begins), face, place))
         dr.eval(begins, entries)
         last = dr.width(numbers) - 1
-        return Batch(numbers, counts, begins, fired, entries, int(begins[last]) + int(counts[last]))
+        return Batch(numbers, counts, begins, fired, entries, weights, int(begins[last]) + int(counts[last]))
 
     def chunks(self, types) -> "Iterator[Chunk]":
         """Launches of at most ``CHUNK`` lanes, or ``CUDA_CHUNK``."""
@@ -123,6 +160,14 @@ def _quotient(types, dividend, divisor):
     rest = types.Int(dividend - guess * divisor)
     guess = dr.select(rest < 0, guess - 1, guess)
     return dr.select(rest >= types.Int(divisor), guess + 1, guess)
+
+
+def lines_of(types, counts) -> int:
+    """Sum of 32-bit counts, which may take more. (``dr.sum`` would store them widened first.)"""
+    total = dr.opaque(types.UInt64, 0, 2)
+    dr.scatter_add(total, types.UInt64(counts), dr.zeros(types.UInt32, dr.width(counts)), mode=dr.ReduceMode.Expand)
+    dr.eval(total)
+    return int(total[0])
 
 
 def boxes_for(types, counts) -> tuple[int, int] | None:

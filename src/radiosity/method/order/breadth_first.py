@@ -8,11 +8,11 @@ TAIL = 1 << 13  # fewer lines than this are followed to their ends at once: the 
 def run(engine, progress) -> None:
     """Sweep until no patch owes a line. ``progress(lines)`` is called after each sweep."""
     while True:
-        batch, largest = engine.due()
-        if batch is None:
+        sweep, largest = engine.due()
+        if sweep is None:
             return
-        if batch.total < TAIL and engine.bands is None:
-            depth_first.walk_all(engine, batch, progress)
+        if sweep.total < TAIL and engine.bands is None:
+            depth_first.walk_all(engine, sweep, progress)
             return
-        engine.fire(batch, largest)
-        progress(batch.total)
+        engine.fire(sweep, largest)
+        progress(sweep.total)

@@ -9,22 +9,18 @@ import drjit as dr
 
 def run(engine, progress) -> None:
     """Follow all walks to their ends. ``progress(lines)`` is called after each launch."""
-    batch, _ = engine.due()
-    if batch is not None:
-        walk_all(engine, batch, progress)
+    sweep, _ = engine.due()
+    if sweep is not None:
+        walk_all(engine, sweep, progress)
 
 
-def walk_all(engine, batch, progress) -> None:
-    """From the lines of a batch, a launch at a time."""
-    for chunk in batch.chunks(engine.types):
-        before = _lines(engine)
-        walk(engine, chunk)
-        progress(_lines(engine) - before)
-
-
-def _lines(engine) -> int:
-    total = dr.sum(engine.types.UInt64(engine.fired))
-    return int(total[0])
+def walk_all(engine, sweep, progress) -> None:
+    """From the lines of a sweep, a launch at a time."""
+    for batch in engine.batches(sweep):
+        for chunk in batch.chunks(engine.types):
+            before = engine.lines
+            walk(engine, chunk)
+            progress(engine.lines - before)
 
 
 def walk(engine, chunk) -> None:
