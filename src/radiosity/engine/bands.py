@@ -65,6 +65,7 @@ class BandTally:
         received: UInt64, group g of slot s (see `firing`) at s * n_groups + g.
         before: the same of patch numbers, as it was at the last sweep; arrivals_before likewise.
         fired: UInt64, power that left replicate r along lines, at g * replicates + r.
+        weights: UInt32, of group g, what each line of the i-th patch of a sweep carries, at i * n_groups + g.
     """
 
     def __init__(self, engine, groups: BandGroups):
@@ -77,21 +78,22 @@ class BandTally:
         self.before = dr.opaque(types.UInt64, 0, engine.total * self.n)
         self.arrivals_before = dr.opaque(types.UInt32, 0, engine.total)
         self.fired = dr.opaque(types.UInt64, 0, self.n * engine.replicates)
+        self.weights = dr.opaque(types.UInt32, 0, engine.total * self.n)
         self.quanta_before = 0
 
-    def weigh(self, engine, numbers) -> list:
-        """Before a sweep: what each line of the patches ``numbers`` carries, of each group; they are all that received since
-        the last one. No expression may still wait to read the arrays that are written here, or Dr.Jit copies them whole."""
-        types, weights = engine.types, self._weights(engine, numbers)
-        dr.eval(weights)
+    def weigh(self, engine, numbers, places) -> None:
+        """Before a sweep: what each line of the patches ``numbers`` carries, of each group, to ``places`` in ``weights``; in the
+        end of all that received since the last one. No expression may still wait to read the arrays that are written here, or
+        Dr.Jit copies them whole."""
+        types = engine.types
+        self._weigh(engine, numbers, places)
+        dr.eval(self.weights)
         for g in range(self.n):
             dr.scatter(self.before, dr.gather(types.UInt64, self.received, numbers * self.n + g), numbers * self.n + g)
         dr.scatter(self.arrivals_before, dr.gather(types.UInt32, engine.arrivals, numbers), numbers)
         dr.eval(self.before, self.arrivals_before)
-        self.quanta_before = engine.quanta
-        return weights
 
-    def _weights(self, engine, numbers) -> list:
+    def _weigh(self, engine, numbers, places) -> None:
         types = engine.types
         wide = types.Float64
 
@@ -103,26 +105,26 @@ class BandTally:
         arrivals = dr.gather(types.UInt32, engine.arrivals, numbers)
         since = arrivals - dr.gather(types.UInt32, self.arrivals_before, numbers)
         owed = dr.fma(dr.gather(wide, self.share, patch), new, fraction(engine.rho) * wide(since))
-        weights = []
         for g, (share, rho) in enumerate(zip(self.shares, self.rhos, strict=True)):
             received = dr.gather(types.UInt64, self.received, numbers * self.n + g)
             since = received - dr.gather(types.UInt64, self.before, numbers * self.n + g)
             power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, fraction(rho) * wide(since))
             carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
-            weights.append(types.UInt32(dr.floor(carried + 0.5)))
-        return weights
+            dr.scatter(self.weights, types.UInt32(dr.floor(carried + 0.5)), places * self.n + g)
 
-    def deposit(self, types, weights, rank, landed, active, mode) -> None:
-        """In a kernel: lines of the batch's patches (by rank) land in slots."""
-        for g, weight in enumerate(weights):
-            power = types.UInt64(dr.gather(types.UInt32, weight, rank))
+    def deposit(self, types, chunk, landed, active, mode) -> None:
+        """In a kernel: lines land in slots."""
+        place = (chunk.rank + chunk.batch.start) * self.n
+        for g in range(self.n):
+            power = types.UInt64(dr.gather(types.UInt32, self.weights, place + g))
             dr.scatter_add(self.received, power, landed * self.n + g, active=active, mode=mode)
         dr.schedule(self.received)
 
     def count_fired(self, engine, batch) -> None:
         """After a batch: the power that left, summed from the lines' side."""
         types, replicate = engine.types, engine.replicate(batch.numbers)
-        for g, weight in enumerate(batch.weights):
-            power = types.UInt64(weight) * types.UInt64(batch.counts)
-            dr.scatter_add(self.fired, power, replicate + g * engine.replicates)
+        place, fires = (dr.arange(types.UInt32, dr.width(batch.numbers)) + batch.start) * self.n, batch.counts > 0
+        for g in range(self.n):
+            power = types.UInt64(dr.gather(types.UInt32, self.weights, place + g, fires)) * types.UInt64(batch.counts)
+            dr.scatter_add(self.fired, power, replicate + g * engine.replicates, active=fires)
         dr.schedule(self.fired)

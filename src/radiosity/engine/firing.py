@@ -4,7 +4,7 @@ Patch i of replicate r has number r * n_patches + i in every array: replicates g
 patches. After the patches, ``arrivals`` has two slots a replicate: lines escaped, and lines lost on absorbing backs.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import drjit as dr
 import numpy as np
@@ -16,10 +16,11 @@ from . import quanta as contract
 from .bands import BandGroups, BandTally
 from .device import frozen, upload
 from .geometry import Geometry
-from .lanes import Batch, Chunk, Sweep, boxes_for, lines_of
+from .lanes import PIECE, Batch, Chunk, Sweep, boxes_for, lines_of
 from .lines import land, local_line, patch_of
 
 DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
+MANY = 4  # at least one in so many patches was landed on: all are looked through
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
 
@@ -45,7 +46,7 @@ class Engine:
         self.arrivals, self.fired = dr.opaque(u32, 0, width), dr.opaque(u32, 0, self.total)
         self.touched, self.landed = dr.opaque(self.types.Bool, False, width), None
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
-        self.quanta = 0
+        self.counts, self.quanta = dr.opaque(u32, 0, self.total), 0
         self.everywhere, self.owes = True, False
         self.bands = BandTally(self, groups) if groups is not None and groups.n_groups > 1 else None
 
@@ -71,22 +72,20 @@ class Engine:
     # ---- what is owed ----------------------------------------------------------------------------------------------
 
     def candidates(self):
-        """Numbers of all patches that may owe a line: those a line landed on since the last call, or all: in a new stage, or
-        where lines landed nearly everywhere."""
-        types = self.types
-        if self.everywhere:
-            numbers = dr.arange(types.UInt32, self.total)
-        elif self.landed is not None:
+        """Numbers of the patches that may owe a line, those a line landed on since the last call; None for all: in a new stage,
+        or where lines landed on many."""
+        types, numbers = self.types, None
+        if self.landed is not None:
             numbers = np.unique(self.landed)
             numbers = upload(types.UInt32, _not_alone(numbers[numbers < self.total], self.total))
-        else:
-            numbers = dr.compress(self.touched)
-            if dr.width(numbers):  # a stage that was complete has touched nothing
-                numbers = dr.gather(types.UInt32, numbers, dr.compress(numbers < self.total))  # less the slots behind the patches
+        elif not self.everywhere:
+            patches = dr.arange(types.UInt32, dr.width(self.touched)) < dr.opaque(types.UInt32, self.total)
+            touched = self.touched & patches
+            if MANY * lines_of(types, dr.select(touched, types.UInt32(1), types.UInt32(0))) < self.total:
+                numbers = dr.compress(touched)
         if self.landed is None:
             self.touched = dr.opaque(types.Bool, False, self.total + 2 * self.replicates)
         self.everywhere, self.landed = False, None
-        dr.eval(numbers)
         return numbers
 
     def owed(self, numbers):
@@ -101,28 +100,43 @@ class Engine:
 
     def due(self) -> tuple[Sweep | None, int]:
         """What is owed now, and the largest line number among it."""
-        everywhere, numbers = self.everywhere, self.candidates()
-        sweep, largest = self._sweep(numbers, everywhere)
+        numbers = self.candidates()
+        if numbers is None:
+            sweep, largest = self.due_between(0, self.total)
+        else:
+            sweep, largest = self._sweep(numbers, 0, dr.width(numbers), [numbers] if dr.width(numbers) else [])
         self.owes = sweep is not None
         return sweep, largest
 
     def due_between(self, low: int, high: int) -> tuple[Sweep | None, int]:
-        """As `due`, of the patch numbers from ``low`` to below ``high`` alone; grey scenes only."""
-        numbers = dr.arange(self.types.UInt32, high - low) + dr.opaque(self.types.UInt32, low)
-        dr.eval(numbers)
-        return self._sweep(numbers, everywhere=False)
+        """As `due`, of the patch numbers from ``low`` to below ``high`` alone; but all, in grey scenes only."""
+        u32 = self.types.UInt32
+        pieces = (dr.arange(u32, min(PIECE, high - at)) + dr.opaque(u32, at) for at in range(low, high, PIECE))
+        return self._sweep(None, low, high - low, pieces)
 
-    def _sweep(self, numbers, everywhere: bool) -> tuple[Sweep | None, int]:
-        if dr.width(numbers) == 0:
-            return None, 0
-        types = self.types
-        owed = self.owed(numbers)
-        counts, largest = owed - dr.gather(types.UInt32, self.fired, numbers), dr.max(owed)
-        dr.eval(counts, largest)
-        del owed
-        total = lines_of(types, counts)
-        weights = [] if self.bands is None else self.bands.weigh(self, numbers)
-        return (Sweep(None if everywhere else numbers, counts, weights, total), int(largest[0])) if total else (None, 0)
+    def _sweep(self, numbers, low: int, size: int, pieces: Iterable) -> tuple[Sweep | None, int]:
+        types, start = self.types, 0
+        total, largest = dr.opaque(types.UInt64, 0, 2), dr.opaque(types.UInt32, 0, 2)
+        for piece in pieces:
+            dr.eval(piece)
+            places = dr.arange(types.UInt32, dr.width(piece)) + dr.opaque(types.UInt32, start)
+            self._count(piece, places, total, largest)
+            dr.eval(self.counts, total, largest)
+            if self.bands is not None:
+                self.bands.weigh(self, piece, places)
+            start += dr.width(piece)
+        if self.bands is not None:
+            self.bands.quanta_before = self.quanta
+        lines = int(total[0])
+        return (Sweep(numbers, low, size, self.counts, lines), int(largest[0])) if lines else (None, 0)
+
+    def _count(self, numbers, places, total, largest) -> None:
+        """In a kernel: what patch numbers owe now, to ``places`` in ``counts``; the sum of it and the largest line number."""
+        types, owed = self.types, self.owed(numbers)
+        counts, none = owed - dr.gather(types.UInt32, self.fired, numbers), dr.zeros(types.UInt32, dr.width(numbers))
+        dr.scatter(self.counts, counts, places)
+        dr.scatter_add(total, types.UInt64(counts), none, mode=dr.ReduceMode.Expand)
+        dr.scatter_reduce(dr.ReduceOp.Max, largest, owed, none, mode=dr.ReduceMode.Expand)
 
     def record(self, number):
         """Face and place of a patch number, see `Geometry.patch_records`."""
@@ -142,7 +156,7 @@ class Engine:
         """Trace all lines of a sweep and count where they land."""
         types = self.types
         bits = self.numbers.bits_for(largest)
-        boxes = boxes_for(types, sweep.counts) if self.method.coherent else None
+        boxes = boxes_for(types, dr.gather(types.UInt32, sweep.counts, dr.arange(types.UInt32, sweep.size))) if self.method.coherent else None
         few, dense = sweep.total <= FEW, sweep.total > DENSE * self.total
         # a copy of the counters for each thread spares atomic additions, where there are many lines to a counter
         mode = dr.ReduceMode.Expand if dense else dr.ReduceMode.Direct
@@ -172,7 +186,7 @@ class Engine:
         elif not dense:
             dr.scatter(self.touched, self.types.Bool(True), landed, active=real)
         if self.bands is not None:
-            self.bands.deposit(self.types, chunk.batch.weights, chunk.rank, landed, real, mode)
+            self.bands.deposit(self.types, chunk, landed, real, mode)
         dr.eval(self.arrivals, self.touched)
         return landed
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..method.order import run as fire_all
-from ..solution.books import Books, exact_dot, exact_sum
+from ..solution.books import Books, exact_columns, exact_dot, exact_sum
 from . import state as counters
 from .bands import QUANTUM
 from .firing import Engine
@@ -49,6 +49,8 @@ class Firing(AbstractProcess):
 class Arrivals(AbstractTally):
     """Arrivals, each a quantum; or the power of bands that they brought."""
 
+    settles = True
+
     def lines(self, problem: Problem, state: State) -> int:
         return int(state["fired"].sum(dtype=np.uint64))
 
@@ -74,8 +76,9 @@ class Arrivals(AbstractTally):
             share = groups.emission[:, group] * problem.patches.area / source.power
             emitted = round(float(share.sum()) * quanta * QUANTUM) * replicates << 32
         rho = Source.fixed(groups.reflectance[:, group])
-        reflected = sum(exact_dot(row, rho) for row in counts)
-        arrived = exact_sum(counts) << 32
+        low, high = exact_columns(counts)
+        reflected = exact_dot(low, rho) + (exact_dot(high, rho) << 32)
+        arrived = exact_sum(low) + (exact_sum(high) << 32) << 32
         watts = source.power / quanta / unit / 2**32 / replicates
         return Books(
             emitted, fired << 32, reflected, arrived - reflected, exact_sum(missed[0]) << 32, exact_sum(missed[1]) << 32, watts

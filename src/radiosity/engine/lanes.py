@@ -11,7 +11,7 @@ from .device import upload
 
 CHUNK = 1 << 20  # lanes of one launch on a CPU: enough to keep all cores busy, and little memory to touch
 CUDA_CHUNK = 1 << 24  # and on a GPU, which has many more lanes at work at a time, and memory for them
-PIECE = 1 << 19  # patches looked through for a batch: what a batch holds of each need not be there of all patches at a time
+PIECE = 1 << 18  # patches of a batch: what it holds of each need not be there of all patches at a time
 
 
 @dataclass(frozen=True)
@@ -19,46 +19,47 @@ class Sweep:
     """What is fired before anything else is asked: fixed before the first line, so that the pieces it is fired in do not matter.
 
     Attributes:
-        numbers: UInt32, patch numbers; None where they are all patches in their order.
-        counts: UInt32, lines that each of them fires, none or more.
-        weights: UInt32 arrays, the power that each line of theirs carries, one a group of bands; none in grey scenes.
+        numbers: UInt32, patch numbers; None where they are those from ``low`` on.
+        low, size: the first of them, and how many they are.
+        counts: UInt32, lines that each of them fires, none or more; the engine's own, valid until it is asked again.
         total: lines of all.
     """
 
     numbers: Any
+    low: int
+    size: int
     counts: Any
-    weights: list
     total: int
 
     def batches(self, types, fired, records) -> "Iterator[Batch]":
-        """The patches that fire, a piece at a time, with what each has ``fired`` and ``records`` that gives two words for numbers."""
-        width = dr.width(self.counts)
-        for start in range(0, width, PIECE):
-            here = dr.arange(types.UInt32, max(min(PIECE, width - start), 2)) + dr.opaque(types.UInt32, start)
-            inside = here < dr.opaque(types.UInt32, width)
-            rows = dr.compress(inside & (dr.gather(types.UInt32, self.counts, here, inside) > 0))
-            if dr.width(rows):
-                yield self._batch(types, rows + dr.opaque(types.UInt32, start), fired, records)
-
-    def _batch(self, types, rows, fired, records) -> "Batch":
-        numbers = rows if self.numbers is None else dr.gather(types.UInt32, self.numbers, rows)
-        columns = dr.gather(types.UInt32, self.counts, rows), dr.gather(types.UInt32, fired, numbers)
-        return Batch.of(types, numbers, *columns, records, [dr.gather(types.UInt32, weight, rows) for weight in self.weights])
+        """A piece at a time, with what each patch has ``fired`` and ``records`` that gives two words for numbers."""
+        low = dr.opaque(types.UInt32, self.low)
+        for start in range(0, self.size, PIECE):
+            width = min(PIECE, few_sizes(self.size - start))
+            first = dr.opaque(types.UInt32, start)
+            here = dr.arange(types.UInt32, width) + first
+            inside = here < dr.opaque(types.UInt32, self.size)
+            at = dr.select(inside, here, 0)
+            numbers = at + low if self.numbers is None else dr.gather(types.UInt32, self.numbers, at)
+            counts = dr.gather(types.UInt32, self.counts, here, inside)
+            batch = Batch.of(types, numbers, counts, dr.gather(types.UInt32, fired, numbers), records, first)
+            if batch.total:
+                yield batch
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Patches that fire in a piece of a sweep.
+    """Patches that fire in a launch or several: a piece of a sweep.
 
     Attributes:
         numbers: UInt32, patch numbers.
-        counts: UInt32, lines each of them fires now; a last entry may have none (see `paired`).
+        counts: UInt32, lines each of them fires now, or none.
         begins: UInt64, lines of all before it.
         fired: UInt32, lines each has fired before.
         entries: UInt32, in fours, all that a lane asks: the number; what turns the how-manieth lane of all into the
             how-manieth line of the patch (fired + 1 - begins; 32-bit arithmetic goes round, and the sum is right); and the
             patch's record, see `Geometry.patch_records`.
-        weights: as of a `Sweep`.
+        start: where the piece begins in its sweep, on the device.
         total: lines of all.
     """
 
@@ -67,26 +68,23 @@ class Batch:
     begins: Any
     fired: Any
     entries: Any
-    weights: list
+    start: Any
     total: int
 
     @staticmethod
-    def of(types, numbers, counts, fired, records, weights=()) -> "Batch":
-        """From the patches that fire, one or more of them, how often they do and did, ``records`` that gives two words for
-        numbers, and what lines carry."""
-        columns = [numbers, counts, fired, *weights]
+    def of(types, numbers, counts, fired, records, start=0) -> "Batch":
+        """From patches, one or more of them, how often they fire and did, and ``records`` that gives two words for numbers."""
         if dr.width(numbers) == 1:
             both = paired(types, dr.arange(types.UInt32, 1))
-            columns = [dr.gather(types.UInt32, column, both) for column in columns]
-            columns[1] = dr.select(dr.arange(types.UInt32, 2) == 0, columns[1], 0)
-        dr.eval(columns)
-        numbers, counts, fired, *weights = columns
+            numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
+            counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
+        dr.eval(numbers, counts, fired)
         begins = dr.prefix_sum(types.UInt64(counts))
         face, place = records(numbers)
         entries = dr.ravel(types.Array4u(numbers, fired + 1 - types.UInt32(begins), face, place))
         dr.eval(begins, entries)
         last = dr.width(numbers) - 1
-        return Batch(numbers, counts, begins, fired, entries, weights, int(begins[last]) + int(counts[last]))
+        return Batch(numbers, counts, begins, fired, entries, start, int(begins[last]) + int(counts[last]))
 
     def chunks(self, types) -> "Iterator[Chunk]":
         """Launches of at most ``CHUNK`` lanes, or ``CUDA_CHUNK``."""
@@ -95,11 +93,13 @@ class Batch:
             width = min(most, self.total - start)
             first, end = dr.opaque(types.UInt64, start), dr.opaque(types.UInt64, start + width)  # no literals: one kernel for all
             # each entry writes its rank where its lines begin; the running maximum carries it to all of them
-            rank = dr.zeros(types.UInt32, max(width, 2))
-            here = (self.begins < end) & (self.begins + types.UInt64(self.counts) > first)
+            rank = dr.zeros(types.UInt32, few_sizes(width))
+            here = (self.counts > 0) & (self.begins < end) & (self.begins + types.UInt64(self.counts) > first)
             at = types.UInt32(dr.maximum(self.begins, first) - first)
             dr.scatter(rank, dr.arange(types.UInt32, dr.width(self.numbers)), at, active=here)
-            rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, max(width, 2), exclusive=False)
+            rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, dr.width(rank), exclusive=False)
+            dr.eval(rank)
+            rank = dr.reshape(types.UInt32, rank, max(width, 2), shrink=True)
             yield Chunk(self, rank, first, end, width, max(width, 2))
 
 
@@ -162,11 +162,15 @@ def _quotient(types, dividend, divisor):
     return dr.select(rest >= types.Int(divisor), guess + 1, guess)
 
 
+def few_sizes(size: int) -> int:
+    """A power of two, and no less. Dr.Jit keeps the memory that is freed, and gives it to arrays of the same size alone."""
+    return max(2, 1 << (size - 1).bit_length())
+
+
 def lines_of(types, counts) -> int:
     """Sum of 32-bit counts, which may take more. (``dr.sum`` would store them widened first.)"""
     total = dr.opaque(types.UInt64, 0, 2)
     dr.scatter_add(total, types.UInt64(counts), dr.zeros(types.UInt32, dr.width(counts)), mode=dr.ReduceMode.Expand)
-    dr.eval(total)
     return int(total[0])
 
 

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -85,7 +85,13 @@ class AbstractProcess(ABC):
 
 
 class AbstractTally(ABC):
-    """What a process's state means."""
+    """What a process's state means.
+
+    Attributes:
+        settles: with several replicates, results are quick to read and smaller than the state they are read from.
+    """
+
+    settles: ClassVar[bool] = False
 
     @abstractmethod
     def lines(self, problem: Problem, state: State) -> int:

@@ -90,6 +90,8 @@ class Run:
                 break
             at = Progressed(target, lines, self.teller.elapsed, time.perf_counter() - started, error)
             target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=not process.nested)
+            if target and self.replicates > 1:
+                snapshot.settle()
         if snapshot is None:
             if self.resume is None:
                 if status == COUNTERS_FULL:
@@ -172,14 +174,13 @@ class Run:
                 RadiosityWarning,
                 stacklevel=5,
             )
-        books = snapshot.books()
         if isinstance(self.method, Baseline):
-            warn_of_missing(self.method, books, snapshot.state)
-        mean, error = snapshot.irradiance()
+            warn_of_missing(self.method, snapshot.books, snapshot.state)
+        mean, error = snapshot.irradiance
         return Solution(
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
             snapshot.quanta, self.replicates,
-            books, status, self._provenance(), pending or snapshot.state,
+            snapshot.books, status, self._provenance(), pending or snapshot.state,
         )  # fmt: skip
 
     def _provenance(self) -> dict:

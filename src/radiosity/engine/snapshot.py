@@ -1,6 +1,7 @@
 """A complete stage: what its state means for the scene's bands."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from .problem import Problem
 from .process import AbstractBiasedTally, AbstractTally, State
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Snapshot:
     """The problem, the state of a process and how it is read."""
 
@@ -17,7 +18,14 @@ class Snapshot:
     tally: AbstractTally
     state: State
 
-    @property
+    def settle(self) -> None:
+        """Read all that is asked of it now, and let go of the state, where that is quick and takes less memory: what the process
+        writes next goes to a copy of whatever is held."""
+        if self.tally.settles:
+            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.books
+            self.state = {}
+
+    @cached_property
     def quanta(self) -> int:
         return int(self.state["quanta"])
 
@@ -26,20 +34,23 @@ class Snapshot:
         """More quanta would change nothing."""
         return bool(self.state.get("done", False))
 
-    @property
+    @cached_property
     def lines(self) -> int:
         return self.tally.lines(self.problem, self.state)
 
-    @property
+    @cached_property
     def arrivals(self) -> np.ndarray:
         return self.tally.arrivals(self.problem, self.state)
 
+    @cached_property
     def irradiance(self) -> tuple[np.ndarray, np.ndarray]:
         """Mean and standard error, (n_patches, n_bands) each."""
         groups = self.problem.groups
-        columns = [self._irradiance(group) for group in range(groups.n_groups)]
-        scaled = [[x * s for x in columns[g]] for g, s in zip(groups.index, groups.scale, strict=True)]
-        mean, error = (np.stack(column, axis=1) for column in zip(*scaled, strict=True))
+        mean, error = (np.empty((len(self.problem.patches), len(groups.index))) for _ in range(2))
+        for group in range(groups.n_groups):
+            one, its_error = self._irradiance(group)
+            for band in np.flatnonzero(groups.index == group):
+                mean[:, band], error[:, band] = one * groups.scale[band], its_error * groups.scale[band]
         return mean, error
 
     def _irradiance(self, group: int) -> tuple[np.ndarray, np.ndarray]:
@@ -47,15 +58,18 @@ class Snapshot:
         mean, error = mean_and_error(values)
         if isinstance(self.tally, AbstractBiasedTally):
             error = np.hypot(error, self.tally.bias(self.problem, self.state, group))
-        area = self.problem.patches.area
-        return mean * (unit / area), error * (unit / area)
+        factor = unit / self.problem.patches.area
+        mean *= factor
+        error *= factor
+        return mean, error
 
     def error(self) -> float:
         """See `Solution.error`."""
-        irradiance, error = self.irradiance()
+        irradiance, error = self.irradiance
         rho, area = self.problem.patches.reflectance, self.problem.patches.area
         return relative_error(rho * irradiance, rho * error, area, (irradiance, error))
 
+    @cached_property
     def books(self) -> tuple[dict, ...]:
         """See `Solution.books`."""
         groups = self.problem.groups

@@ -63,7 +63,7 @@ def _landed(solution) -> np.ndarray:
 
     collisions = solution.provenance["choices"]["estimator"] == "collision"
     counted = WalkTally(collisions, solution.provenance["choices"]["absorption"] == "fractional")
-    return Snapshot(Problem.of(solution.patches), counted, solution.state).irradiance()[0]
+    return Snapshot(Problem.of(solution.patches), counted, solution.state).irradiance[0]
 
 
 def merged(solution, mesh: DisplayMesh, values: np.ndarray, tolerance: float = TOLERANCE) -> tuple[DisplayMesh, np.ndarray]:

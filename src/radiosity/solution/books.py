@@ -64,3 +64,13 @@ def exact_sum(values: np.ndarray) -> int:
     """Sum of unsigned integers of up to 64 bits without overflow."""
     values = np.asarray(values, np.uint64).ravel()
     return int((values & np.uint64(0xFFFFFFFF)).sum()) + (int((values >> np.uint64(32)).sum()) << 32)
+
+
+def exact_columns(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sums of the columns of unsigned integers without overflow: of their low and of their high 32 bits, uint64 each."""
+    low, high = np.zeros((2, rows.shape[1]), np.uint64)
+    for row in rows:
+        low += row & np.uint32(0xFFFFFFFF)
+        if row.dtype.itemsize > 4:
+            high += row >> np.uint64(32)
+    return low, high

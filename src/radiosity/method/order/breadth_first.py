@@ -16,3 +16,4 @@ def run(engine, progress) -> None:
             return
         engine.fire(sweep, largest)
         progress(sweep.total)
+        del sweep  # and the memory it holds
