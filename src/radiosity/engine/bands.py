@@ -1,5 +1,6 @@
 """Bands: which of them are one problem, and the powers that lines carry where they are not (contract 3)."""
 
+import functools
 from dataclasses import dataclass
 
 import drjit as dr
@@ -47,7 +48,9 @@ class BandGroups:
             else:
                 index[band], scale[band] = len(leaders), 1.0
                 leaders.append(band)
-        return BandGroups(index, scale, emission[:, leaders], reflectance[:, leaders])
+        if leaders != list(range(n_bands)):  # else they are the patches' own arrays, which need no copy
+            emission, reflectance = emission[:, leaders], reflectance[:, leaders]
+        return BandGroups(index, scale, emission, reflectance)
 
     @property
     def n_groups(self) -> int:
@@ -63,7 +66,7 @@ class BandTally:
 
     Attributes:
         received: UInt64, group g of slot s (see `firing`) at s * n_groups + g.
-        before: the same of patch numbers, as it was at the last sweep; arrivals_before likewise.
+        before: the same of patch numbers, as it was at the last sweep.
         fired: UInt64, power that left replicate r along lines, at g * replicates + r.
         weights: UInt32, of group g, what each line of the i-th patch of a sweep carries, at i * n_groups + g.
     """
@@ -71,12 +74,10 @@ class BandTally:
     def __init__(self, engine, groups: BandGroups):
         self.n = groups.n_groups
         types, areas = engine.types, engine.geometry.patches.area
-        self.share = upload(types.Float64, engine.source.share)
         self.shares = [upload(types.Float64, groups.emission[:, g] * areas / engine.source.power) for g in range(self.n)]
         self.rhos = [upload(types.UInt32, Source.fixed(groups.reflectance[:, g])) for g in range(self.n)]
         self.received = dr.opaque(types.UInt64, 0, (engine.total + 2 * engine.replicates) * self.n)
         self.before = dr.opaque(types.UInt64, 0, engine.total * self.n)
-        self.arrivals_before = dr.opaque(types.UInt32, 0, engine.total)
         self.fired = dr.opaque(types.UInt64, 0, self.n * engine.replicates)
         self.weights = dr.opaque(types.UInt32, 0, engine.total * self.n)
         self.quanta_before = 0
@@ -90,8 +91,7 @@ class BandTally:
         dr.eval(self.weights)
         for g in range(self.n):
             dr.scatter(self.before, dr.gather(types.UInt64, self.received, numbers * self.n + g), numbers * self.n + g)
-        dr.scatter(self.arrivals_before, dr.gather(types.UInt32, engine.arrivals, numbers), numbers)
-        dr.eval(self.before, self.arrivals_before)
+        dr.eval(self.before)
 
     def _weigh(self, engine, numbers, places) -> None:
         types = engine.types
@@ -103,12 +103,13 @@ class BandTally:
         patch = numbers - engine.replicate(numbers) * engine.n_opaque
         new = dr.opaque(wide, float(engine.quanta - self.quanta_before))
         arrivals = dr.gather(types.UInt32, engine.arrivals, numbers)
-        since = arrivals - dr.gather(types.UInt32, self.arrivals_before, numbers)
-        owed = dr.fma(dr.gather(wide, self.share, patch), new, fraction(engine.rho) * wide(since))
-        for g, (share, rho) in enumerate(zip(self.shares, self.rhos, strict=True)):
+        since = arrivals - dr.gather(types.UInt32, engine.arrivals_before, numbers)
+        emitted = [dr.gather(wide, share, patch) for share in self.shares]
+        owed = dr.fma(functools.reduce(dr.maximum, emitted), new, fraction(engine.rho) * wide(since))
+        for g, (share, rho) in enumerate(zip(emitted, self.rhos, strict=True)):
             received = dr.gather(types.UInt64, self.received, numbers * self.n + g)
             since = received - dr.gather(types.UInt64, self.before, numbers * self.n + g)
-            power = dr.fma(dr.gather(wide, share, patch), new * QUANTUM, fraction(rho) * wide(since))
+            power = dr.fma(share, new * QUANTUM, fraction(rho) * wide(since))
             carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
             dr.scatter(self.weights, types.UInt32(dr.floor(carried + 0.5)), places * self.n + g)
 

@@ -20,7 +20,7 @@ from .lanes import PIECE, Batch, Chunk, Sweep, boxes_for, lines_of
 from .lines import land, local_line, patch_of
 
 DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
-MANY = 4  # at least one in so many patches was landed on: all are looked through
+MANY = 2  # at least one in so many patches was landed on: all are looked through
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
 
@@ -46,7 +46,8 @@ class Engine:
         self.arrivals, self.fired = dr.opaque(u32, 0, width), dr.opaque(u32, 0, self.total)
         self.touched, self.landed = dr.opaque(self.types.Bool, False, width), None
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
-        self.counts, self.quanta = dr.opaque(u32, 0, self.total), 0
+        self.arrivals_before = dr.opaque(u32, 0, self.total)  # as they were when a patch was last asked what it owes
+        self.quanta = 0
         self.everywhere, self.owes = True, False
         self.bands = BandTally(self, groups) if groups is not None and groups.n_groups > 1 else None
 
@@ -88,14 +89,14 @@ class Engine:
         self.everywhere, self.landed = False, None
         return numbers
 
-    def owed(self, numbers):
-        """UInt32: lines that each of the patch numbers owes in all."""
+    def owed(self, numbers, arrivals):
+        """UInt32: lines that each of the patch numbers owes in all after so many arrivals."""
         types = self.types
         patch = numbers - self.replicate(numbers) * self.n_opaque
         wide = types.UInt64
         rho, fraction = dr.gather(types.UInt32, self.rho, patch), dr.gather(types.UInt32, self.fraction, patch)
         phase = dr.gather(types.UInt32, self.phase, numbers)
-        low = wide(rho) * wide(dr.gather(types.UInt32, self.arrivals, numbers)) + wide(fraction) + wide(phase)
+        low = wide(rho) * wide(arrivals) + wide(fraction) + wide(phase)
         return dr.gather(types.UInt32, self.whole, patch) + types.UInt32(low >> 32)
 
     def due(self) -> tuple[Sweep | None, int]:
@@ -120,21 +121,23 @@ class Engine:
         for piece in pieces:
             dr.eval(piece)
             places = dr.arange(types.UInt32, dr.width(piece)) + dr.opaque(types.UInt32, start)
-            self._count(piece, places, total, largest)
-            dr.eval(self.counts, total, largest)
+            arrivals = dr.gather(types.UInt32, self.arrivals, piece)
+            self._count(piece, arrivals, total, largest)
+            dr.eval(arrivals, total, largest)
             if self.bands is not None:
                 self.bands.weigh(self, piece, places)
+            dr.scatter(self.arrivals_before, arrivals, piece)
+            dr.eval(self.arrivals_before)
             start += dr.width(piece)
         if self.bands is not None:
             self.bands.quanta_before = self.quanta
         lines = int(total[0])
-        return (Sweep(numbers, low, size, self.counts, lines), int(largest[0])) if lines else (None, 0)
+        return (Sweep(numbers, low, size, lines), int(largest[0])) if lines else (None, 0)
 
-    def _count(self, numbers, places, total, largest) -> None:
-        """In a kernel: what patch numbers owe now, to ``places`` in ``counts``; the sum of it and the largest line number."""
-        types, owed = self.types, self.owed(numbers)
+    def _count(self, numbers, arrivals, total, largest) -> None:
+        """In a kernel: the sum of what patch numbers owe now, and the largest line number."""
+        types, owed = self.types, self.owed(numbers, arrivals)
         counts, none = owed - dr.gather(types.UInt32, self.fired, numbers), dr.zeros(types.UInt32, dr.width(numbers))
-        dr.scatter(self.counts, counts, places)
         dr.scatter_add(total, types.UInt64(counts), none, mode=dr.ReduceMode.Expand)
         dr.scatter_reduce(dr.ReduceOp.Max, largest, owed, none, mode=dr.ReduceMode.Expand)
 
@@ -156,12 +159,12 @@ class Engine:
         """Trace all lines of a sweep and count where they land."""
         types = self.types
         bits = self.numbers.bits_for(largest)
-        boxes = boxes_for(types, dr.gather(types.UInt32, sweep.counts, dr.arange(types.UInt32, sweep.size))) if self.method.coherent else None
         few, dense = sweep.total <= FEW, sweep.total > DENSE * self.total
         # a copy of the counters for each thread spares atomic additions, where there are many lines to a counter
         mode = dr.ReduceMode.Expand if dense else dr.ReduceMode.Direct
         landed = []
         for batch in self.batches(sweep):
+            boxes = boxes_for(types, batch.counts) if self.method.coherent else None
             for chunk in batch.chunks(types):
                 places = self._fire(chunk, 32 if few else bits, boxes, few, dense, mode)
                 if few:
@@ -174,7 +177,13 @@ class Engine:
 
     def batches(self, sweep: Sweep) -> Iterator[Batch]:
         """Of a sweep."""
-        return sweep.batches(self.types, self.fired, self.record)
+        return sweep.batches(self.types, self._owing, self.record)
+
+    def _owing(self, numbers):
+        """Lines that patch numbers owe and have fired, as they stood when the sweep was fixed."""
+        types = self.types
+        arrivals = dr.gather(types.UInt32, self.arrivals_before, numbers)
+        return self.owed(numbers, arrivals), dr.gather(types.UInt32, self.fired, numbers)
 
     def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, dense: bool, mode):
         number, index, record = chunk.read(self.types, boxes)

@@ -10,6 +10,7 @@ from ..method.numbers import strata
 from .device import upload
 
 CHUNK = 1 << 20  # lanes of one launch on a CPU: enough to keep all cores busy, and little memory to touch
+CORE_CHUNK = 1 << 18  # and for each core where they are many: launches wait for the last one (measured on 4 to 16 cores)
 CUDA_CHUNK = 1 << 24  # and on a GPU, which has many more lanes at work at a time, and memory for them
 PIECE = 1 << 18  # patches of a batch: what it holds of each need not be there of all patches at a time
 
@@ -21,18 +22,17 @@ class Sweep:
     Attributes:
         numbers: UInt32, patch numbers; None where they are those from ``low`` on.
         low, size: the first of them, and how many they are.
-        counts: UInt32, lines that each of them fires, none or more; the engine's own, valid until it is asked again.
         total: lines of all.
     """
 
     numbers: Any
     low: int
     size: int
-    counts: Any
     total: int
 
-    def batches(self, types, fired, records) -> "Iterator[Batch]":
-        """A piece at a time, with what each patch has ``fired`` and ``records`` that gives two words for numbers."""
+    def batches(self, types, owing, records) -> "Iterator[Batch]":
+        """A piece at a time. For patch numbers ``owing`` gives what each owes in all and has fired, ``records`` two words; no
+        other lines than the batches' are fired until the last one is made."""
         low = dr.opaque(types.UInt32, self.low)
         for start in range(0, self.size, PIECE):
             width = min(PIECE, few_sizes(self.size - start))
@@ -41,8 +41,8 @@ class Sweep:
             inside = here < dr.opaque(types.UInt32, self.size)
             at = dr.select(inside, here, 0)
             numbers = at + low if self.numbers is None else dr.gather(types.UInt32, self.numbers, at)
-            counts = dr.gather(types.UInt32, self.counts, here, inside)
-            batch = Batch.of(types, numbers, counts, dr.gather(types.UInt32, fired, numbers), records, first)
+            owed, fired = owing(numbers)
+            batch = Batch.of(types, numbers, dr.select(inside, owed - fired, 0), fired, records, first)
             if batch.total:
                 yield batch
 
@@ -87,8 +87,9 @@ class Batch:
         return Batch(numbers, counts, begins, fired, entries, start, int(begins[last]) + int(counts[last]))
 
     def chunks(self, types) -> "Iterator[Chunk]":
-        """Launches of at most ``CHUNK`` lanes, or ``CUDA_CHUNK``."""
-        most = CUDA_CHUNK if dr.backend_v(types.UInt32) is dr.JitBackend.CUDA else CHUNK
+        """Launches of a bounded number of lanes."""
+        cuda = dr.backend_v(types.UInt32) is dr.JitBackend.CUDA
+        most = CUDA_CHUNK if cuda else max(CHUNK, CORE_CHUNK * dr.thread_count())
         for start in range(0, self.total, most):
             width = min(most, self.total - start)
             first, end = dr.opaque(types.UInt64, start), dr.opaque(types.UInt64, start + width)  # no literals: one kernel for all
@@ -163,8 +164,9 @@ def _quotient(types, dividend, divisor):
 
 
 def few_sizes(size: int) -> int:
-    """A power of two, and no less. Dr.Jit keeps the memory that is freed, and gives it to arrays of the same size alone."""
-    return max(2, 1 << (size - 1).bit_length())
+    """No less, of four sizes an octave. Dr.Jit keeps the memory that is freed, and gives it to arrays of the same size alone."""
+    step = 1 << max((size - 1).bit_length() - 3, 1)
+    return -(-size // step) * step
 
 
 def lines_of(types, counts) -> int:

@@ -12,7 +12,7 @@ from ..patches import Patches
 from ..solution.model import Solution
 from .baseline_budget import warn_of_missing
 from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder
-from .device import choose
+from .device import choose, give_back_memory
 from .geometry import Geometry
 from .problem import Problem
 from .process import AbstractProcess, make
@@ -25,6 +25,7 @@ COUNTERS_FULL = "counters full before the end; take more replicates"
 ENOUGH = 20.0  # times sqrt(patches): quanta from which on a number of rays is met closely
 TRIAL = 1 << 15  # quanta of that measurement, or an eighth of a replicate's budget
 ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
+LARGE = 1 << 22  # counters: before results are read, memory that sweeps took is given back, which costs some milliseconds
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
 
 
@@ -79,6 +80,8 @@ class Run:
             except Interrupted as reason:
                 status, pending = str(reason), process.capture()
                 break
+            if self.replicates * len(self.patches) > LARGE:
+                give_back_memory()
             snapshot = Snapshot(self.problem, process.tally, process.capture())
             error = snapshot.error() if self.replicates > 1 and self._error_matters else math.nan
             lines = snapshot.lines

@@ -62,7 +62,10 @@ def exact_dot(long: np.ndarray, short: np.ndarray) -> int:
 
 def exact_sum(values: np.ndarray) -> int:
     """Sum of unsigned integers of up to 64 bits without overflow."""
-    values = np.asarray(values, np.uint64).ravel()
+    values = np.asarray(values)
+    if values.dtype.itemsize <= 4:
+        return int(values.sum(dtype=np.uint64))
+    values = values.astype(np.uint64, copy=False).ravel()
     return int((values & np.uint64(0xFFFFFFFF)).sum()) + (int((values >> np.uint64(32)).sum()) << 32)
 
 

@@ -16,7 +16,7 @@ def run(engine, progress) -> None:
 
 def walk_all(engine, sweep, progress) -> None:
     """From the lines of a sweep, a launch at a time."""
-    for batch in engine.batches(sweep):
+    for batch in list(engine.batches(sweep)):  # made before walks fire lines of patches that are still to come
         for chunk in batch.chunks(engine.types):
             before = engine.lines
             walk(engine, chunk)
