@@ -83,6 +83,7 @@ def test_launches_may_end_anywhere(monkeypatch, colored):
         whole = rd.solve(cut, quanta=quanta, replicates=1)
         with monkeypatch.context() as patched:
             patched.setattr(lanes, "CHUNK", 2**14)
+            patched.setattr(lanes, "CORE_CHUNK", 1)
             parts = rd.solve(cut, quanta=quanta, replicates=1)
         assert all(book["closes"] for book in (*whole.books, *parts.books))
         assert all(np.array_equal(parts.state[key], whole.state[key]) for key in whole.state)
