@@ -47,6 +47,7 @@ class Run:
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = first_rung(method.order, replicates, self.problem.source.share)
         self.teller, self.stop = Teller(budget, listener), Stop()
+        self.last: Snapshot | None = None  # of the solution
         self.teller.tell("compiling")
         self.device = choose(device)
         if resume is not None:
@@ -177,13 +178,14 @@ class Run:
                 RadiosityWarning,
                 stacklevel=5,
             )
+        self.last = snapshot
         if isinstance(self.method, Baseline):
             warn_of_missing(self.method, snapshot.books, snapshot.state)
         mean, error = snapshot.irradiance
         return Solution(
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
             snapshot.quanta, self.replicates,
-            snapshot.books, status, self._provenance(), pending or snapshot.state,
+            snapshot.books, status, self._provenance(), pending or snapshot.state, snapshot.surface_power,
         )  # fmt: skip
 
     def _provenance(self) -> dict:

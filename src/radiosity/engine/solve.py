@@ -1,5 +1,7 @@
 """Scene in, solution out."""
 
+from typing import TYPE_CHECKING
+
 from ..errors import MethodError
 from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
@@ -8,6 +10,9 @@ from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
 from .progress import Listener
+
+if TYPE_CHECKING:
+    from .run import Run
 
 
 def solve(
@@ -52,7 +57,13 @@ def solve(
         SceneError: nothing emits. MethodError: a choice or budget that makes no sense, or a solution that cannot be
             resumed. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C before the first stage was complete.
     """
-    chosen = resolve(method, **choices)
+    return prepared(scene, resolve(method, **choices), rays=rays, seconds=seconds, error=error, quanta=quanta, replicates=replicates,
+                    seed=seed, device=device, progress=progress, resume=resume).solve()  # fmt: skip
+
+
+def prepared(scene: Scene | Patches, chosen: Method | Baseline, *, rays=None, seconds=None, error=None, quanta=None, replicates=None,
+             seed=0, device="auto", progress=None, resume=None) -> "Run":  # fmt: skip
+    """A checked run that has not begun; arguments and errors are those of `solve`."""
     usual = 1 if isinstance(chosen, Baseline) else 8
     replicates = usual if replicates is None else _whole(replicates, "replicates", 1)
     seed = _whole(seed, "seed", 0)
@@ -71,7 +82,7 @@ def solve(
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
     from .run import Run
 
-    return Run(scene, chosen, budget, replicates, seed, device, progress, resume).solve()
+    return Run(scene, chosen, budget, replicates, seed, device, progress, resume)
 
 
 def _whole(value, name: str, least: int) -> int:
