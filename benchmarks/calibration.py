@@ -1,50 +1,45 @@
-"""How often the true value lies inside the stated intervals: ``python benchmarks/calibration.py [METHOD ...]``.
-
-A run has eight replicates; its intervals are Student's. Replicates do not know of each other, so one process with a hundred times
-as many holds a hundred runs of different seeds.
+"""Are the stated errors true? ``python benchmarks/calibration.py [METHOD ...]`` prints, for four scenes and two budgets, how
+often the true value lies inside Student's intervals of eight replicates, and for the default method whether a target error is
+reached, and how many more lines it took than were needed.
 """
 
 import sys
 import warnings
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import replace
 
 import numpy as np
 
 import radiosity as rd
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.problem import Problem
-from radiosity.engine.process import make
+from radiosity.lab import cases
+from radiosity.lab.calibration import LEVELS, coverage
+from radiosity.lab.study import Arm, Case
+from radiosity.solution.errors import relative_error
 
-LEVELS = (0.9, 0.95, 0.99)
-REPLICATES, SEEDS = 8, 100
-BUDGETS = (16_000, 1_000_000)  # quanta of a replicate
-REFERENCE = 300_000_000  # lines
-BINS = (0, 3, 10, 30, 100, 300, 1000, 10_000, 100_000, np.inf)  # arrivals of a run's replicates together
-METHODS = ("random-walk",)
-
-
-@dataclass(frozen=True, eq=False)
-class Case:
-    """Patches, and their true irradiance (n_patches,)."""
-
-    name: str
-    patches: rd.Patches
-    truth: np.ndarray
+SEEDS, VISITED = 100, 100  # runs; arrivals of the patches that count as well visited
+BUDGETS = (16_000, 500_000)  # lines of a replicate
+REFERENCE = 400_000_000
+METHODS = ("random-walk", "sobol", "random", "particle-tracing", "stochastic-jacobi", "global-multipath-first-shot")
+TARGETS = (
+    ("labyrinth-0.5", 1, 0.002, None), ("labyrinth-0.5", 1, 0.0005, None), ("room", 3, 0.004, None), ("room", 3, 0.002, None),
+    ("cornell-box", 3, 0.006, None), ("cornell-box", 3, 0.003, None), ("room", 3, 0.0015, "surface:floor"),
+)  # fmt: skip
+RUNS, SLOPE = 100, 0.6
 
 
-def cases() -> list[Case]:
-    """Two furnaces, where the radiosity is one everywhere; the room and an open scene, by long runs of another seed."""
+def known() -> list[tuple[Case, dict[str, np.ndarray]]]:
+    """Cases, and the true radiosity by equation: two furnaces, and long runs of another seed for the room and an open scene."""
     found = []
-    for reflectance in (0.5, 0.9):
-        patches = rd.subdivide(rd.load_scene(f"labyrinth-{reflectance}"), cells=1)
-        found.append(Case(f"labyrinth-{reflectance}", patches, np.ones(len(patches))))
+    for name in ("labyrinth-0.5", "labyrinth-0.9"):
+        case = cases.maze(name)
+        found.append((case, dict.fromkeys(("discrete", "continuous"), cases.ones(case))))
     room = rd.load_scene("room")
     for name, patches in (("room", rd.subdivide(room, cells=3)), ("open", rd.subdivide(open_scene(room), cells=4))):
-        long = rd.solve(patches, rays=REFERENCE, replicates=64, seed=987)
-        print(f"{name}: {len(patches)} patches, the reference's error is {long.error:.3%}", flush=True)
-        found.append(Case(name, patches, long.irradiance[:, 0]))
+        truth = {}
+        for equation in ("discrete", "continuous"):
+            long = rd.solve(patches, rd.Method(equation=equation), rays=REFERENCE, replicates=64, seed=987)
+            print(f"{name}, {equation}: {len(patches)} patches, the reference's error is {long.error:.3%}", flush=True)
+            truth[equation] = long.radiosity[:, 0]
+        found.append((Case(name, patches, None), truth))
     return found
 
 
@@ -58,43 +53,51 @@ def open_scene(room: rd.Scene) -> rd.Scene:
     )  # fmt: skip
 
 
-def runs(case: Case, method: rd.Method, quanta: int, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    """(SEEDS, REPLICATES, n_patches) irradiance, and (SEEDS, n_patches) arrivals (of methods that count them by replicate)."""
-    problem = Problem.of(case.patches)
-    process = make(Geometry(case.patches, choose("cpu")), problem, method, seed, REPLICATES * SEEDS)
-    process.advance(quanta, lambda lines: None)
-    state = process.capture()
-    values, unit = process.tally.irradiance(problem, state, 0)
-    found = np.asarray(values, np.float64).reshape(SEEDS, REPLICATES, -1) * (unit / case.patches.area)
-    counts = state["arrivals"].reshape(SEEDS, REPLICATES, -1).sum(axis=1, dtype=np.int64)
-    return found, counts
+def named(name: str) -> rd.Method:
+    """A preset, or the default with other numbers."""
+    return rd.method.resolve(name) if name in rd.PRESETS else replace(rd.Method(), numbers=name)
 
 
-def covered(found: np.ndarray, truth: np.ndarray) -> np.ndarray:
-    """(SEEDS, n_patches) t statistics of the runs' means."""
-    error = found.std(axis=1, ddof=1) / np.sqrt(found.shape[1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.abs(found.mean(axis=1) - truth) / error
+def targets() -> None:
+    """Runs that go on until their error is reached, against the truth."""
+    for name, cells, target, of in TARGETS:
+        patches = rd.subdivide(rd.load_scene(name), cells=cells)
+        truth = np.ones((len(patches), 1))
+        if not name.startswith("labyrinth"):
+            truth = rd.solve(patches, rays=4 * REFERENCE, replicates=32, seed=987).irradiance
+        rows = slice(None) if of is None else patches.surface == patches.scene.names.index(of.removeprefix("surface:"))
+        rho, area, errors, lines = patches.reflectance[rows], patches.area[rows], [], []
+        for seed in range(RUNS):
+            solution = rd.solve(patches, error=target, error_of=of, seed=seed)
+            errors.append(relative_error(rho * truth[rows], rho * (solution.irradiance - truth)[rows], area, (truth, truth)))
+            lines.append(solution.rays)
+        # a run of as many lines as all these would have its error below this in 95 % of cases: so many lines were needed
+        usual = float(np.quantile(errors, 0.95))
+        needed = (usual / target) ** (1 / SLOPE)
+        print(
+            f"{name} {of or ''} {target:.2%}: reached in {np.mean(np.array(errors) <= target):.0%} of {RUNS} runs; RMS of the "
+            f"true errors {np.sqrt(np.mean(np.square(errors))) / target:.2f} of the target; {np.median(lines):,.0f} lines, "
+            f"{1 / needed:.2f} times those needed",
+            flush=True,
+        )
 
 
 def main(names) -> None:
-    """Print coverage by arrivals."""
-    from scipy.stats import t
-
+    """Print both tables."""
     warnings.simplefilter("ignore")
-    bounds = [t.ppf(0.5 + level / 2, REPLICATES - 1) for level in LEVELS]
-    for case in cases():
+    for case, truth in known():
         for name in names or METHODS:
-            for quanta in BUDGETS:
-                found, counts = runs(case, rd.method.resolve(name), quanta)
-                apart = covered(found, case.truth)
-                apart[np.isnan(apart)] = np.inf
-                print(f"{case.name}, {name}, {quanta:,} quanta a replicate, {counts.sum() / SEEDS:,.0f} arrivals a run")
-                for low, high in pairwise(BINS):
-                    here = (counts >= low) & (counts < high)
-                    if here.any():
-                        shares = " ".join(f"{np.mean(apart[here] <= b):7.3%}" for b in bounds)
-                        print(f"   {low:>7}.. {here.mean():7.2%} of patches {shares}", flush=True)
+            method = named(name)
+            for lines in BUDGETS:
+                arm = Arm(name, method, name)
+                row = coverage(arm, case, truth[method.equation], 1, lines=lines, seeds=SEEDS, visited=VISITED)
+                shares = "  ".join(
+                    f"{level:.0%}: {100 * share:5.1f} ± {100 * error:.1f}"
+                    for level, (share, error) in zip(LEVELS, row.covered, strict=True)
+                )
+                print(f"{case.name:<14} {name:<28} {lines:>9,} lines  {row.visited:4.0%} of patches  {shares}", flush=True)
+    if not names:
+        targets()
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """Discretisation error apart from sampling error: the same scene solved on two meshes.
 
-A solution is constant on each patch and, of discrete methods, sends light from all of it alike. What that costs is seen where every
-patch is cut into four: how much the mean over a patch changes, and how much its four children differ among each other. Both fall as
-patches shrink, and what replicates say of either's noise is taken out.
+A solution is constant on each patch and, of discrete methods, sends light from all of it alike. What that costs is seen where
+every patch is cut into four: how much the mean over a patch changes, and how much its four children differ among each other. Both
+fall as patches shrink, and what replicates say of either's noise is taken out.
 """
 
 from dataclasses import replace
@@ -22,17 +22,19 @@ def refine_check(scene: Scene | Patches, method="random-walk", *, replicates: in
     """Solve on the patches, and on four times as many with as many lines a patch.
 
     Args:
-        scene, method, replicates, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first run, and the second
-            takes four times as many of the first two, as much time, or the same ``error``.
+        scene, method, replicates, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first run, and
+        the
+            second takes four times as many of the first two, as much time, or the same ``error``.
 
     Raises:
-        MethodError: as of `solve`, or fewer than 2 replicates: then nothing tells noise from change. SceneError: patches too small.
+        MethodError: as of `solve`, or fewer than 2 replicates: then nothing tells noise from change. SceneError: patches too
+            small. KeyboardInterrupt: before both runs had a complete stage.
     """
     from .solve import prepared
 
     chosen = resolve(method, **{k: v for k, v in choices.items() if k not in RUN})
     if isinstance(chosen, Baseline):
-        raise MethodError("a refine check needs errors from replicates, which baselines have none of; cut the scene finer instead")
+        raise MethodError("a refine check needs errors from replicates, which baselines have none of; cut the scene finer")
     if replicates < 2:
         raise MethodError(f"replicates is {replicates}; a refine check needs 2 or more, to tell noise from change")
     coarse = subdivide(scene, **cut_for(chosen)) if isinstance(scene, Scene) else scene

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..solution.errors import mean_and_error, relative_error
+from ..solution.errors import inner_products, margin, mean_and_error, relative_error
 from ..solution.intervals import least_error
 from .problem import Problem
 from .process import AbstractBiasedTally, AbstractTally, State
@@ -85,11 +85,21 @@ class Snapshot:
         error *= factor
         return mean, error
 
-    def error(self) -> float:
-        """See `Solution.error`."""
-        irradiance, error = self.irradiance
-        rho, area = self.problem.patches.reflectance, self.problem.patches.area
+    def error(self, rows: np.ndarray | slice = slice(None)) -> float:
+        """See `Solution.error`; of some patches."""
+        irradiance, error = (values[rows] for values in self.irradiance)
+        rho, area = self.problem.patches.reflectance[rows], self.problem.patches.area[rows]
         return relative_error(rho * irradiance, rho * error, area, (irradiance, error))
+
+    def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
+        """How many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""
+        area, groups, found = self.problem.patches.area[rows], self.problem.groups, []
+        for group in range(groups.n_groups):
+            values, _ = self.tally.irradiance(self.problem, self.state, group)
+            rho = groups.reflectance[rows, group]
+            weight = (rho if rho.any() else np.ones(len(rho))) / np.sqrt(area)
+            found.append(margin(inner_products(np.asarray(values)[:, rows], weight), len(values)))
+        return max(found)
 
     @cached_property
     def books(self) -> tuple[dict, ...]:

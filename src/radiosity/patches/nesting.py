@@ -15,7 +15,7 @@ def halved(patches: Patches) -> Patches:
     """
     most = int(max(patches.columns.max(), patches.rows.max()))
     if 2 * most > cells.MOST:
-        raise SceneError(f"a face is cut into {most} cells along an edge; at most {cells.MOST // 2} can be halved: take larger patches")
+        raise SceneError(f"a face has {most} cells along an edge; at most {cells.MOST // 2} can be halved: take larger patches")
     return Patches(patches.scene, patches.columns * 2, patches.rows * 2)
 
 

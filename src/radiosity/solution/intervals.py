@@ -1,8 +1,8 @@
 """Intervals that hold the true value with a stated probability (contract 5).
 
 Replicates are independent, so (mean - truth) / standard error follows Student's distribution with one degree of freedom less than
-there are replicates, where enough lines landed for the mean of one replicate to be near normal. Where few did, their number is what
-is known: it is taken as Poisson's (which low discrepancy does not exceed), and bounds what the patch receives from above
+there are replicates, where enough lines landed for the mean of one replicate to be near normal. Where few did, their number is
+what is known: it is taken as Poisson's (which low discrepancy does not exceed), and bounds what the patch receives from above
 (F. Garwood, "Fiducial limits for the Poisson distribution", Biometrika 28, 1936).
 """
 

@@ -82,9 +82,9 @@ class Solution:
         return self.arrivals < intervals.FEW
 
     def interval(self, level: float = 0.95, quantity: str = "radiosity") -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper end, (n_patches, n_bands) each, in the solution's unit, of intervals that hold the true value of a patch
-        with probability ``level``: Student's over replicates, and where `few` lines landed up to a bound from their number. NaN
-        where unknown: without replicates.
+        """Lower and upper end, (n_patches, n_bands) each, in the solution's unit, of intervals that hold the true value of a
+        patch with probability ``level``: Student's over replicates, and where `few` lines landed up to a bound from their number.
+        NaN where unknown: without replicates.
 
         Args:
             quantity: "radiosity" or "irradiance".

@@ -7,6 +7,7 @@ import numpy as np
 
 from .model import Solution
 
+MOST_ROWS = 24
 ORDER = 1.0  # of the change of patch means in the patch size, see docs/errors.md
 
 
@@ -33,7 +34,7 @@ class RefineCheck:
 
     @cached_property
     def change(self) -> np.ndarray:
-        """(n_patches, n_bands) how much the mean radiosity of a patch changes when all patches are cut into four, noise included."""
+        """(n_patches, n_bands) how much a patch's mean radiosity changes when all patches are cut into four, noise included."""
         return self.fine_mean - self.coarse.radiosity
 
     @cached_property
@@ -43,14 +44,14 @@ class RefineCheck:
 
     @cached_property
     def square_of_means(self) -> np.ndarray:
-        """(n_patches, n_bands) estimate of the squared discretisation error of a patch's mean: that of the change, its noise taken out
-        (so it may be negative where there is little but noise), extrapolated to ever smaller patches."""
+        """(n_patches, n_bands) estimate of the squared discretisation error of a patch's mean: that of the change, its noise
+        taken out (so it may be negative where there is little but noise), extrapolated to ever smaller patches."""
         return (self.change**2 - self.change_error**2) / (1 - 2.0**-ORDER) ** 2
 
     @cached_property
     def square_within(self) -> np.ndarray:
-        """(n_patches, n_bands) the same of what a constant leaves out within a patch: the mean square of B(x) less the patch's mean. Its
-        four children show three quarters of it, where B is linear."""
+        """(n_patches, n_bands) the same of what a constant leaves out within a patch: the mean square of B(x) less the patch's
+        mean. Its four children show three quarters of it, where B is linear."""
         apart = self.fine.radiosity - self.fine_mean[self.parent]
         noise = self._mean(self.fine.standard_error**2) - self.fine_error**2
         return (self._mean(apart**2) - noise) * (4 / 3)
@@ -61,9 +62,13 @@ class RefineCheck:
         return np.stack(sums, axis=1) / self.coarse.patches.area[:, None]
 
     def table(self) -> list[dict]:
-        """A row for each surface, and one for the whole scene; all relative to the RMS of what is reflected (of the irradiance, where nothing
-        is), the largest of the bands. Keys: surface, patches, sampling (standard error), discretisation (of means), within (of
-        constants within patches), change (of the surface's mean radiosity, signed, of the band that changes most)."""
+        """A row for the whole scene and one for each surface; errors are RMS over the patches' area, relative to that of the
+        light reflected (of the radiosity, where nothing is), the largest of the bands.
+
+        Keys: surface, patches, sampling (standard error of the coarse solution), discretisation (of patch means), within (what
+        constants leave out within patches), change (of the mean radiosity over the surface, signed, of the band that it is
+        largest in).
+        """
         patches = self.coarse.patches
         names = ["the whole scene", *patches.scene.names]
         rows = [np.ones(len(patches), bool), *(patches.surface == i for i in range(len(patches.scene.names)))]
@@ -84,6 +89,33 @@ class RefineCheck:
             "discretisation": relative(self.square_of_means), "within": relative(self.square_within),
             "change": float(moved[np.nanargmax(np.abs(moved))]) if np.isfinite(moved).any() else float("nan"),
         }  # fmt: skip
+
+    def report(self) -> str:
+        """The table in plain text, the surfaces with the largest errors first."""
+        first, *rows = self.table()
+        rows.sort(key=lambda row: -max(row["sampling"], row["discretisation"]))
+        shown = [first, *rows[:MOST_ROWS]]
+        width = max(len(row["surface"][:32]) for row in shown)
+        head = f"{'errors of the reflected light':<{width}} {'sampling':>9} {'patch means':>12} {'within':>8} {'mean moves':>11}"
+        lines = [f"refine check: {len(self.fine.patches)} patches against {len(self.coarse.patches)}", head]
+        for row in shown:
+            lines.append(
+                f"{row['surface'][:32]:<{max(width, 29)}} {row['sampling']:>9.2%} {row['discretisation']:>12.2%} "
+                f"{row['within']:>8.2%} {row['change']:>+11.2%}"
+            )
+        if len(rows) > MOST_ROWS:
+            lines.append(f"... and {len(rows) - MOST_ROWS} more surfaces (export a .csv for all)")
+        return "\n".join(lines)
+
+    def export(self, path) -> None:
+        """Write the table as CSV.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        from ..image.tables import write_rows
+
+        write_rows(self.table(), path)
 
 
 def _largest(values: np.ndarray) -> float:
