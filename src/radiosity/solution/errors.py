@@ -39,7 +39,8 @@ def margin(spread: np.ndarray, replicates: int) -> float:
         return 1.0
     trace, square = spread.trace() / free, (spread**2).sum() / free**2
     square = (square - trace**2 / free) * free**2 / max((free - 1) * (free + 2), 1)
-    nu = float(np.clip(trace**2 / square if square > 0 else MANY, 1.0, MANY))
+    of_trace = trace**2 - 2 * square / free
+    nu = float(np.clip(of_trace / square if square > 0 else MANY, 1.0, MANY))
     return float(np.sqrt(f.ppf(SURE, nu, nu * free)))
 
 

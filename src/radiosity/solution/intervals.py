@@ -2,8 +2,9 @@
 
 Replicates are independent, so (mean - truth) / standard error follows Student's distribution with one degree of freedom less than
 there are replicates, where enough lines landed for the mean of one replicate to be near normal. Where few did, their number is
-what is known: it is taken as Poisson's (which low discrepancy does not exceed), and bounds what the patch receives from above
-(F. Garwood, "Fiducial limits for the Poisson distribution", Biometrika 28, 1936).
+what is known: as that of Poisson's lines, or of clusters of lines where arrivals vary more than Poisson's (all patches share one
+sequence, so at few lines a patch they come in clusters), it bounds what the patch receives from above (F. Garwood, "Fiducial
+limits for the Poisson distribution", Biometrika 28, 1936).
 """
 
 import numpy as np
@@ -43,13 +44,26 @@ def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.n
     return np.where(own > 0, own, usual)
 
 
-def irradiance_bound(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, level: float) -> np.ndarray:
-    """(n_patches, n_bands) what the irradiance does not exceed, with a probability of ``level``, by Poisson's distribution of
+def cluster(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """(n_bands,) lines that come together: the variance of arrivals over their number, on patches that few reached; 1 at
+    least."""
+    here = (arrivals > 0) & (arrivals < FEW)
+    if not here.any():
+        return np.ones(irradiance.shape[1])
+    one = power_of_an_arrival(irradiance, arrivals, area)[here]
+    relative = np.divide(error[here] * area[here, None], one, out=np.zeros_like(one), where=one > 0)
+    return np.maximum((relative**2).sum(axis=0) / arrivals[here].sum(), 1)
+
+
+def irradiance_bound(
+    irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, level: float, cluster: np.ndarray | float = 1.0
+) -> np.ndarray:
+    """(n_patches, n_bands) what the irradiance does not exceed, with a probability of ``level``, by the distribution of
     arrivals alone: rough where many landed, and all that is known where none did. Arguments as of `power_of_an_arrival`."""
     from scipy.stats import chi2
 
-    most = chi2.ppf(level, 2 * (arrivals + 1)) / 2
-    return most[:, None] * power_of_an_arrival(irradiance, arrivals, area) / area[:, None]
+    most = cluster * chi2.ppf(level, 2 * (arrivals[:, None] / cluster + 1)) / 2
+    return most * power_of_an_arrival(irradiance, arrivals, area) / area[:, None]
 
 
 def least_error(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
@@ -68,7 +82,9 @@ def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.nd
     mean, few = solution.irradiance, solution.few
     half = student(level, solution.replicates) * solution.irradiance_standard_error
     low, high = np.maximum(mean - half, 0), mean + half
-    bound = irradiance_bound(mean, solution.arrivals, solution.patches.area, 0.5 + level / 2)
+    counted = (mean, solution.arrivals, solution.patches.area)
+    together = cluster(mean, solution.irradiance_standard_error, *counted[1:])
+    bound = irradiance_bound(*counted, 0.5 + level / 2, together)
     high = np.where(few[:, None], np.maximum(high, bound), high)  # NaN stays
     if quantity == "irradiance":
         return low, high
