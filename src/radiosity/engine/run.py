@@ -11,7 +11,7 @@ from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import Solution
 from .baseline_budget import warn_of_missing
-from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder
+from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .device import choose, give_back_memory
 from .geometry import Geometry
 from .problem import Problem
@@ -19,6 +19,7 @@ from .process import AbstractProcess, make
 from .progress import Interrupted, Listener, Stop, Teller
 from .snapshot import Snapshot
 from .state import check_same
+from .target import rows_of
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
@@ -33,7 +34,7 @@ class Run:
     """A problem, a method and a budget."""
 
     def __init__(self, patches: Patches, method: Method | Baseline, budget: Budget, replicates: int, seed: int, device: str,
-                 listener: Listener | None, resume: Solution | None):  # fmt: skip
+                 listener: Listener | None, resume: Solution | None, error_of: str | None = None):  # fmt: skip
         self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
         self.replicates, self.resume = replicates, resume
         self.seconds_before = 0.0 if resume is None else resume.seconds
@@ -47,6 +48,8 @@ class Run:
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = first_rung(method.order, replicates, self.problem.source.share)
         self.teller, self.stop = Teller(budget, listener), Stop()
+        self.last: Snapshot | None = None  # of the solution
+        self.error_of, self.rows = error_of, slice(None) if error_of is None else rows_of(patches, error_of)
         self.teller.tell("compiling")
         self.device = choose(device)
         if resume is not None:
@@ -83,16 +86,23 @@ class Run:
             if self.replicates * len(self.patches) > LARGE:
                 give_back_memory()
             snapshot = Snapshot(self.problem, process.tally, process.capture())
-            error = snapshot.error() if self.replicates > 1 and self._error_matters else math.nan
+            known = self.replicates > 1 and self._error_matters
+            error = snapshot.error(self.rows) if known else math.nan
+            margin = snapshot.margin(self.rows) if known and self.budget.error is not None else 1.0
             lines = snapshot.lines
-            self.teller.complete(lines, target, error)
+            self.teller.complete(lines, target, error, margin)
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
                 break
             if snapshot.done:
                 break
-            at = Progressed(target, lines, self.teller.elapsed, time.perf_counter() - started, error)
-            target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=not process.nested)
+            stage, slope = time.perf_counter() - started, self.teller.slope
+            at = Progressed(target, lines, self.teller.elapsed, stage, error * margin, slope)
+            replay = not process.nested
+            if replay and self._missed(at):
+                process, target = self._anew(target), rung_after(target, self.rung)
+                continue
+            target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
             if target and self.replicates > 1:
                 snapshot.settle()
         if snapshot is None:
@@ -105,12 +115,24 @@ class Run:
             status = COUNTERS_FULL
         return self._solution(snapshot, status, pending)
 
+    def _missed(self, at: Progressed) -> bool:
+        """The stage was to be the last, and its error is above what was asked for."""
+        return self.budget.error is not None and at.error > self.budget.error and not on_ladder(at.quanta, self.rung)
+
+    def _anew(self, quanta: int) -> AbstractProcess:
+        """A process at the rung below N: none can go on from N itself to the bits of a longer run."""
+        process, rung = self._process(self.problem, self.replicates), self.rung
+        while rung < quanta:
+            process.advance(rung, self._tried)
+            rung = rung_after(rung, self.rung)
+        return process
+
     def _reached(self, snapshot: Snapshot) -> bool:
         """The budget was used up; else the counters were. Where nothing is received there is no error to wait for."""
         if snapshot.done:
             return True
         if self.budget.error is not None:
-            return not self.teller.error > self.budget.error
+            return not self.teller.bound > self.budget.error
         if self.budget.quanta is not None:
             return snapshot.quanta >= self.budget.quanta
         return self.budget.rays is None or snapshot.lines >= 0.5 * self.budget.rays
@@ -177,13 +199,14 @@ class Run:
                 RadiosityWarning,
                 stacklevel=5,
             )
+        self.last = snapshot
         if isinstance(self.method, Baseline):
             warn_of_missing(self.method, snapshot.books, snapshot.state)
         mean, error = snapshot.irradiance
         return Solution(
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
             snapshot.quanta, self.replicates,
-            snapshot.books, status, self._provenance(), pending or snapshot.state,
+            snapshot.books, status, self._provenance(), pending or snapshot.state, snapshot.surface_power,
         )  # fmt: skip
 
     def _provenance(self) -> dict:
@@ -191,6 +214,6 @@ class Run:
             "scene": self.patches.scene.hash, "source": self.patches.scene.source, "method": str(self.method),
             "choices": asdict(self.method), "seed": self.seed, "replicates": self.replicates, "device": self.device.name,
             "patches": len(self.patches), "cut": self.patches.hash,
-            "budget": {k: v for k, v in vars(self.budget).items() if v is not None},
+            "budget": {k: v for k, v in {**vars(self.budget), "error_of": self.error_of}.items() if v is not None},
             "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }  # fmt: skip

@@ -1,5 +1,7 @@
 """Scene in, solution out."""
 
+from typing import TYPE_CHECKING
+
 from ..errors import MethodError
 from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
@@ -8,6 +10,9 @@ from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
 from .progress import Listener
+
+if TYPE_CHECKING:
+    from .run import Run
 
 
 def solve(
@@ -23,6 +28,7 @@ def solve(
     device: str = "auto",
     progress: Listener | None = None,
     resume: Solution | None = None,
+    error_of: str | None = None,
     **choices,
 ) -> Solution:
     """Solve B = E + rho F B.
@@ -34,7 +40,9 @@ def solve(
             another order or other lines than the method's drop its warm-up.
         rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
-            scene (`Solution.error`); or N of each replicate, which replays a run bit for bit.
+            scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run bit
+            for bit.
+        error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead.
         replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
         seed: with the same inputs, the same bits.
         device: "auto", "cpu" or "cuda".
@@ -52,7 +60,17 @@ def solve(
         SceneError: nothing emits. MethodError: a choice or budget that makes no sense, or a solution that cannot be
             resumed. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C before the first stage was complete.
     """
-    chosen = resolve(method, **choices)
+    return prepared(
+        scene, resolve(method, **choices), rays=rays, seconds=seconds, error=error, quanta=quanta, replicates=replicates,
+        seed=seed, device=device, progress=progress, resume=resume, error_of=error_of,
+    ).solve()  # fmt: skip
+
+
+def prepared(
+    scene: Scene | Patches, chosen: Method | Baseline, *, rays=None, seconds=None, error=None, quanta=None, replicates=None,
+    seed=0, device="auto", progress=None, resume=None, error_of=None,
+) -> "Run":  # fmt: skip
+    """A checked run that has not begun; arguments and errors are those of `solve`."""
     usual = 1 if isinstance(chosen, Baseline) else 8
     replicates = usual if replicates is None else _whole(replicates, "replicates", 1)
     seed = _whole(seed, "seed", 0)
@@ -69,9 +87,11 @@ def solve(
         raise MethodError(f"resume takes a Solution, not {type(resume).__name__}; load a file with load_solution")
     if resume is not None and len(resume.patches) != len(scene):
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
+    if error_of is not None and error is None:
+        raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
     from .run import Run
 
-    return Run(scene, chosen, budget, replicates, seed, device, progress, resume).solve()
+    return Run(scene, chosen, budget, replicates, seed, device, progress, resume, error_of)
 
 
 def _whole(value, name: str, least: int) -> int:

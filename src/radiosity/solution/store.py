@@ -49,6 +49,8 @@ def save(solution: Solution, path: Path) -> None:
             paints[which] = {"images": len(paint.images), "limit": None if np.isinf(paint.limit) else paint.limit}
     arrays |= {"patches_columns": patches.columns, "patches_rows": patches.rows}
     arrays |= {name: getattr(solution, name) for name in SOLUTION_ARRAYS}
+    if solution.surface_power is not None:
+        arrays["surface_power"] = solution.surface_power
     arrays |= {"radiosity": solution.radiosity, "standard_error": solution.standard_error}
     arrays |= {f"state_{name}": value for name, value in solution.state.items()}
     meta = {name: getattr(solution, name) for name in SCALARS}
@@ -116,7 +118,8 @@ def _restore(arrays: dict, meta: dict) -> Solution:
     state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
-    return Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars, state=state)
+    scalars |= {"state": state, "surface_power": arrays.get("surface_power")}
+    return Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars)
 
 
 def _camera(origin, target, up, **rest) -> Camera:
