@@ -49,6 +49,7 @@ def solve(
     coherent: Flag = False,
     max_reflectance: float = 0.95,
     strict: Flag = False,
+    allow_outside: Flag = False,
     exposure: Stops = None,
 ) -> int:
     """Solve a scene, print a report and write the outputs.
@@ -129,6 +130,8 @@ def solve(
         Bring larger reflectances in the scene down to this.
     strict
         Faults in the scene that could be skipped with a warning are errors.
+    allow_outside
+        The scene may name files (includes, meshes, textures) outside its folder.
     exposure
         Of pictures and meshes: stops brighter than the automatic scale; +1 is twice.
     """
@@ -152,7 +155,7 @@ def solve(
     chosen = rd.method.resolve(method, **choices)
     if not given and isinstance(chosen, rd.Method):
         asked["rays"] = DEFAULT_RAYS
-    loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict)
+    loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside)
     before = None if resume is None else rd.load_solution(resume)
     patches = loaded
     if patch_size is not None or cells is not None:

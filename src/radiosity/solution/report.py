@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from ..errors import printable
+
 MOST_ROWS = 24
 
 
@@ -14,7 +16,8 @@ def report(solution) -> str:
     error = _error(solution)
     unvisited = int((solution.arrivals == 0).sum())
     lines = [
-        f"scene     {scene.source}: {scene.n_faces} faces, {len(scene.names)} surfaces, {len(solution.patches)} patches",
+        f"scene     {printable(scene.source)}: {scene.n_faces} faces, {len(scene.names)} surfaces, "
+        f"{len(solution.patches)} patches",
         f"method    {solution.provenance['method']}, seed {solution.provenance['seed']}",
         f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({rate / 1e6:.1f} million a second), {_counted(solution)}",
         f"error     {error}",
@@ -52,7 +55,7 @@ def _surfaces(solution) -> list[str]:
     rows, scene = solution.surface_table(), solution.patches.scene
     tails = [f" [{name}]" for name in scene.bands] if len(scene.bands) > 1 else [""]
     rows.sort(key=lambda row: -sum(row[f"left{tail}"] for tail in tails))
-    width = max(len("surface"), *(min(len(row["surface"]), 32) for row in rows[:MOST_ROWS]))
+    width = max(len("surface"), *(min(len(printable(row["surface"])), 32) for row in rows[:MOST_ROWS]))
     short = [name[0].upper() if len(scene.bands) == 3 else name for name in scene.bands] if len(tails) > 1 else [""]
     heads = [f"B {s}".strip() for s in short] + [f"H {s}".strip() for s in short]
     title = f"{'surface':<{width}} {'patches':>8} {'area m²':>9} " + " ".join(f"{h:>9}" for h in heads) + f" {'error':>7}"
@@ -61,7 +64,7 @@ def _surfaces(solution) -> list[str]:
         values = [row[f"radiosity{t}"] for t in tails] + [row[f"irradiance{t}"] for t in tails]
         error = "?" if np.isnan(row["error"]) else f"{row['error']:.2%}"
         result.append(
-            f"{row['surface'][:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
+            f"{printable(row['surface'])[:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
             + " ".join(f"{v:>9.4g}" for v in values)
             + f" {error:>7}"
         )
