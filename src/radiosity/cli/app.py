@@ -8,7 +8,7 @@ from io import TextIOWrapper
 
 from cyclopts import App, CoercionError, CycloptsError
 
-from ..errors import DeviceError, RadiosityError, RadiosityWarning
+from ..errors import DeviceError, RadiosityError, RadiosityWarning, printable
 from . import interrupts
 from .check import check
 from .doctor import doctor
@@ -87,7 +87,7 @@ def run(arguments: list[str]) -> int:
 
 def say(kind: str, message) -> None:
     """One line on stderr: ``radiosity: error: ...``."""
-    print(f"radiosity: {kind}: {' '.join(str(message).split())}", file=sys.stderr, flush=True)
+    print(f"radiosity: {kind}: {printable(' '.join(str(message).split()))}", file=sys.stderr, flush=True)
 
 
 @contextmanager

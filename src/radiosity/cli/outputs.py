@@ -3,7 +3,7 @@
 import tempfile
 from pathlib import Path
 
-from ..errors import OutputError, RadiosityError
+from ..errors import OutputError, RadiosityError, printable
 
 
 def check(paths) -> None:
@@ -39,7 +39,7 @@ def write(solution, paths, *, exposure: float | None = None) -> None:
             failures.append(f"{path}: {type(error).__name__}: {error}")
         else:
             saved |= Path(path).suffix.lower() == ".npz"
-            print(f"wrote {path}")
+            print(f"wrote {printable(path)}")
     if failures:
         kept = "" if saved else f"; the solution was kept in {_rescue(solution)}"
         raise OutputError("; ".join(failures) + kept)

@@ -51,6 +51,7 @@ def solve(
     max_reflectance: float = 0.95,
     strict: Flag = False,
     refine_check: Flag = False,
+    allow_outside: Flag = False,
     exposure: Stops = None,
 ) -> int:
     """Solve a scene, print a report and write the outputs.
@@ -136,6 +137,8 @@ def solve(
     refine_check
         Solve on patches cut into four, too, and report sampling and discretisation errors apart; with a .csv output also as
         NAME.refine.csv.
+    allow_outside
+        The scene may name files (includes, meshes, textures) outside its folder.
     exposure
         Of pictures and meshes: stops brighter than the automatic scale; +1 is twice.
     """
@@ -162,7 +165,7 @@ def solve(
     chosen = rd.method.resolve(method, **choices)
     if not given and isinstance(chosen, rd.Method):
         asked["rays"] = DEFAULT_RAYS
-    loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict)
+    loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside)
     before = None if resume is None else rd.load_solution(resume)
     patches = loaded
     if patch_size is not None or cells is not None:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ..errors import printable
 from .intervals import FEW
 
 MOST_ROWS = 24
@@ -16,7 +17,8 @@ def report(solution) -> str:
     error = _error(solution)
     unvisited = int((solution.arrivals == 0).sum())
     lines = [
-        f"scene     {scene.source}: {scene.n_faces} faces, {len(scene.names)} surfaces, {len(solution.patches)} patches",
+        f"scene     {printable(scene.source)}: {scene.n_faces} faces, {len(scene.names)} surfaces, "
+        f"{len(solution.patches)} patches",
         f"method    {solution.provenance['method']}, seed {solution.provenance['seed']}",
         f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({rate / 1e6:.1f} million a second), {_counted(solution)}",
         f"error     {error}",
@@ -58,7 +60,7 @@ def _surfaces(solution) -> list[str]:
     rows, scene = solution.surface_table(), solution.patches.scene
     tails = [f" [{name}]" for name in scene.bands] if len(scene.bands) > 1 else [""]
     rows.sort(key=lambda row: -sum(row[f"left{tail}"] for tail in tails))
-    width = max(len("surface"), *(min(len(row["surface"]), 32) for row in rows[:MOST_ROWS]))
+    width = max(len("surface"), *(min(len(printable(row["surface"])), 32) for row in rows[:MOST_ROWS]))
     short = [name[0].upper() if len(scene.bands) == 3 else name for name in scene.bands] if len(tails) > 1 else [""]
     heads = [f"B {s}".strip() for s in short] + [f"H {s}".strip() for s in short]
     heads = [f"{head:>9}" for head in heads] + [f"{head:>7}" for head in ("H ±", "error")]
@@ -69,7 +71,7 @@ def _surfaces(solution) -> list[str]:
         values = [row[f"radiosity{t}"] for t in tails] + [row[f"irradiance{t}"] for t in tails]
         error, sure = ("?" if np.isnan(row[key]) else f"{row[key]:.2%}" for key in ("error", "interval"))
         result.append(
-            f"{row['surface'][:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
+            f"{printable(row['surface'])[:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
             + " ".join(f"{v:>9.4g}" for v in values)
             + f" {sure:>7} {error:>7}"
         )

@@ -13,6 +13,7 @@ from ..errors import OutputError, SceneError
 from ..patches.model import Patches
 from ..scene.model import Camera, Scene
 from ..scene.paint import Paint
+from .archive import check_sizes
 from .model import Solution
 
 FORMAT = 1
@@ -83,8 +84,10 @@ def load_solution(path) -> Solution:
     """
     path = Path(path)
     try:
-        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+        with path.open("rb") as opened:
+            check_sizes(opened, path)
+            with np.load(opened, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
         meta = json.loads(str(arrays["meta"]))
         if meta["format"] != FORMAT:
             raise SceneError(f"{path}: written in format {meta['format']}; this version reads {FORMAT}")

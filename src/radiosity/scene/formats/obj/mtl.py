@@ -36,7 +36,7 @@ def read_library(path: Path, options: ReadOptions) -> dict[str, Finish]:
             current = entries.setdefault(" ".join(words[1:]), {})
         else:
             current[words[0].lower()] = (number, " ".join(words[1:]))
-    maps = Maps(path, options.strict)
+    maps = Maps(path, options)
     result = {name: _finish(path, entry, maps) for name, entry in entries.items()}
     if maps.lost:
         warn(f"{path}: textures that cannot be read are left out: {'; '.join(dict.fromkeys(maps.lost))}")
