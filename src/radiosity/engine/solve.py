@@ -1,5 +1,8 @@
 """Scene in, solution out."""
 
+import math
+from pathlib import Path
+
 from ..errors import MethodError
 from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
@@ -23,6 +26,8 @@ def solve(
     device: str = "auto",
     progress: Listener | None = None,
     resume: Solution | None = None,
+    checkpoint: str | Path | None = None,
+    checkpoint_every: float = 30.0,
     **choices,
 ) -> Solution:
     """Solve B = E + rho F B.
@@ -43,6 +48,10 @@ def solve(
             budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
             their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
             from a stage that is a power of two.
+        checkpoint: an .npz file that is written every now and then, whole or not at all, for ``resume=load_solution(checkpoint)``
+            after the process has been killed. Until a first stage is complete it has no results (NaN, 0 quanta). An interruption
+            writes it too; at the end it stays, brought up to date.
+        checkpoint_every: seconds; longer where writing takes more than a fortieth of that.
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
@@ -50,7 +59,8 @@ def solve(
 
     Raises:
         SceneError: nothing emits. MethodError: a choice or budget that makes no sense, or a solution that cannot be
-            resumed. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C before the first stage was complete.
+            resumed. OutputError: no checkpoint can be written there. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C
+            before the first stage was complete; a checkpoint has been written.
     """
     chosen = resolve(method, **choices)
     usual = 1 if isinstance(chosen, Baseline) else 8
@@ -69,9 +79,24 @@ def solve(
         raise MethodError(f"resume takes a Solution, not {type(resume).__name__}; load a file with load_solution")
     if resume is not None and len(resume.patches) != len(scene):
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
+    keeper = None if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
     from .run import Run
 
-    return Run(scene, chosen, budget, replicates, seed, device, progress, resume).solve()
+    return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper).solve()
+
+
+def _keeper(path, every, method: "Method | Baseline"):
+    from .checkpoint import Checkpoint
+
+    try:
+        good = not isinstance(every, bool) and math.isfinite(every) and every >= 0
+    except TypeError:
+        good = False
+    if not good:
+        raise MethodError(f"checkpoint_every is {every!r}; it must be a number of seconds")
+    keeper = Checkpoint(Path(path), float(every))
+    keeper.check(method)
+    return keeper
 
 
 def _whole(value, name: str, least: int) -> int:
