@@ -10,6 +10,7 @@ from ..scene.model import Scene
 from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
+from .checkpoint import Checkpoint
 from .progress import Listener
 
 
@@ -26,7 +27,7 @@ def solve(
     device: str = "auto",
     progress: Listener | None = None,
     resume: Solution | None = None,
-    checkpoint: str | Path | None = None,
+    checkpoint: str | Path | Checkpoint | None = None,
     checkpoint_every: float = 30.0,
     **choices,
 ) -> Solution:
@@ -79,22 +80,26 @@ def solve(
         raise MethodError(f"resume takes a Solution, not {type(resume).__name__}; load a file with load_solution")
     if resume is not None and len(resume.patches) != len(scene):
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
-    keeper = None if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
+    keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
     from .run import Run
 
     return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper).solve()
 
 
-def _keeper(path, every, method: "Method | Baseline"):
-    from .checkpoint import Checkpoint
-
+def _keeper(path, every, method: Method | Baseline) -> Checkpoint:
+    if isinstance(path, Checkpoint):
+        path.check(method)
+        return path
     try:
         good = not isinstance(every, bool) and math.isfinite(every) and every >= 0
     except TypeError:
         good = False
     if not good:
         raise MethodError(f"checkpoint_every is {every!r}; it must be a number of seconds")
-    keeper = Checkpoint(Path(path), float(every))
+    try:
+        keeper = Checkpoint(Path(path), float(every))
+    except TypeError:
+        raise MethodError(f"checkpoint is {path!r}; it must be the path of an .npz file") from None
     keeper.check(method)
     return keeper
 
