@@ -40,6 +40,8 @@ def _counted(solution) -> str:
 
 
 def _error(solution) -> str:
+    if solution.quanta == 0:
+        return "unknown (no stage is complete yet)"
     if solution.replicates < 2:
         return "unknown (one replicate)"
     if np.isnan(solution.error):
