@@ -11,6 +11,7 @@ from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import Solution
 from ..solution.without_results import without_results
+from . import demand
 from .baseline_budget import warn_of_missing
 from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder
 from .checkpoint import Checkpoint
@@ -47,6 +48,7 @@ class Run:
                 f"order '{method.order}' cannot carry {bands} different bands: "
                 "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
             )
+        demand.check(method, patches, bands, replicates, budget.rays)
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = first_rung(method.order, replicates, self.problem.source.share)
         self.teller, self.stop = Teller(budget, listener), Stop()
