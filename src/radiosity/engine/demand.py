@@ -30,7 +30,7 @@ class Demand:
 DEMANDS = {
     "firing": Demand(40e6, 60, 80, 15, 27),
     "walks": Demand(120e6, 60, 80, 36, 17),
-    "gathering": Demand(120e6, 60, 80, 36, 17),
+    "gathering": Demand(120e6, 60, 80, 88, 10),
     "iteration": Demand(10e6, 60, 80, 82, 135),
     "multipath": Demand(115e6, 60, 80, 18, 46),
     "pooling": Demand(100e6, 60, 80, 211, 213),

@@ -4,6 +4,7 @@ import math
 import os
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 from ..errors import MethodError
@@ -95,12 +96,12 @@ def _groups() -> Iterator[float]:
 def _left(folder: Path, limit: str, used: str, cache: str) -> float:
     try:
         most, now = (folder / limit).read_text().strip(), int((folder / used).read_text())
-        if most == "max":
-            return math.inf
-        kept = int(_facts(folder / "memory.stat", " ").get(cache, 0))  # files that would make room
-        return float(int(most) - max(now - kept, 0))
+        left = math.inf if most == "max" else float(int(most) - now)
     except (OSError, ValueError):
         return math.inf
+    with suppress(OSError, KeyError, ValueError):
+        left += min(now, int(_facts(folder / "memory.stat", " ")[cache]))  # files, which make room
+    return left
 
 
 def _process() -> float:
