@@ -203,7 +203,7 @@ def test_intervals_are_seconds(grey, tmp_path, every):
         rd.solve(grey, quanta=10, checkpoint=tmp_path / "a.npz", checkpoint_every=every)
 
 
-def test_writing_takes_a_fortieth_of_the_time(coloured, tmp_path, monkeypatch):
+def test_writing_takes_a_thirtieth_of_the_time(coloured, tmp_path, monkeypatch):
     """A clock of our own: a sweep takes a second, and to write takes three."""
     now, at = [0.0], []
 

@@ -13,8 +13,8 @@ from ..solution.store import save
 from ..solution.whole import check_place
 
 EVERY = 30.0  # seconds
-TIMES = 40  # as long as it takes to write is gone on for at least: 2.5 % of the time
-RATE = 200e6  # bytes a second that a disk is taken to write at, before it has been measured
+TIMES = 30  # as long as it takes to write is gone on for at least: 3 % of the time
+RATE = 60e6  # bytes a second that a disk is taken to write at, before it has been measured
 WHOLE = {
     "full-matrix": "a full matrix is made whole or not at all",
     "hierarchical": "hierarchical radiosity keeps no links in its results",

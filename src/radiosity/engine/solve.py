@@ -52,7 +52,7 @@ def solve(
         checkpoint: an .npz file that is written every now and then, whole or not at all, for ``resume=load_solution(checkpoint)``
             after the process has been killed. Until a first stage is complete it has no results (NaN, 0 quanta). An interruption
             writes it too; at the end it stays, brought up to date.
-        checkpoint_every: seconds; longer where writing takes more than a fortieth of that.
+        checkpoint_every: seconds; longer where writing takes more than a thirtieth of that.
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
