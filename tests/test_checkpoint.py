@@ -99,6 +99,14 @@ def test_a_first_stage_is_not_lost(coloured, tmp_path, always):
     assert_same(rd.solve(coloured, resume=rd.load_solution(again), **options), rd.solve(coloured, **options))
 
 
+def test_few_shots_of_progressive_refinement_are_kept(grey, tmp_path, always):
+    kept = stopped(grey, "progressive-refinement", tmp_path / "run.npz", 2, quanta=70)
+    assert kept.quanta == 0
+    assert 0 < kept.state["shots"] < 64  # of the first stage
+    more = rd.solve(grey, "progressive-refinement", resume=kept, quanta=70)
+    assert_same(more, rd.solve(grey, "progressive-refinement", quanta=70))
+
+
 def test_later_checkpoints_hold_the_last_complete_stage(coloured, tmp_path, always):
     options = {"quanta": 3 << 19, "replicates": 2}
     first = rd.solve(coloured, quanta=1 << 19, replicates=2)

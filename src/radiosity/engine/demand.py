@@ -29,7 +29,7 @@ class Demand:
 # peaks of fresh processes, 16 000 and 220 000 patches, 1 and 8 replicates, grey and RGB (benchmarks/demand.py)
 DEMANDS = {
     "firing": Demand(30e6, 60, 80, 15, 27),
-    "walks": Demand(120e6, 60, 80, 36, 17),
+    "walks": Demand(90e6, 60, 80, 36, 17),
     "gathering": Demand(120e6, 60, 80, 88, 10),
     "iteration": Demand(10e6, 60, 80, 82, 135),
     "multipath": Demand(115e6, 60, 80, 18, 46),
