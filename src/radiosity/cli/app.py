@@ -17,7 +17,7 @@ from .methods import methods
 from .render import render
 from .solve import solve
 
-FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
+FAILED, WRONG_INPUT = 1, 2
 
 
 def _version() -> str:
@@ -63,7 +63,7 @@ def run(arguments: list[str]) -> int:
         return FAILED if isinstance(error, DeviceError) else WRONG_INPUT
     except KeyboardInterrupt:
         say("interrupted", "stopped before the end; what was not written yet is lost")
-        return INTERRUPTED
+        return interrupts.status()
     except BrokenPipeError:
         # whoever read our output has gone; nothing more can be said there, not even by Python as it ends
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

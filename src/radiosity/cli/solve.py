@@ -3,11 +3,10 @@
 from pathlib import Path
 
 from ..errors import MethodError
-from . import outputs
+from . import checkpoints, interrupts, outputs
 from .options import Chosen, Count, DeviceName, Flag, Length, Outputs, Seconds, Seed, Share, Stops
 
 DEFAULT_RAYS = 10_000_000
-INTERRUPTED = 130
 
 
 def solve(
@@ -47,6 +46,8 @@ def solve(
     seed: Seed = 0,
     device: DeviceName = "auto",
     resume: Path | None = None,
+    checkpoint: Path | None = None,
+    no_checkpoint: Flag = False,
     coherent: Flag = False,
     max_reflectance: float = 0.95,
     strict: Flag = False,
@@ -128,6 +129,12 @@ def solve(
     resume
         Go on from this .npz of the same scene, method, seed and replicates, also an interrupted one. Its lines count.
         Default of the patches: as it has them. Not for full-matrix and hierarchical.
+    checkpoint
+        An .npz file to keep the run's state in, every 30 seconds or so, for --resume after a crash, a kill or a power cut; it is
+        removed when all outputs are written. Default: once a run takes a minute, beside the first output: out/box.glb ->
+        out/box.checkpoint.npz.
+    no_checkpoint
+        Keep none.
     coherent
         Trace packets of like lines: faster, but not equal bit for bit where a line meets two faces in one point.
     max_reflectance
@@ -146,8 +153,8 @@ def solve(
     given = [f"--{name}" for name, value in asked.items() if value is not None]
     if len(given) > 1:
         raise MethodError(f"give one of --rays, --seconds, --error and --quanta, not {' and '.join(given)}")
-    if refine_check and resume is not None:
-        raise MethodError("--refine-check solves anew on two meshes; it cannot --resume a run")
+    if refine_check and (resume is not None or checkpoint is not None):
+        raise MethodError("--refine-check solves anew on two meshes; it cannot --resume a run, and keeps no --checkpoint")
     tables = [path.with_suffix(".refine.csv") for path in output if path.suffix.lower() == ".csv"] if refine_check else []
     outputs.check([*output, *tables])
 
@@ -167,23 +174,35 @@ def solve(
         asked["rays"] = DEFAULT_RAYS
     loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside)
     before = None if resume is None else rd.load_solution(resume)
+    keeper = None if refine_check else checkpoints.chosen(checkpoint, no_checkpoint, output, chosen, resume)
     patches = loaded
     if patch_size is not None or cells is not None:
         patches = rd.subdivide(loaded, size=patch_size, cells=cells, powers_of_two=chosen.needs_powers_of_two)
     elif before is not None and before.patches.scene.hash == loaded.hash:
         patches = before.patches
+    from .app import say
+
     checked = None
-    with bar() as progress:
-        options = {**asked, "error_of": error_of, "seed": seed, "device": device, "progress": progress}
-        if refine_check:
-            checked = rd.refine_check(patches, chosen, **options, **({} if replicates is None else {"replicates": replicates}))
-            solution = checked.coarse
-        else:
-            solution = rd.solve(patches, chosen, **options, replicates=replicates, resume=before)
+    try:
+        with bar() as progress:
+            options = {**asked, "error_of": error_of, "seed": seed, "device": device, "progress": progress}
+            if refine_check:
+                checked = rd.refine_check(patches, chosen, replicates=8 if replicates is None else replicates, **options)
+                solution = checked.coarse
+            else:
+                solution = rd.solve(patches, chosen, **options, replicates=replicates, resume=before, checkpoint=keeper)
+    except KeyboardInterrupt:
+        if keeper is None or not keeper.written:
+            raise
+        say("interrupted", f"stopped before the end; --resume {keeper.path} goes on from there")
+        return interrupts.status()
     print(solution.report())
     if checked is not None:
         print(f"\n{checked.report()}")
         for path in tables:
             checked.export(path)
-    outputs.write(solution, output, exposure=exposure)
-    return INTERRUPTED if solution.status == "interrupted" else 0
+    outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path)
+    left = checkpoints.finish(keeper, solution, output, named=checkpoint is not None, resume=resume)
+    if left is not None:
+        say("interrupted", f"stopped before the end; --resume {left} goes on from there")
+    return interrupts.status() if solution.status == "interrupted" else 0

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import MethodError
-from ..method import Baseline, resolve
+from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..patches.nesting import halved, parents
 from ..scene.model import Scene
@@ -18,7 +18,7 @@ from ..solution.refinement import RefineCheck
 from .baseline_budget import cut_for
 
 
-def refine_check(scene: Scene | Patches, method="random-walk", *, replicates: int = 8, **choices) -> RefineCheck:
+def refine_check(scene: Scene | Patches, method: str | Method | Baseline = "random-walk", *, replicates: int = 8, **choices) -> RefineCheck:
     """Solve on the patches, and on four times as many with as many lines a patch.
 
     Args:
@@ -47,7 +47,9 @@ def refine_check(scene: Scene | Patches, method="random-walk", *, replicates: in
     second = prepared(fine, chosen, **(options | more | {"seed": seed + APART}))
     other = second.solve()
     parent = parents(fine, coarse)
-    received = second.last.sums(parent, len(coarse))[1] / coarse.area[:, None]  # (replicates, n_coarse, n_bands)
+    if second.snapshot is None or other.status == "interrupted" or one.status == "interrupted":
+        raise KeyboardInterrupt
+    received = second.snapshot.sums(parent, len(coarse))[1] / coarse.area[:, None]  # (replicates, n_coarse, n_bands)
     error = received.std(axis=0, ddof=1) / np.sqrt(replicates)
     return RefineCheck(replace(one, state={}), replace(other, state={}), parent, error)
 

@@ -1,5 +1,7 @@
 """Scene in, solution out."""
 
+import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import MethodError
@@ -9,6 +11,7 @@ from ..scene.model import Scene
 from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
+from .checkpoint import Checkpoint
 from .progress import Listener
 
 if TYPE_CHECKING:
@@ -29,6 +32,8 @@ def solve(
     progress: Listener | None = None,
     resume: Solution | None = None,
     error_of: str | None = None,
+    checkpoint: str | Path | Checkpoint | None = None,
+    checkpoint_every: float = 30.0,
     **choices,
 ) -> Solution:
     """Solve B = E + rho F B.
@@ -51,6 +56,10 @@ def solve(
             budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
             their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
             from a stage that is a power of two.
+        checkpoint: an .npz file that is written every now and then, whole or not at all, for ``resume=load_solution(checkpoint)``
+            after the process has been killed. Until a first stage is complete it has no results (NaN, 0 quanta). An interruption
+            writes it too; at the end it stays, brought up to date.
+        checkpoint_every: seconds; longer where writing takes more than a thirtieth of that.
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
@@ -58,17 +67,20 @@ def solve(
 
     Raises:
         SceneError: nothing emits. MethodError: a choice or budget that makes no sense, or a solution that cannot be
-            resumed. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C before the first stage was complete.
+            resumed. OutputError: no checkpoint can be written there. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C
+            before the first stage was complete; a checkpoint has been written.
     """
     return prepared(
         scene, resolve(method, **choices), rays=rays, seconds=seconds, error=error, quanta=quanta, replicates=replicates,
-        seed=seed, device=device, progress=progress, resume=resume, error_of=error_of,
+        seed=seed, device=device, progress=progress, resume=resume, error_of=error_of, checkpoint=checkpoint,
+        checkpoint_every=checkpoint_every,
     ).solve()  # fmt: skip
 
 
 def prepared(
     scene: Scene | Patches, chosen: Method | Baseline, *, rays=None, seconds=None, error=None, quanta=None, replicates=None,
     seed=0, device="auto", progress=None, resume=None, error_of=None,
+    checkpoint=None, checkpoint_every=30.0,
 ) -> "Run":  # fmt: skip
     """A checked run that has not begun; arguments and errors are those of `solve`."""
     usual = 1 if isinstance(chosen, Baseline) else 8
@@ -89,9 +101,28 @@ def prepared(
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
     if error_of is not None and error is None:
         raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
+    keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
     from .run import Run
 
-    return Run(scene, chosen, budget, replicates, seed, device, progress, resume, error_of)
+    return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper, error_of)
+
+
+def _keeper(path, every, method: Method | Baseline) -> Checkpoint:
+    if isinstance(path, Checkpoint):
+        path.check(method)
+        return path
+    try:
+        good = not isinstance(every, bool) and math.isfinite(every) and every >= 0
+    except TypeError:
+        good = False
+    if not good:
+        raise MethodError(f"checkpoint_every is {every!r}; it must be a number of seconds")
+    try:
+        keeper = Checkpoint(Path(path), float(every))
+    except TypeError:
+        raise MethodError(f"checkpoint is {path!r}; it must be the path of an .npz file") from None
+    keeper.check(method)
+    return keeper
 
 
 def _whole(value, name: str, least: int) -> int:

@@ -5,6 +5,8 @@ from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import OutputError, RadiosityError
 
 
@@ -51,6 +53,18 @@ def require(module: str, purpose: str) -> None:
     """
     if find_spec(module) is None:
         raise OutputError(f"{purpose} needs '{module}', which is not installed; pip install 'radiosity[plots]'")
+
+
+def require_results(solution) -> None:
+    """Refuse a run's checkpoint that has no results yet.
+
+    Raises:
+        OutputError: the first stage was not complete.
+    """
+    if np.isnan(solution.radiosity).all():
+        raise OutputError(
+            "there are no results yet: the run was stopped within its first stage; `radiosity solve --resume` goes on"
+        )
 
 
 @contextmanager

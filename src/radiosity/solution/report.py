@@ -46,6 +46,8 @@ def _counted(solution) -> str:
 
 
 def _error(solution) -> str:
+    if solution.quanta == 0:
+        return "unknown (no stage is complete yet)"
     if "scheme" in solution.provenance.get("choices", {}):
         return "unknown: it is that of the form factors, which replicates do not show"
     if solution.replicates < 2:

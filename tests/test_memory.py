@@ -1,0 +1,119 @@
+"""Memory: what there is, what a run takes, and that it does not grow with the number of lines."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+import radiosity as rd
+from radiosity.engine import demand, memory
+from radiosity.engine.problem import Problem
+from radiosity.lab.footprint import footprints, scene_of
+
+GIB = 2**30
+needs_proc = pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="peaks are measured by Linux's /proc")
+
+
+@pytest.fixture
+def system(tmp_path, monkeypatch):
+    """A made-up system: ``system(path, text)`` writes a file of it."""
+    monkeypatch.delenv(memory.VARIABLE, raising=False)
+    monkeypatch.setattr(memory, "PROC", tmp_path / "proc")
+    monkeypatch.setattr(memory, "GROUPS", tmp_path / "groups")
+    monkeypatch.setattr(memory, "_process", lambda: math.inf)
+
+    def write(path: str, text: str) -> None:
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text(text)
+
+    write("proc/meminfo", "MemTotal:       16777216 kB\nMemAvailable:    8388608 kB\n")
+    return write
+
+
+def test_what_is_free_is_what_the_system_has(system):
+    assert memory.free() == 8 * GIB
+    assert memory.room() == memory.SHARE * 8 * GIB
+
+
+def test_nothing_known_is_no_limit(system, monkeypatch):
+    system("proc/meminfo", "")
+    monkeypatch.setattr(memory.os, "sysconf", lambda name: (_ for _ in ()).throw(ValueError))
+    assert memory.free() == math.inf
+    memory.refuse(1e30, "a run", "no way out")
+
+
+def test_control_groups_of_version_2_limit(system):
+    system("proc/self/cgroup", "0::/user/job\n")
+    system("groups/user/memory.max", f"{3 * GIB}\n")
+    system("groups/user/memory.current", f"{2 * GIB}\n")
+    system("groups/user/memory.stat", f"anon 5\ninactive_file {GIB}\n")
+    system("groups/user/job/memory.max", "max\n")
+    system("groups/user/job/memory.current", "7\n")
+    assert memory.free() == 2 * GIB  # the group around it has 3, of which files that make room take 1 and the rest 1
+
+
+def test_control_groups_of_version_1_limit(system):
+    system("proc/self/cgroup", "9:name=systemd:/\n4:cpu,memory:/a/b\n0::/\n")
+    system("groups/memory/memory.limit_in_bytes", "9223372036854771712\n")
+    system("groups/memory/memory.usage_in_bytes", "1000\n")
+    assert memory.free() == 8 * GIB
+    system("groups/memory/a/memory.limit_in_bytes", f"{2 * GIB}\n")
+    system("groups/memory/a/memory.usage_in_bytes", f"{GIB}\n")
+    assert memory.free() == GIB
+
+
+def test_the_process_may_be_limited(system, monkeypatch):
+    resource = pytest.importorskip("resource")
+    monkeypatch.undo()
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (10**15, 10**15))
+    left = memory._process()
+    assert 10**15 - 10**12 < left < 10**15
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (1000, 1000))
+    assert memory.free() == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "bytes_"), [("8G", 8 * GIB), ("500 MiB", 500 * 2**20), ("1.5k", 1536), ("7", 7), ("none", math.inf)]
+)
+def test_the_environment_may_say_how_much(monkeypatch, text, bytes_):
+    monkeypatch.setenv(memory.VARIABLE, text)
+    assert memory.room() == bytes_
+
+
+@pytest.mark.parametrize("text", ["lots", "-1G", "8GG", "1e3"])
+def test_a_senseless_limit_is_refused(monkeypatch, text):
+    monkeypatch.setenv(memory.VARIABLE, text)
+    with pytest.raises(rd.MethodError, match="RADIOSITY_MEMORY is"):
+        rd.solve(rd.load_scene("room"), quanta=10)
+
+
+def test_what_will_not_fit_is_refused_before_it_begins(monkeypatch):
+    patches = rd.subdivide(rd.load_scene("cornell-box"), about=200_000)
+    monkeypatch.setenv(memory.VARIABLE, "200M")
+    with pytest.raises(rd.MethodError, match=r"about \S+ [GM]iB of memory, and 200 MiB are allowed .*; take larger patches$"):
+        rd.solve(patches, "transillumination", rays=10**6)
+    few = "take [1-9][0-9]? replicates or fewer, or larger patches"
+    with pytest.raises(rd.MethodError, match=few):
+        rd.solve(patches, "random-walk", rays=10**6, replicates=64)
+    monkeypatch.delenv(memory.VARIABLE)
+    monkeypatch.setattr(memory, "free", lambda: 200e6)
+    with pytest.raises(rd.MethodError, match=r"191 MiB are free; .*RADIOSITY_MEMORY=16G, or none"):
+        rd.solve(patches, "random-walk", rays=10**6, replicates=64)
+
+
+@needs_proc
+@pytest.mark.parametrize("method", ["random-walk", "stochastic-jacobi"])
+def test_expected_memory_is_within_a_factor_of_two(method):
+    """All methods: benchmarks/demand.py."""
+    patches = rd.subdivide(scene_of("cornell-box"), about=100_000, powers_of_two=True)
+    (taken,) = footprints("cornell-box", 100_000, method, [("run", {"rays": 4_000_000})], warm=False)
+    expected = demand.demand(rd.method.resolve(method), patches, Problem.of(patches).groups.n_groups, 8, 4e6)
+    assert 0.5 < expected / taken.memory < 2
+
+
+@needs_proc
+def test_memory_does_not_grow_with_the_number_of_lines():
+    """Launches are full from about 10^6 lines on, and take what is fixed; four bytes a line would be more than twice as much."""
+    few, many = footprints("room", 5_000, "random-walk", [("1M", {"rays": 10**6}), ("30M", {"rays": 3 * 10**7})], warm=True)
+    assert many.lines > 25 * few.lines
+    assert many.memory - few.memory < demand.DEMANDS["firing"].fixed
