@@ -5,7 +5,7 @@ import pytest
 from enclosures import coaxial_discs, cube, sphere
 from hypothesis import given
 from hypothesis import strategies as st
-from view_factors import discs, inclined, parallel, perpendicular
+from validation.closed_forms.rectangles import discs, inclined, parallel, perpendicular
 
 import radiosity as rd
 from radiosity.deterministic.factors import exchange, from_points

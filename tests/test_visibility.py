@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from enclosures import cube, sphere
-from view_factors import parallel
+from validation.closed_forms.rectangles import parallel
 
 import radiosity as rd
 from radiosity.engine.device import choose
