@@ -108,7 +108,8 @@ def convex() -> list[Configuration]:
                                       ("rest", 0.0, 0.0, inward[2:])), flat=True),
         Configuration("concentric spheres, inner to outer", 1.0, lambda _: _facing(inner, outer)),
         Configuration("concentric spheres, outer to inner", ratio(inner, outer), lambda _: _facing(outer, inner)),
-        Configuration("concentric spheres, outer to itself", 1 - ratio(inner, outer), lambda _: _facing(outer, inner), receiver=0),
+        Configuration("concentric spheres, outer to itself", 1 - ratio(inner, outer), lambda _: _facing(outer, inner),
+                      receiver=0),
         Configuration("cube to a sphere in it", ratio(inner, box), lambda _: _facing(box, inner)),
         Configuration("cone's inside to its base", ratio(disc(1.0, 0.0, 24), cone), lambda _: _facing(cone, disc(1.0, 0.0, 24))),
     ]  # fmt: skip
@@ -124,8 +125,8 @@ def long() -> list[Configuration]:
     a, b, c = (0.0, 0.0), (1.0, 0.0), (0.3, 0.9)
     sides = [float(np.hypot(p[0] - q[0], p[1] - q[1])) for p, q in ((a, b), (b, c), (c, a))]
     return [
-        Configuration("long triangular duct, a side to another", strings.triangle(*sides), lambda _: _long((a, b), (b, c), (c, a)),
-                      bound=_ends(1.0), flat=True),
+        Configuration("long triangular duct, a side to another", strings.triangle(*sides),
+                      lambda _: _long((a, b), (b, c), (c, a)), bound=_ends(1.0), flat=True),
         Configuration("long opposed strips, offset", strings.crossed(((0, 0), (1, 0)), ((0.5, 0.8), (1.8, 0.8))),
                       lambda _: _long(((0, 0), (1, 0)), ((1.8, 0.8), (0.5, 0.8))), bound=_ends(2.0), flat=True),
         Configuration("long opposed strips past a plate between them", strings.past_a_plate(1.0, 1.0, 0.4),

@@ -32,7 +32,7 @@ def concentric_spheres(rays: float) -> Value:
 
 
 def sphere_with_a_hot_cap(rays: float) -> Value:
-    """A closed sphere of reflectance 0.7, a quarter of which emits: its irradiance is the same everywhere, here on the cold half."""
+    """A closed sphere of reflectance 0.7, a quarter of which emits: its irradiance is the same everywhere, here opposite."""
     means = []
     for level in (2, 3):
         wall = turned(ball(1.0, level))
@@ -107,8 +107,8 @@ def deep_box(rays: float) -> Value:
     middle = (np.abs(patches.centroid[:, :2]).max(axis=1) < 100) & (patches.surface == 0)
     runs = solved(patches, rays)
     flux = patches.emission[middle][0, 0] - (1 - patches.reflectance[middle][0, 0]) * runs.mean(middle)
-    # a line goes 400 m, from the middle patch to the edge, in one step with a share below 1 / 400²; of a walk of n steps one is at
-    # least 400 / n long: the sum over n of n (n / 400)² rho^n
+    # a line goes 400 m, from the middle patch to the edge, in one step with a share below 1 / 400²; of a walk of n steps one is
+    # at least 400 / n long: the sum over n of n (n / 400)² rho^n
     rho = np.sqrt(0.4 * 0.7)
     steps = np.arange(1, 200)
     bound = float((steps**3 * rho**steps).sum() / 400**2 * max(BLACKBODY)) + runs.rounding * float(patches.emission[middle][0, 0])

@@ -46,9 +46,12 @@ def irradiance(patches: rd.Patches, paths: int, batches: int = SEEDS, seed: int 
 
 
 def _arriving(mi, dr, world, integrator, sampler, origin, normal):
-    """One estimate of irradiance at each point. Light that comes straight from emitters is sampled both ways and weighted by the
-    balance heuristic (E. Veach and L. J. Guibas, "Optimally combining sampling techniques", SIGGRAPH 1995): emitters that meet the
-    patch at an edge would give sampled emitters alone an infinite variance."""
+    """One estimate of irradiance at each point.
+
+    Light that comes straight from emitters is sampled both ways and weighted by the balance heuristic (E. Veach and L. J. Guibas,
+    "Optimally combining sampling techniques", SIGGRAPH 1995): emitters that meet the patch at an edge would give sampled emitters
+    alone an infinite variance.
+    """
     here = dr.zeros(mi.SurfaceInteraction3f, dr.width(origin))
     here.p, here.n = origin, normal
     here.sh_frame = mi.Frame3f(normal)

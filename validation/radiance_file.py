@@ -13,8 +13,8 @@ def text(scene: rd.Scene) -> str:
     """Materials and polygons.
 
     Lamps that reflect nothing are Radiance's ``light``, sampled as sources. What emits and reflects is a mixture of plastic and
-    ``glow``, which paths find. Both shine from their front alone. A face that is not the same on both sides is a mixture with black
-    by the side that a ray comes from, and a second such face turned round where the back is not black.
+    ``glow``, which paths find. Both shine from their front alone. A face that is not the same on both sides is a mixture with
+    black by the side that a ray comes from, and a second such face turned round where the back is not black.
     """
     materials = _Materials()
     apart = APART * float(np.ptp(scene.bounds, axis=0).max())

@@ -1,10 +1,10 @@
 """Referee: exact view factors. One surface emits, all are black, and the share of its power that lands on another is F."""
 
+import radiosity as rd
+
 from .comparison import Value
 from .configurations import Configuration, every
 from .runs import SEEDS, solved
-
-import radiosity as rd
 
 
 def measured(case: Configuration, rays: float, seed: int = 0) -> Value:

@@ -39,8 +39,8 @@ def box_factors(sides: tuple[float, float, float], parallel, perpendicular) -> t
     """Areas (6,) and form factors (6, 6) of a box's walls: x low, x high, y low, y high, z low, z high.
 
     Args:
-        parallel, perpendicular: A F of opposed rectangles a x b at unit distance, and of rectangles of widths a and b with a common
-            edge of length one.
+        parallel, perpendicular: A F of opposed rectangles a x b at unit distance, and of rectangles of widths a and b with a
+            common edge of length one.
     """
     areas = np.repeat([np.prod(sides) / s for s in sides], 2)
     exchange = np.zeros((6, 6))
