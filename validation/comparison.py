@@ -77,10 +77,12 @@ class Patchwise:
         expected: the same, as the scatter between runs makes it where nothing but noise differs: about 1 where stated errors are
             true.
         p: of chi-square, by flipping signs.
-        worst: largest |t| of a patch and band, and its p-value times the number of them (at most 1).
+        worst: largest difference of a patch and band in stated standard errors, and its p-value (Student, with the degrees of
+            freedom of the runs alone) times the number of them, at most 1.
         mean: relative difference of the mean over the area, largest of the bands, and its standard error.
         rms: area-weighted RMS of the difference over that of the value; and what both sides' noise gives.
         allowed: RMS that was added to the errors for the size of patches and for rounding, relative.
+        discrete: of patches' sizes something was added; then single patches are not judged, since it is known of surfaces only.
     """
 
     name: str
@@ -92,19 +94,22 @@ class Patchwise:
     mean: tuple[float, float]
     rms: tuple[float, float]
     allowed: float = 0.0
+    discrete: bool = False
 
     @property
     def agrees(self) -> bool:
-        return self.p > ALPHA and self.worst[1] > ALPHA
+        return self.p > ALPHA and (self.discrete or self.worst[1] > ALPHA)
 
 
-def patchwise(name: str, runs: Runs, theirs: np.ndarray, *, discretisation: np.ndarray | None = None, seed: int = 1) -> Patchwise:
+def patchwise(name: str, runs: Runs, theirs: np.ndarray, *, discretisation: np.ndarray | None = None,
+              rows: np.ndarray | None = None, seed: int = 1) -> Patchwise:  # fmt: skip
     """Compare irradiance of patches.
 
     Args:
         theirs: (runs, n_patches, n_bands), as many independent estimates as there are runs; or (n_patches, n_bands), exact.
         discretisation: (n_patches, n_bands), estimated error of our mean that is no noise. What the books' rounding leaves out is
             added to it.
+        rows: (n_patches,) bool, to compare these alone.
     """
     from scipy.stats import t as student
 
@@ -118,11 +123,12 @@ def patchwise(name: str, runs: Runs, theirs: np.ndarray, *, discretisation: np.n
     known = variance > 0
     if np.abs(mean[~known]).max(initial=0) > 1e-6 * level.max():
         raise ValueError(f"{name}: patches without stated errors differ")
-    whole, rows = (variance + extra**2)[known], difference[:, known]
+    if rows is not None:
+        known &= rows[:, None]
+    whole, values = (variance + extra**2)[known], difference[:, known]
     chi_square = float((mean[known] ** 2 / whole).mean())
-    flipped = _flipped(rows, extra[known], whole, seed)
-    scatter = np.sqrt(rows.var(axis=0, ddof=1) / count + extra[known] ** 2)
-    worst = float((np.abs(mean[known]) / np.maximum(scatter, 1e-300)).max())
+    flipped = _flipped(values, extra[known], whole, seed)
+    worst = float((np.abs(mean[known]) / np.sqrt(whole)).max())
     shifts = np.einsum("rpb,p->rb", difference, area) / (area @ level)
     band = int(np.argmax(np.abs(shifts.mean(axis=0))))
     scale = np.sqrt(area @ level**2)
@@ -140,6 +146,7 @@ def patchwise(name: str, runs: Runs, theirs: np.ndarray, *, discretisation: np.n
         (float(shifts.mean(axis=0)[band]), float(shifts[:, band].std(ddof=1) / np.sqrt(count))),
         (relative(mean**2), relative(variance)),
         relative(extra**2),
+        discretisation is not None,
     )
 
 

@@ -96,22 +96,23 @@ def _lost(name: str, wanted: float, runs: Runs, surface: int) -> Value:
 
 
 def deep_box(rays: float) -> Value:
-    """Plates a thousand times as wide as their distance, the flux in the middle against infinite ones."""
-    half, cells = 500.0, 5
+    """Plates 5000 times as wide as their distance, the flux in the middle against infinite ones."""
+    half, cells = 2500.0, 5
     plates = [
         quad((-half, -half, 0), (2 * half, 0, 0), (0, 2 * half, 0)),
         quad((-half, -half, 1), (0, 2 * half, 0), (2 * half, 0, 0)),
     ]
     parts = [_grey(n, e, b, [p]) for n, e, b, p in zip(("floor", "ceiling"), EMISSIVITY, BLACKBODY, plates, strict=True)]
     patches = rd.subdivide(scene(*parts), cells=cells)
-    middle = (np.abs(patches.centroid[:, :2]).max(axis=1) < 100) & (patches.surface == 0)
+    middle = (np.abs(patches.centroid[:, :2]).max(axis=1) < 500) & (patches.surface == 0)
     runs = solved(patches, rays)
     flux = patches.emission[middle][0, 0] - (1 - patches.reflectance[middle][0, 0]) * runs.mean(middle)
-    # a line goes 400 m, from the middle patch to the edge, in one step with a share below 1 / 400²; of a walk of n steps one is
-    # at least 400 / n long: the sum over n of n (n / 400)² rho^n
+    # a line goes 2000 m, from the middle patch to the edge, in one step with a share below 1 / 2000²; of a walk of n steps one is
+    # at least 2000 / n long: the sum over n of n (n / 2000)² rho^n
     rho = np.sqrt(0.4 * 0.7)
     steps = np.arange(1, 200)
-    bound = float((steps**3 * rho**steps).sum() / 400**2 * max(BLACKBODY)) + runs.rounding * float(patches.emission[middle][0, 0])
+    bound = float((steps**3 * rho**steps).sum() / 2000**2 * max(BLACKBODY))
+    bound += runs.rounding * float(patches.emission[middle][0, 0])
     return Value.of("infinite parallel plates, W/m²", exact.parallel_plates(EMISSIVITY, BLACKBODY), flux, bound=bound)
 
 

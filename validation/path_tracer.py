@@ -5,9 +5,9 @@ import numpy as np
 
 import radiosity as rd
 
-from .comparison import Patchwise, patchwise
+from .equations import both
 from .points import on_patches
-from .runs import SEEDS, solved
+from .runs import SEEDS
 from .scenes import parallel_scenes
 
 CHUNK = 1 << 20
@@ -103,8 +103,4 @@ def run(quick: bool):
     rays, paths = (100_000, 64) if quick else (2_000_000, 1024)
     for name, patches in parallel_scenes():
         theirs = irradiance(patches, paths)
-        yield compare(name, patches, "particle-tracing", rays * SEEDS, theirs)
-
-
-def compare(name: str, patches: rd.Patches, method: str, rays: float, theirs: np.ndarray) -> Patchwise:
-    return patchwise(f"{name}, {method}", solved(patches, rays, method=method, replicates=4), theirs)
+        yield from both(name, patches, rays * SEEDS, theirs)

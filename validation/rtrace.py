@@ -16,10 +16,10 @@ import numpy as np
 
 import radiosity as rd
 
-from .comparison import patchwise
+from .equations import both
 from .points import on_patches
 from .radiance_file import text
-from .runs import SEEDS, solved
+from .runs import SEEDS
 from .scenes import radiance_scenes
 
 OPTIONS = (
@@ -72,6 +72,4 @@ def run(quick: bool):
     rays, paths = (100_000, 16) if quick else (2_000_000, 512)
     for name, patches in radiance_scenes():
         theirs = irradiance(patches, paths)
-        yield patchwise(
-            f"{name}, particle-tracing", solved(patches, rays * SEEDS, method="particle-tracing", replicates=4), theirs
-        )
+        yield from both(name, patches, rays * SEEDS, theirs)
