@@ -12,6 +12,8 @@ their own.
 
 How to read it:
 
+- **Scenes of any size**: `tests/test_scale.py` scales scenes by 1e-4 and 1e6, turns and moves them; they are cut, solved and
+  reported alike (by powers of two, to the bit). So the lengths below stand for all.
 - **t** is a difference in standard errors of the mean of the runs, **p** the chance of one as large if there were no error but
   noise (Student, 15 degrees of freedom). A comparison *disagrees* where p is below {ALPHA:g}.
 - **chi-square** of patches is the mean over patches and bands of the squared difference over the variance that both sides state:
