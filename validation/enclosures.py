@@ -126,7 +126,7 @@ def labyrinth(rays: float) -> Patchwise:
 
 def run(quick: bool):
     """Values and patchwise comparisons."""
-    rays = (100_000 if quick else 2_000_000) * SEEDS
+    rays = (100_000 if quick else 1_000_000) * SEEDS
     yield concentric_spheres(rays)
     yield sphere_with_a_hot_cap(rays)
     yield spherical_cavity(rays)

@@ -100,7 +100,7 @@ def _sheet(mi, corners: np.ndarray, reflectance: np.ndarray, emission: np.ndarra
 
 def run(quick: bool):
     """Patchwise comparisons of each scene: of both equations."""
-    rays, paths = (100_000, 64) if quick else (2_000_000, 1024)
+    rays, paths = (100_000, 64) if quick else (1_000_000, 512)
     for name, patches in parallel_scenes():
         theirs = irradiance(patches, paths)
         yield from both(name, patches, rays * SEEDS, theirs)

@@ -69,7 +69,7 @@ def _traced(scene: str, rays: np.ndarray) -> np.ndarray:
 
 def run(quick: bool):
     """Patchwise comparisons of each scene."""
-    rays, paths = (100_000, 16) if quick else (2_000_000, 512)
+    rays, paths = (100_000, 16) if quick else (1_000_000, 256)
     for name, patches in radiance_scenes():
         theirs = irradiance(patches, paths)
         yield from both(name, patches, rays * SEEDS, theirs)
