@@ -1,6 +1,8 @@
 """Referee: Mitsuba's path tracer. Irradiance of a patch is the mean over its points of light sampled directly, and of what paths
 that leave with a cosine distribution bring back; their depth is not limited, and their roulette has no bias."""
 
+from dataclasses import replace
+
 import numpy as np
 
 import radiosity as rd
@@ -11,6 +13,7 @@ from .runs import SEEDS
 from .scenes import parallel_scenes
 
 CHUNK = 1 << 20
+WIDE = 1000.0
 OFFSET = 1e-5  # of the scene's extent, in front of the patch
 APART = 4e-6  # likewise, between the sheets that stand for the two sides of a face
 
@@ -20,6 +23,7 @@ def irradiance(patches: rd.Patches, paths: int, batches: int = SEEDS, seed: int 
     from radiosity.engine.device import choose, entered, upload
 
     device = choose("cpu")
+    patches = _wide(patches)
     types, n = device.types, len(patches)
     generator = np.random.Generator(np.random.Philox(seed))
     normal = np.repeat(patches.normal, paths, axis=0)
@@ -43,6 +47,15 @@ def irradiance(patches: rd.Patches, paths: int, batches: int = SEEDS, seed: int 
                 found[rows] = np.array(value).T
             results[batch] = found.reshape(n, paths, 3).mean(axis=1)[:, : patches.scene.n_bands]
     return results
+
+
+def _wide(patches: rd.Patches) -> rd.Patches:
+    """The same, centred and `WIDE` metres wide: Mitsuba's paths go on some (1 + |p|) x 1e-4 from where they are, whatever the
+    unit of p, which in a scene of half a metre is enough to shine under a box. Irradiance does not depend on the scale."""
+    scene = patches.scene
+    low, high = scene.bounds
+    vertices = (scene.vertices - (low + high) / 2) * (WIDE / (high - low).max())
+    return replace(patches, scene=replace(scene, vertices=vertices))
 
 
 def _arriving(mi, dr, world, integrator, sampler, origin, normal):
