@@ -92,7 +92,8 @@ def _topology(scene: Scene):
     edges = topology.open_edges(scene)
     if len(edges.face):
         metres = np.bincount(scene.surface[edges.face], edges.length, len(scene.names))
-        worst = [scene.names[s] for s in np.argsort(-metres) if metres[s] > 0]
+        ranks = np.round(metres / metres.max(), 6)  # equal lengths in the order of surfaces, wherever they lie
+        worst = [scene.names[s] for s in np.argsort(-ranks, kind="stable") if metres[s] > 0]
         count = f"{len(edges.face)} of {edges.total} edges ({edges.length.sum():.3g} m) belong to one face only"
         harmless = "no harm in free-standing faces, and where a long edge meets several short ones"
         yield Finding(NOTE, "open edges", f"{count}, most on {shown(worst, 4)}; {harmless}")
