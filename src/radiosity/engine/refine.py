@@ -18,7 +18,9 @@ from ..solution.refinement import RefineCheck
 from .baseline_budget import cut_for
 
 
-def refine_check(scene: Scene | Patches, method: str | Method | Baseline = "random-walk", *, replicates: int = 8, **choices) -> RefineCheck:
+def refine_check(
+    scene: Scene | Patches, method: str | Method | Baseline = "random-walk", *, replicates: int = 8, **choices
+) -> RefineCheck:
     """Solve on the patches, and on four times as many with as many lines a patch.
 
     Args:
