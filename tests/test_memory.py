@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import radiosity as rd
+from radiosity.cli import main
 from radiosity.engine import demand, memory
 from radiosity.engine.problem import Problem
 from radiosity.lab.footprint import footprints, scene_of
@@ -87,6 +88,26 @@ def test_a_senseless_limit_is_refused(monkeypatch, text):
         rd.solve(rd.load_scene("room"), quanta=10)
 
 
+@pytest.mark.parametrize(("size", "bytes_"), [("8G", 8 * GIB), (1000, 1000), (1e17, 1e17), ("none", math.inf)])
+def test_a_run_may_be_told_how_much(monkeypatch, size, bytes_):
+    monkeypatch.setenv(memory.VARIABLE, "7")
+    with memory.limited(size):
+        assert memory.room() == bytes_
+        with memory.limited(None):
+            assert memory.room() == bytes_
+    assert memory.room() == 7
+
+
+@pytest.mark.parametrize("method", ["random-walk", "full-matrix"])
+def test_a_run_that_was_told_keeps_to_it(capsys, method):
+    with pytest.raises(rd.MethodError, match=r"1 MiB are allowed \(memory\); take larger patches"):
+        rd.solve(rd.load_scene("room"), method, memory="1M", **({"rays": 10**6} if method == "random-walk" else {}))
+    with pytest.raises(rd.MethodError, match="memory is 'lots'"):
+        rd.solve(rd.load_scene("room"), method, memory="lots", **({"rays": 10**6} if method == "random-walk" else {}))
+    assert main(["solve", "room", "--method", method, "--memory", "1M"]) == 2
+    assert "1 MiB are allowed (memory)" in capsys.readouterr().err
+
+
 def test_what_will_not_fit_is_refused_before_it_begins(monkeypatch):
     patches = rd.subdivide(rd.load_scene("cornell-box"), about=200_000)
     monkeypatch.setenv(memory.VARIABLE, "200M")
@@ -97,7 +118,7 @@ def test_what_will_not_fit_is_refused_before_it_begins(monkeypatch):
         rd.solve(patches, "random-walk", rays=10**6, replicates=64)
     monkeypatch.delenv(memory.VARIABLE)
     monkeypatch.setattr(memory, "free", lambda: 200e6)
-    with pytest.raises(rd.MethodError, match=r"191 MiB are free; .*RADIOSITY_MEMORY=16G, or none"):
+    with pytest.raises(rd.MethodError, match=r"191 MiB are free; .*--memory 16G or none"):
         rd.solve(patches, "random-walk", rays=10**6, replicates=64)
 
 

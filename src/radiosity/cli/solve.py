@@ -47,6 +47,7 @@ def solve(
     resume: Path | None = None,
     checkpoint: Path | None = None,
     no_checkpoint: Flag = False,
+    memory: str | None = None,
     coherent: Flag = False,
     max_reflectance: float = 0.95,
     strict: Flag = False,
@@ -130,6 +131,8 @@ def solve(
         out/box.checkpoint.npz.
     no_checkpoint
         Keep none.
+    memory
+        That the run may take, such as 8G or none; more is refused before it begins. Default: 70 % of what is free.
     coherent
         Trace packets of like lines: faster, but not equal bit for bit where a line meets two faces in one point.
     max_reflectance
@@ -173,7 +176,7 @@ def solve(
         with bar() as progress:
             solution = rd.solve(
                 patches, chosen, **asked, replicates=replicates, seed=seed, device=device, progress=progress, resume=before,
-                checkpoint=keeper,
+                checkpoint=keeper, memory=memory,
             )  # fmt: skip
     except KeyboardInterrupt:
         if keeper is None or not keeper.written:

@@ -11,6 +11,7 @@ from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
 from .checkpoint import Checkpoint
+from .memory import limited
 from .progress import Listener
 
 
@@ -29,6 +30,7 @@ def solve(
     resume: Solution | None = None,
     checkpoint: str | Path | Checkpoint | None = None,
     checkpoint_every: float = 30.0,
+    memory: str | float | None = None,
     **choices,
 ) -> Solution:
     """Solve B = E + rho F B.
@@ -53,15 +55,16 @@ def solve(
             after the process has been killed. Until a first stage is complete it has no results (NaN, 0 quanta). An interruption
             writes it too; at the end it stays, brought up to date.
         checkpoint_every: seconds; longer where writing takes more than a thirtieth of that.
+        memory: that the run may take, such as "8G", a number of bytes, or "none" for no limit. Default: 70 % of what is free.
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
         unfinished stage are kept for ``resume``.
 
     Raises:
-        SceneError: nothing emits. MethodError: a choice or budget that makes no sense, or a solution that cannot be
-            resumed. OutputError: no checkpoint can be written there. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C
-            before the first stage was complete; a checkpoint has been written.
+        SceneError: nothing emits. MethodError: a choice or budget that makes no sense, a solution that cannot be resumed, or
+            more memory than the run may take. OutputError: no checkpoint can be written there. DeviceError: nothing to run on.
+            KeyboardInterrupt: Ctrl-C before the first stage was complete; a checkpoint has been written.
     """
     chosen = resolve(method, **choices)
     usual = 1 if isinstance(chosen, Baseline) else 8
@@ -83,7 +86,8 @@ def solve(
     keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
     from .run import Run
 
-    return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper).solve()
+    with limited(memory):
+        return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper).solve()
 
 
 def _keeper(path, every, method: Method | Baseline) -> Checkpoint:
