@@ -178,13 +178,14 @@ def solve(
                 patches, chosen, **asked, replicates=replicates, seed=seed, device=device, progress=progress, resume=before,
                 checkpoint=keeper, memory=memory,
             )  # fmt: skip
+        print(solution.report())
+        outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path)
     except KeyboardInterrupt:
         if keeper is None or not keeper.written:
             raise
+        interrupts.answer()
         say("interrupted", f"stopped before the end; --resume {keeper.path} goes on from there")
         return interrupts.status()
-    print(solution.report())
-    outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path)
     left = checkpoints.finish(keeper, solution, output, named=checkpoint is not None, resume=resume)
     if left is not None:
         say("interrupted", f"stopped before the end; --resume {left} goes on from there")
