@@ -27,17 +27,17 @@ def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None):
         return keeper
     if off or not outputs or not resumable(method):
         return None
-    path = outputs[0].with_name(f"{outputs[0].stem}.checkpoint.npz")
-    if _place(path) in map(_place, outputs):
+    beside = outputs[0].with_name(f"{outputs[0].stem}.checkpoint.npz")
+    if _place(beside) in map(_place, outputs):
         return None
-    keeper = Checkpoint(path, MINUTE)
+    keeper = Checkpoint(beside, MINUTE)
     try:
         keeper.check(method)
     except OutputError:  # nobody asked for it
         return None
-    if path.exists() and (resume is None or _place(resume) != _place(path)):
+    if beside.exists() and (resume is None or _place(resume) != _place(beside)):
         warnings.warn(
-            f"{path}: the checkpoint of an earlier run, which --resume {path} goes on from; one of this run takes its place "
+            f"{beside}: the checkpoint of an earlier run, which --resume {beside} goes on from; one of this run takes its place "
             "after a minute",
             RadiosityWarning,
             stacklevel=2,
