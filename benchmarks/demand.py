@@ -25,7 +25,9 @@ def compare(methods) -> None:
                         continue
                     patches = rd.subdivide(scene_of(scene), about=about, powers_of_two=True)
                     groups = Problem.of(patches).groups.n_groups
-                    expected = demand(rd.method.resolve(method), patches, groups, replicates, RAYS)
+                    chosen = rd.method.resolve(method)
+                    assert isinstance(chosen, rd.Method)
+                    expected = demand(chosen, patches, groups, replicates, RAYS)
                     measured = taken[0].memory
                     numbers = (f"{measured / 2**20:.0f}", f"{expected / 2**20:.0f}", f"{expected / measured:.2f}")
                     print(ROW.format(method, scene, len(patches), replicates, *numbers), flush=True)

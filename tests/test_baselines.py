@@ -252,7 +252,7 @@ def test_sequences_of_decisions_have_no_replicates(scheme):
 
 def test_what_does_not_fit_is_refused_with_numbers_and_the_way_out(room, monkeypatch):
     monkeypatch.setattr(memory, "free", lambda: 1e6)
-    with pytest.raises(rd.MethodError, match=r"GiB of memory, and .* MiB are free; take larger patches"):
+    with pytest.raises(rd.MethodError, match=r"iB of memory, and .* MiB are free; take larger patches"):
         rd.solve(room[0], "full-matrix")
     with pytest.raises(rd.MethodError, match=r"iB of memory.*take larger patches"):
         rd.solve(room[0], "progressive-refinement")

@@ -85,8 +85,7 @@ def test_every_kind_of_run_goes_on_from_its_checkpoint(grey, tmp_path, short, na
 
 
 def test_a_first_stage_is_not_lost(coloured, tmp_path, always):
-    options = {"quanta": 3 << 18, "replicates": 2}
-    kept = stopped(coloured, "random-walk", tmp_path / "run.npz", 3, **options)
+    kept = stopped(coloured, "random-walk", tmp_path / "run.npz", 3, quanta=3 << 18, replicates=2)
     assert (kept.quanta, kept.rays) == (0, 0)
     assert np.isnan(kept.irradiance).all()
     assert "unknown" in kept.report()
@@ -96,7 +95,8 @@ def test_a_first_stage_is_not_lost(coloured, tmp_path, always):
         rd.image.render(kept, tmp_path / "x.png")
     again = tmp_path / "again.npz"
     kept.export(again)
-    assert_same(rd.solve(coloured, resume=rd.load_solution(again), **options), rd.solve(coloured, **options))
+    more = rd.solve(coloured, resume=rd.load_solution(again), quanta=3 << 18, replicates=2)
+    assert_same(more, rd.solve(coloured, quanta=3 << 18, replicates=2))
 
 
 def test_few_shots_of_progressive_refinement_are_kept(grey, tmp_path, always):

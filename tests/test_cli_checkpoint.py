@@ -185,6 +185,64 @@ def test_failing_outputs_leave_the_solution_in_the_checkpoint(capsys, monkeypatc
     assert not kept.exists()
 
 
+def test_an_interruption_while_outputs_are_written_names_the_checkpoint(capsys, monkeypatch, tmp_path, soon):
+    kept, output = tmp_path / "a.checkpoint.npz", tmp_path / "a.csv"
+    whole = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), quanta=300_000, replicates=2)
+    with monkeypatch.context() as patch:
+        patch.setattr(rd.Solution, "export", lambda *_, **__: signal.raise_signal(signal.SIGINT))
+        status, _, err = run(capsys, *RUN, "-o", output)
+    assert status == 130
+    assert err == f"radiosity: interrupted: stopped before the end; --resume {kept} goes on from there\n"
+    found = rd.load_solution(kept)
+    assert (found.status, found.rays) == ("complete", whole.rays)
+    assert np.array_equal(found.irradiance, whole.irradiance)
+    assert run(capsys, *RUN, "-o", output, "--resume", kept)[0] == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.surfaces.csv"]
+
+
+FULL_DISK = """
+import resource, sys
+from radiosity.cli import checkpoints, main
+from radiosity.engine import checkpoint
+import radiosity as rd
+if sys.argv.pop(1) == "after a checkpoint":
+    checkpoint.TIMES = checkpoints.MINUTE = 0
+solve, most = rd.solve, 12_000
+
+def filled(*arguments, **options):
+    solution = solve(*arguments, **options)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))  # Python ignores SIGXFSZ: a write fails, as on a full disk
+    return solution
+
+rd.solve = filled
+sys.exit(main())
+"""
+
+
+@pytest.mark.parametrize("when", ["after a checkpoint", "without one"])
+def test_a_disk_that_is_full_in_the_end(tmp_path, when):
+    """Small outputs are written, large ones named, and so is the checkpoint that there is room to go on from."""
+    pytest.importorskip("resource")
+    large, small, kept = tmp_path / "a.npz", tmp_path / "a.csv", tmp_path / "a.checkpoint.npz"
+    done = subprocess.run(
+        [sys.executable, "-c", FULL_DISK, when, *RUN, "-o", str(large), str(small)], capture_output=True, text=True
+    )
+    assert done.returncode == 2
+    assert f"wrote {small}" in done.stdout
+    assert done.stderr.count("\n") == 1
+    assert f"{large}: cannot be written (File too large)" in done.stderr
+    assert small.exists()
+    assert not large.exists()
+    assert kept.exists() == (when == "after a checkpoint")
+    if not kept.exists():
+        assert "there was no place for the solution either; make room, and solve the scene again" in done.stderr
+        return
+    assert f"go on with --resume {kept}" in done.stderr
+    found = rd.solve(rd.load_solution(kept).patches, quanta=300_000, replicates=2, resume=rd.load_solution(kept))
+    whole = rd.solve(found.patches, quanta=300_000, replicates=2)
+    assert np.array_equal(found.irradiance, whole.irradiance)
+
+
 def test_where_nothing_can_be_written_it_says_so(capsys, monkeypatch, tmp_path):
     def fail(*_, **__):
         raise rd.OutputError("x: cannot be written (No space left on device)")

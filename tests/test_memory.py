@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 
 import radiosity as rd
+from radiosity.cli import main
 from radiosity.engine import demand, memory
 from radiosity.engine.problem import Problem
-from radiosity.lab.footprint import footprints, scene_of
+from radiosity.lab.footprint import Footprint, footprints, scene_of
 
 GIB = 2**30
 needs_proc = pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="peaks are measured by Linux's /proc")
@@ -87,18 +88,44 @@ def test_a_senseless_limit_is_refused(monkeypatch, text):
         rd.solve(rd.load_scene("room"), quanta=10)
 
 
+@pytest.mark.parametrize(("size", "bytes_"), [("8G", 8 * GIB), (1000, 1000), (1e17, 1e17), ("none", math.inf)])
+def test_a_run_may_be_told_how_much(monkeypatch, size, bytes_):
+    monkeypatch.setenv(memory.VARIABLE, "7")
+    with memory.limited(size):
+        assert memory.room() == bytes_
+        with memory.limited(None):
+            assert memory.room() == bytes_
+    assert memory.room() == 7
+
+
+@pytest.mark.parametrize("method", ["random-walk", "full-matrix"])
+def test_a_run_that_was_told_keeps_to_it(capsys, method):
+    with pytest.raises(rd.MethodError, match=r"1 MiB are allowed \(memory\); take larger patches"):
+        rd.solve(rd.load_scene("room"), method, memory="1M", **({"rays": 10**6} if method == "random-walk" else {}))
+    with pytest.raises(rd.MethodError, match="memory is 'lots'"):
+        rd.solve(rd.load_scene("room"), method, memory="lots", **({"rays": 10**6} if method == "random-walk" else {}))
+    assert main(["solve", "room", "--method", method, "--memory", "1M"]) == 2
+    assert "1 MiB are allowed (memory)" in capsys.readouterr().err
+
+
 def test_what_will_not_fit_is_refused_before_it_begins(monkeypatch):
     patches = rd.subdivide(rd.load_scene("cornell-box"), about=200_000)
     monkeypatch.setenv(memory.VARIABLE, "200M")
     with pytest.raises(rd.MethodError, match=r"about \S+ [GM]iB of memory, and 200 MiB are allowed .*; take larger patches$"):
-        rd.solve(patches, "transillumination", rays=10**6)
+        rd.solve(patches, "transillumination", rays=1_000_000)
     few = "take [1-9][0-9]? replicates or fewer, or larger patches"
     with pytest.raises(rd.MethodError, match=few):
-        rd.solve(patches, "random-walk", rays=10**6, replicates=64)
+        rd.solve(patches, "random-walk", rays=1_000_000, replicates=64)
     monkeypatch.delenv(memory.VARIABLE)
     monkeypatch.setattr(memory, "free", lambda: 200e6)
-    with pytest.raises(rd.MethodError, match=r"191 MiB are free; .*RADIOSITY_MEMORY=16G, or none"):
-        rd.solve(patches, "random-walk", rays=10**6, replicates=64)
+    with pytest.raises(rd.MethodError, match=r"191 MiB are free; .*--memory 16G or none"):
+        rd.solve(patches, "random-walk", rays=1_000_000, replicates=64)
+
+
+def measured(*task, warm: bool) -> list[Footprint]:
+    found = footprints(*task, warm=warm)
+    assert not isinstance(found, str), found
+    return found
 
 
 @needs_proc
@@ -106,14 +133,16 @@ def test_what_will_not_fit_is_refused_before_it_begins(monkeypatch):
 def test_expected_memory_is_within_a_factor_of_two(method):
     """All methods: benchmarks/demand.py."""
     patches = rd.subdivide(scene_of("cornell-box"), about=100_000, powers_of_two=True)
-    (taken,) = footprints("cornell-box", 100_000, method, [("run", {"rays": 4_000_000})], warm=False)
-    expected = demand.demand(rd.method.resolve(method), patches, Problem.of(patches).groups.n_groups, 8, 4e6)
+    (taken,) = measured("cornell-box", 100_000, method, [("run", {"rays": 4_000_000})], warm=False)
+    chosen = rd.method.resolve(method)
+    assert isinstance(chosen, rd.Method)
+    expected = demand.demand(chosen, patches, Problem.of(patches).groups.n_groups, 8, 4e6)
     assert 0.5 < expected / taken.memory < 2
 
 
 @needs_proc
 def test_memory_does_not_grow_with_the_number_of_lines():
     """Launches are full from about 10^6 lines on, and take what is fixed; four bytes a line would be more than twice as much."""
-    few, many = footprints("room", 5_000, "random-walk", [("1M", {"rays": 10**6}), ("30M", {"rays": 3 * 10**7})], warm=True)
+    few, many = measured("room", 5_000, "random-walk", [("1M", {"rays": 10**6}), ("30M", {"rays": 3 * 10**7})], warm=True)
     assert many.lines > 25 * few.lines
     assert many.memory - few.memory < demand.DEMANDS["firing"].fixed

@@ -47,6 +47,11 @@ def status() -> int:
     return TERMINATED if _ears.terminated else INTERRUPTED
 
 
+def answer() -> None:
+    """An interruption was told by who caught it, and `kept` says no more."""
+    _ears.raised = False
+
+
 @contextmanager
 def heard(*, last: bool):
     """Take over SIGINT and SIGTERM in the main thread, each unless another handler is set (in the background SIGINT is ignored).

@@ -48,6 +48,7 @@ def solve(
     resume: Path | None = None,
     checkpoint: Path | None = None,
     no_checkpoint: Flag = False,
+    memory: str | None = None,
     coherent: Flag = False,
     max_reflectance: float = 0.95,
     strict: Flag = False,
@@ -135,6 +136,8 @@ def solve(
         out/box.checkpoint.npz.
     no_checkpoint
         Keep none.
+    memory
+        That the run may take, such as 8G or none; more is refused before it begins. Default: 70 % of what is free.
     coherent
         Trace packets of like lines: faster, but not equal bit for bit where a line meets two faces in one point.
     max_reflectance
@@ -185,23 +188,24 @@ def solve(
     checked = None
     try:
         with bar() as progress:
-            options = {**asked, "error_of": error_of, "seed": seed, "device": device, "progress": progress}
+            options = {**asked, "error_of": error_of, "seed": seed, "device": device, "progress": progress, "memory": memory}
             if refine_check:
                 checked = rd.refine_check(patches, chosen, replicates=8 if replicates is None else replicates, **options)
                 solution = checked.coarse
             else:
                 solution = rd.solve(patches, chosen, **options, replicates=replicates, resume=before, checkpoint=keeper)
+        print(solution.report())
+        if checked is not None:
+            print(f"\n{checked.report()}")
+            for path in tables:
+                checked.export(path)
+        outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path)
     except KeyboardInterrupt:
         if keeper is None or not keeper.written:
             raise
+        interrupts.answer()
         say("interrupted", f"stopped before the end; --resume {keeper.path} goes on from there")
         return interrupts.status()
-    print(solution.report())
-    if checked is not None:
-        print(f"\n{checked.report()}")
-        for path in tables:
-            checked.export(path)
-    outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path)
     left = checkpoints.finish(keeper, solution, output, named=checkpoint is not None, resume=resume)
     if left is not None:
         say("interrupted", f"stopped before the end; --resume {left} goes on from there")

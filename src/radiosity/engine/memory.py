@@ -4,7 +4,8 @@ import math
 import os
 import re
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 
 from ..errors import MethodError
@@ -12,6 +13,7 @@ from ..errors import MethodError
 VARIABLE = "RADIOSITY_MEMORY"  # such as 8G, or none for no limit
 SHARE = 0.7  # of what is free
 UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+_limit: ContextVar[float | None] = ContextVar("limit", default=None)  # of the run that goes on
 PROC, GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
 
 
@@ -25,8 +27,9 @@ def refuse(wanted: float, what: str, way_out: str) -> None:
     if wanted <= most:
         return
     given = _given()
-    there = f"{size(free())} are free" if given is None else f"{size(given)} are allowed ({VARIABLE})"
-    other = f" ({VARIABLE}=16G, or none, sets another limit)" if given is None else ""
+    by = VARIABLE if _limit.get() is None else "memory"
+    there = f"{size(free())} are free" if given is None else f"{size(given)} are allowed ({by})"
+    other = f" (--memory 16G or none, or {VARIABLE}, sets another limit)" if given is None else ""
     raise MethodError(f"{what} would take about {size(wanted)} of memory, and {there}; {way_out}{other}")
 
 
@@ -37,7 +40,7 @@ def size(number: float) -> str:
 
 
 def room() -> float:
-    """Bytes that a run may take: what the environment variable says, or a share of what is free; infinite where nothing is known.
+    """Bytes that a run may take: what was given, or a share of what is free; infinite where nothing is known.
 
     Raises:
         MethodError: the variable is no size.
@@ -51,15 +54,36 @@ def free() -> float:
     return max(0.0, min((_system(), *_groups(), _process()), default=math.inf))
 
 
+@contextmanager
+def limited(size: str | float | None):
+    """In the block runs may take so much: a size such as "8G", a number of bytes, or "none"; None leaves it as it is.
+
+    Raises:
+        MethodError: it is no size.
+    """
+    token = _limit.set(_limit.get() if size is None else _bytes("memory", size))
+    try:
+        yield
+    finally:
+        _limit.reset(token)
+
+
 def _given() -> float | None:
+    if (limit := _limit.get()) is not None:
+        return limit
     text = os.environ.get(VARIABLE, "").strip()
-    if not text:
-        return None
+    return _bytes(VARIABLE, text) if text else None
+
+
+def _bytes(name: str, wanted: str | float) -> float:
+    text = str(wanted).strip()
+    if isinstance(wanted, int | float) and not isinstance(wanted, bool) and wanted >= 0:
+        return float(wanted)
     if text.lower() == "none":
         return math.inf
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*([KMGT]?)(?:i?B)?", text, re.IGNORECASE)
     if not found:
-        raise MethodError(f"{VARIABLE} is '{text}'; give a size such as 8G or 500M, or none for no limit")
+        raise MethodError(f"{name} is '{text}'; give a size such as 8G or 500M, or none for no limit")
     return float(found[1]) * UNITS[found[2].upper()]
 
 

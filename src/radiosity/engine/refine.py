@@ -16,17 +16,18 @@ from ..patches.nesting import halved, parents
 from ..scene.model import Scene
 from ..solution.refinement import RefineCheck
 from .baseline_budget import cut_for
+from .memory import limited
 
 
 def refine_check(
-    scene: Scene | Patches, method: str | Method | Baseline = "random-walk", *, replicates: int = 8, **choices
-) -> RefineCheck:
+    scene: Scene | Patches, method: str | Method | Baseline = "random-walk", *, replicates: int = 8,
+    memory: str | float | None = None, **choices,
+) -> RefineCheck:  # fmt: skip
     """Solve on the patches, and on four times as many with as many lines a patch.
 
     Args:
-        scene, method, replicates, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first run, and
-        the
-            second takes four times as many of the first two, as much time, or the same ``error``.
+        scene, method, replicates, memory, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first run,
+            and the second takes four times as many of the first two, as much time, or the same ``error``.
 
     Raises:
         MethodError: as of `solve`, or fewer than 2 replicates: then nothing tells noise from change. SceneError: patches too
@@ -42,12 +43,12 @@ def refine_check(
     coarse = subdivide(scene, **cut_for(chosen)) if isinstance(scene, Scene) else scene
     fine = halved(coarse)
     options = {k: v for k, v in choices.items() if k in RUN} | {"replicates": replicates}
-    first = prepared(coarse, chosen, **options)
-    one = first.solve()
     more = {k: 4 * v for k, v in options.items() if k in ("rays", "quanta") and v is not None}
     seed = options.get("seed", 0)
-    second = prepared(fine, chosen, **(options | more | {"seed": seed + APART}))
-    other = second.solve()
+    with limited(memory):
+        one = prepared(coarse, chosen, **options).solve()
+        second = prepared(fine, chosen, **(options | more | {"seed": seed + APART}))
+        other = second.solve()
     parent = parents(fine, coarse)
     if second.snapshot is None or other.status == "interrupted" or one.status == "interrupted":
         raise KeyboardInterrupt

@@ -12,6 +12,7 @@ from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
 from .checkpoint import Checkpoint
+from .memory import limited
 from .progress import Listener
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ def solve(
     error_of: str | None = None,
     checkpoint: str | Path | Checkpoint | None = None,
     checkpoint_every: float = 30.0,
+    memory: str | float | None = None,
     **choices,
 ) -> Solution:
     """Solve B = E + rho F B.
@@ -60,21 +62,23 @@ def solve(
             after the process has been killed. Until a first stage is complete it has no results (NaN, 0 quanta). An interruption
             writes it too; at the end it stays, brought up to date.
         checkpoint_every: seconds; longer where writing takes more than a thirtieth of that.
+        memory: that the run may take, such as "8G", a number of bytes, or "none" for no limit. Default: 70 % of what is free.
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
         unfinished stage are kept for ``resume``.
 
     Raises:
-        SceneError: nothing emits. MethodError: a choice or budget that makes no sense, or a solution that cannot be
-            resumed. OutputError: no checkpoint can be written there. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C
-            before the first stage was complete; a checkpoint has been written.
+        SceneError: nothing emits. MethodError: a choice or budget that makes no sense, a solution that cannot be resumed, or
+            more memory than the run may take. OutputError: no checkpoint can be written there. DeviceError: nothing to run on.
+            KeyboardInterrupt: Ctrl-C before the first stage was complete; a checkpoint has been written.
     """
-    return prepared(
-        scene, resolve(method, **choices), rays=rays, seconds=seconds, error=error, quanta=quanta, replicates=replicates,
-        seed=seed, device=device, progress=progress, resume=resume, error_of=error_of, checkpoint=checkpoint,
-        checkpoint_every=checkpoint_every,
-    ).solve()  # fmt: skip
+    with limited(memory):
+        return prepared(
+            scene, resolve(method, **choices), rays=rays, seconds=seconds, error=error, quanta=quanta, replicates=replicates,
+            seed=seed, device=device, progress=progress, resume=resume, error_of=error_of, checkpoint=checkpoint,
+            checkpoint_every=checkpoint_every,
+        ).solve()  # fmt: skip
 
 
 def prepared(
