@@ -85,6 +85,8 @@ def test_an_earlier_one_is_pointed_at_and_a_resumed_one_removed(capsys, tmp_path
     assert status == 0
     assert f"--resume {kept} goes on from" in err
     assert kept.exists()
+    assert f"--resume {kept} goes on from" in run(capsys, *RUN, "--checkpoint", kept)[2]
+    assert kept.exists()
     status, _, err = run(capsys, *RUN, "-o", output, "--resume", kept)
     assert (status, err) == (0, "")
     assert not kept.exists()

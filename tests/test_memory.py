@@ -128,12 +128,24 @@ def measured(*task, warm: bool) -> list[Footprint]:
     return found
 
 
+def test_planes_count():
+    """Few landings make wide kernels: squares of the number of patches."""
+
+    def expected(about, rays):
+        return demand.demand(rd.method.resolve("density-estimation"), rd.subdivide(scene, about=about), 1, 8, rays)
+
+    scene = rd.load_scene("room")
+    assert expected(80_000, 100) > 8 * expected(20_000, 100) > 0
+    assert expected(80_000, 100) > 2 * expected(80_000, 1e6)
+
+
 @needs_proc
-@pytest.mark.parametrize("method", ["random-walk", "stochastic-jacobi"])
+@pytest.mark.parametrize("method", ["random-walk", "stochastic-jacobi", "density-estimation"])
 def test_expected_memory_is_within_a_factor_of_two(method):
     """All methods: benchmarks/demand.py."""
-    patches = rd.subdivide(scene_of("cornell-box"), about=100_000, powers_of_two=True)
-    (taken,) = measured("cornell-box", 100_000, method, [("run", {"rays": 4_000_000})], warm=False)
+    about = 30_000 if method == "density-estimation" else 100_000
+    patches = rd.subdivide(scene_of("cornell-box"), about=about, powers_of_two=True)
+    (taken,) = measured("cornell-box", about, method, [("run", {"rays": 4_000_000})], warm=False)
     chosen = rd.method.resolve(method)
     assert isinstance(chosen, rd.Method)
     expected = demand.demand(chosen, patches, Problem.of(patches).groups.n_groups, 8, 4e6)

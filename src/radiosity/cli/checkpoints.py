@@ -24,6 +24,7 @@ def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None):
             raise OutputError(f"{path} is named twice; give the checkpoint a name of its own, since it is removed in the end")
         keeper = Checkpoint(path)
         keeper.check(method)
+        _point_at_earlier(path, resume, "half a minute")
         return keeper
     if off or not outputs or not resumable(method):
         return None
@@ -35,14 +36,19 @@ def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None):
         keeper.check(method)
     except OutputError:  # nobody asked for it
         return None
-    if beside.exists() and (resume is None or _place(resume) != _place(beside)):
-        warnings.warn(
-            f"{beside}: the checkpoint of an earlier run, which --resume {beside} goes on from; one of this run takes its place "
-            "after a minute",
-            RadiosityWarning,
-            stacklevel=2,
-        )
+    _point_at_earlier(beside, resume, "a minute")
     return keeper
+
+
+def _point_at_earlier(path: Path, resume: Path | None, when: str) -> None:
+    """Warn of a file that is not gone on from, while there is time to keep it."""
+    if path.exists() and (resume is None or _place(resume) != _place(path)):
+        warnings.warn(
+            f"{path}: the checkpoint of an earlier run, which --resume {path} goes on from; one of this run takes its place "
+            f"after {when}",
+            RadiosityWarning,
+            stacklevel=3,
+        )
 
 
 def finish(keeper, solution, outputs, *, named: bool, resume: Path | None) -> str | None:

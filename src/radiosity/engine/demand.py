@@ -1,17 +1,22 @@
 """About how much memory a run takes beyond scene and patches, by its process; it does not grow with the number of lines.
 
-Baselines have estimates of their own (`deterministic.estimate`), and reconstruction by planes takes more than is counted here.
+Baselines have estimates of their own (`deterministic.estimate`).
 """
 
 import os
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..method import Baseline, Method
 from ..patches import Patches
+from ..solution.local_linear import Regions
 from . import memory
+from .budget import first_stage
 from .matrix.process import LIMIT
 
 FACE = 800  # bytes, of the tree and the records of hits
+REACHED = 100  # of a cell within a kernel, while planes are fitted; 76 to 100 were measured, and 12 are kept
 PAIR = 24  # of a pair of patches that is counted, while counts are merged
 
 
@@ -52,9 +57,20 @@ def demand(method: Method, patches: Patches, groups: int, replicates: int, rays:
     fixed = one.fixed * max(1.0, (os.cpu_count() or 1) / 4)  # launches grow with the cores
     total = fixed + FACE * patches.scene.n_faces + n * (one.patch + one.band * len(patches.scene.bands))
     total += n * replicates * (one.replicate + one.group * groups)
+    if method.reconstruction == "local-linear":
+        first = replicates * first_stage(replicates, n)
+        total += REACHED * _cells_reached(patches, min(first, rays or first))
     if method.machine == "matrix":
         total += PAIR * min(replicates * n * (n + 2.0), rays or LIMIT, LIMIT)
     return total
+
+
+def _cells_reached(patches: Patches, landings: float) -> float:
+    """By the kernels of all patches together, where landings are spread evenly; kernels are widest where there are few."""
+    regions = Regions.find(patches)
+    width = regions.bandwidth(landings * patches.area / patches.area.sum())
+    share = np.minimum(np.pi * width**2 / regions.area, 1.0)
+    return float((share * np.bincount(regions.of, minlength=regions.count) ** 2.0).sum())
 
 
 def check(method: Method | Baseline, patches: Patches, groups: int, replicates: int, rays: float | None) -> None:

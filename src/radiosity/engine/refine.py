@@ -26,8 +26,8 @@ def refine_check(
     """Solve on the patches, and on four times as many with as many lines a patch.
 
     Args:
-        scene, method, replicates, memory, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first run,
-            and the second takes four times as many of the first two, as much time, or the same ``error``.
+        scene, method, replicates, memory, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first
+            run, and the second takes four times as many of the first two, as much time, or the same ``error``.
 
     Raises:
         MethodError: as of `solve`, or fewer than 2 replicates: then nothing tells noise from change. SceneError: patches too
