@@ -1,7 +1,6 @@
 """Save and load solutions: one NPZ file that stands alone (scene, results, provenance, the run's integers)."""
 
 import json
-import zipfile
 from dataclasses import asdict
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from ..errors import SceneError
 from ..patches.model import Patches
 from ..scene.model import Camera, Scene
 from ..scene.paint import Paint
+from . import sound
 from .archive import check_sizes
 from .model import Solution
 from .whole import whole_file
@@ -88,7 +88,9 @@ def load_solution(path) -> Solution:
         raise SceneError(f"{path}: no such file; solve a scene with -o {path.name} first") from None
     except OSError as error:
         raise SceneError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (KeyError, ValueError, TypeError, IndexError, EOFError, zipfile.BadZipFile) as error:
+    except MemoryError:
+        raise SceneError(f"{path}: too large for the memory of this machine") from None
+    except Exception as error:  # damage of any kind must not end the program with a foreign exception
         if isinstance(error, SceneError):
             raise
         raise SceneError(f"{path}: is no solution of this program, or damaged; solve the scene again") from None
@@ -96,6 +98,7 @@ def load_solution(path) -> Solution:
 
 def _restore(arrays: dict, meta: dict) -> Solution:
     described = meta["scene"]
+    sound.check(arrays, len(described["names"]))
     paints = {}
     for which, facts in meta["paints"].items():
         images = tuple(arrays[f"{which}_picture_{i}"] for i in range(facts["images"]))
@@ -113,7 +116,10 @@ def _restore(arrays: dict, meta: dict) -> Solution:
     state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
-    scalars |= {"state": state, "surface_power": arrays.get("surface_power")}
+    power = arrays.get("surface_power")
+    if power is not None and power.shape != (2, scalars["replicates"], len(scene.names), len(scene.bands)):
+        raise SceneError(f"powers of surfaces of shape {power.shape}")
+    scalars |= {"state": state, "surface_power": power}
     return Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars)
 
 
