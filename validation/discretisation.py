@@ -1,11 +1,9 @@
 """What the size of patches does to a discrete solution: the change where every patch is cut into four."""
 
-from dataclasses import replace
-
 import numpy as np
 
 import radiosity as rd
-from radiosity.patches import cells
+from radiosity.patches.nesting import halved, parents
 
 from .points import on_patches
 from .runs import Runs
@@ -13,21 +11,6 @@ from .runs import Runs
 # the error of constant radiosity on a patch falls at least in proportion to its size: of the coarse solution's error at most half
 # is left in the fine one's, so that it is at most twice the change
 FACTOR = 2.0
-
-
-def halved(patches: rd.Patches) -> rd.Patches:
-    """Twice as many columns and rows."""
-    return replace(patches, columns=2 * patches.columns, rows=2 * patches.rows)
-
-
-def parents(fine: rd.Patches, coarse: rd.Patches) -> np.ndarray:
-    """(n_fine,) the coarse patch that each fine one lies in."""
-    column, row, inverted = fine.place
-    face, quad = fine.face, fine.scene.is_quad[fine.face]
-    middle = np.where(quad, 0.5, np.where(inverted, 2 / 3, 1 / 3))
-    u, v = (column + middle) / fine.columns[face], (row + middle) / fine.rows[face]
-    cell = cells.number(u, v, coarse.columns[face], coarse.rows[face], quad)
-    return coarse.first[face] + cell + np.where(fine.is_back, coarse.cells_per_face[face], 0)
 
 
 def error(runs: Runs, rays: float, method: str) -> np.ndarray:

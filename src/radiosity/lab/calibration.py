@@ -44,15 +44,19 @@ def coverage(
     Args:
         truth: (n_patches,) radiosity.
         lines: of one replicate.
-        visited: leave out patches where fewer lines land in the mean run.
+        visited: leave out patches where fewer lines land in the mean run; black ones are left out, too.
+
+    Raises:
+        ValueError: no patch is left.
     """
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
     process = make(geometry, problem, arm.method, seed, REPLICATES * seeds)
     mean = float(case.patches.area @ case.patches.reflectance[:, 0] / case.patches.area.sum())
     process.advance(max(1, round(lines * (1 - mean))), lambda lines: None)
     state = process.capture()
-    here = process.tally.arrivals(problem, state) >= visited * seeds
-    if process.quanta and not here.any():
+    lit = case.patches.reflectance[:, 0] > 0  # the radiosity of black patches is known
+    here = lit & (process.tally.arrivals(problem, state) >= visited * seeds)
+    if not here.any():
         raise ValueError(f"no patch of {case.name} has {visited:g} arrivals a run")
     found = radiosity(process, problem, state).reshape(seeds, REPLICATES, -1)[..., here]
     middle, error = found.mean(axis=1), found.std(axis=1, ddof=1) / np.sqrt(REPLICATES)
