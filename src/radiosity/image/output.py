@@ -5,8 +5,6 @@ from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 
-import numpy as np
-
 from ..errors import OutputError, RadiosityError
 
 
@@ -61,7 +59,7 @@ def require_results(solution) -> None:
     Raises:
         OutputError: the first stage was not complete.
     """
-    if np.isnan(solution.radiosity).all():
+    if solution.quanta == 0:
         raise OutputError(
             "there are no results yet: the run was stopped within its first stage; `radiosity solve --resume` goes on"
         )
