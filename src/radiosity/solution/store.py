@@ -3,7 +3,6 @@
 import json
 import os
 import tempfile
-import zipfile
 from dataclasses import asdict
 from pathlib import Path
 
@@ -13,7 +12,9 @@ from ..errors import OutputError, SceneError
 from ..patches.model import Patches
 from ..scene.model import Camera, Scene
 from ..scene.paint import Paint
+from .archive import read_arrays
 from .model import Solution
+from .validate import validate
 
 FORMAT = 1
 SCENE_ARRAYS = (
@@ -81,8 +82,8 @@ def load_solution(path) -> Solution:
     """
     path = Path(path)
     try:
-        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+        with path.open("rb") as opened:
+            arrays = read_arrays(opened)
         meta = json.loads(str(arrays["meta"]))
         if meta["format"] != FORMAT:
             raise SceneError(f"{path}: written in format {meta['format']}; this version reads {FORMAT}")
@@ -91,10 +92,13 @@ def load_solution(path) -> Solution:
         raise SceneError(f"{path}: no such file; solve a scene with -o {path.name} first") from None
     except OSError as error:
         raise SceneError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (KeyError, ValueError, TypeError, IndexError, EOFError, zipfile.BadZipFile) as error:
+    except MemoryError:
+        raise SceneError(f"{path}: too large for the memory of this machine") from None
+    except Exception as error:  # damage of any kind must not end the program with a foreign exception
         if isinstance(error, SceneError):
             raise
-        raise SceneError(f"{path}: is no solution of this program, or damaged; solve the scene again") from None
+        text = " ".join(str(error).split())[:200]
+        raise SceneError(f"{path}: is no solution of this program, or damaged ({text}); solve the scene again") from None
 
 
 def _restore(arrays: dict, meta: dict) -> Solution:
@@ -111,12 +115,12 @@ def _restore(arrays: dict, meta: dict) -> Solution:
         scale=described["scale"], source=described["source"],
     )  # fmt: skip
     patches = Patches(scene, arrays["patches_columns"], arrays["patches_rows"])
-    if len(arrays["irradiance"]) != len(patches):
-        raise SceneError(f"{len(arrays['irradiance'])} results for {len(patches)} patches")
     state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
-    return Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars, state=state)
+    solution = Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars, state=state)
+    validate(solution)
+    return solution
 
 
 def _camera(origin, target, up, **rest) -> Camera:
