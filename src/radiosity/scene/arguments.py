@@ -5,6 +5,8 @@ import numpy as np
 from ..errors import SceneError
 from .model import Back, Camera
 
+LARGEST = 1e30  # of emission, colours and texture coordinates: products and single precision copies of them are finite
+
 
 def array(value, dtype, what, source) -> np.ndarray:
     if isinstance(value, np.ndarray) and np.iscomplexobj(value):
@@ -107,11 +109,11 @@ def backs_of(back, two_sided, n, source) -> np.ndarray:
 
 
 def check_values(value, what, surface, names, source) -> None:
-    top = 1.0 if "reflectance" in what else np.inf
+    top = 1.0 if "reflectance" in what else LARGEST
     wrong = ~((value >= 0) & (value < top))
     if wrong.any():
         face, band = np.argwhere(wrong)[0]
-        rule = "must lie in [0, 1)" if top == 1.0 else "must be finite and not negative"
+        rule = "must lie in [0, 1)" if top == 1.0 else f"must be finite and not negative, below {LARGEST:g}"
         raise SceneError(
             f"{source}: {what} of face {face} (surface '{names[surface[face]]}', band {band}) is {value[face, band]:g}; it {rule}"
         )

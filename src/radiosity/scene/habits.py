@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
+from .arguments import LARGEST
 from .parts import Part, ReadOptions
 
 DEFAULT_REFLECTANCE = 0.5
@@ -76,11 +77,12 @@ def _lower(part: Part, limit: float) -> Part:
 def _check_values(name: str, m, source: str) -> None:
     for which in ("reflectance", "back_reflectance"):
         for v in getattr(m, which) or ():
-            if not 0 <= v < np.inf:
+            if not 0 <= v < LARGEST:
                 raise SceneError(f"{source}: {which.replace('_', ' ')} of surface '{name}' is {v:g}; it must lie in [0, 1)")
     for v in (*m.emission, *(m.back_emission or ())):
-        if not 0 <= v < np.inf:
-            raise SceneError(f"{source}: emission of surface '{name}' is {v:g}; it must be finite and not negative")
+        if not 0 <= v < LARGEST:
+            text = f"it must be finite and not negative, below {LARGEST:g}"
+            raise SceneError(f"{source}: emission of surface '{name}' is {v:g}; {text}")
 
 
 def _check_arrays(part: Part, source: str) -> None:
@@ -88,21 +90,21 @@ def _check_arrays(part: Part, source: str) -> None:
     faces = np.asarray(part.faces)
     used = np.zeros(len(part.vertices), bool)
     used[faces[faces >= 0]] = True
-    for values, what, low in (
-        (part.vertices, "coordinates", -np.inf),
-        (part.color, "colour", 0.0),
-        (part.uv, "texture coordinates", -np.inf),
-        (part.emission_uv, "texture coordinates", -np.inf),
+    for values, what, low, high in (
+        (part.vertices, "coordinates", -np.inf, np.inf),
+        (part.color, "colour", 0.0, LARGEST),
+        (part.uv, "texture coordinates", -LARGEST, LARGEST),
+        (part.emission_uv, "texture coordinates", -LARGEST, LARGEST),
     ):
         if values is None:
             continue
-        good = np.all(np.isfinite(values) & (values >= low), axis=1)
+        good = np.all(np.isfinite(values) & (values >= low) & (values <= high), axis=1)
         if not good[used].all():
             vertex = int(np.flatnonzero(used & ~good)[0])
             face = int(np.flatnonzero((faces == vertex).any(axis=1))[0])
-            rule = "must be finite" if low < 0 else "must be finite and not negative"
+            rule = "must be finite" + (" and not negative" if low == 0 else "") + (f", at most {high:g}" if high < np.inf else "")
             raise SceneError(f"{source}: {what} of vertex {vertex} (face {face} of surface '{part.name}') "
                              f"are {np.asarray(values)[vertex].tolist()}; they {rule}")  # fmt: skip
     for image, what in ((part.texture, "texture"), (part.emission_texture, "emission texture")):
-        if image is not None and not (np.isfinite(image) & (image >= 0)).all():
+        if image is not None and not ((image >= 0) & (image <= LARGEST)).all():
             raise SceneError(f"{source}: the {what} of surface '{part.name}' holds values that are negative or not finite")

@@ -10,9 +10,9 @@ from ..errors import SceneError
 from ..patches.model import Patches
 from ..scene.model import Camera, Scene
 from ..scene.paint import Paint
-from . import sound
 from .archive import check_sizes
 from .model import Solution
+from .validate import validate
 from .whole import whole_file
 
 FORMAT = 1
@@ -93,12 +93,12 @@ def load_solution(path) -> Solution:
     except Exception as error:  # damage of any kind must not end the program with a foreign exception
         if isinstance(error, SceneError):
             raise
-        raise SceneError(f"{path}: is no solution of this program, or damaged; solve the scene again") from None
+        text = " ".join(str(error).split())[:200]
+        raise SceneError(f"{path}: is no solution of this program, or damaged ({text}); solve the scene again") from None
 
 
 def _restore(arrays: dict, meta: dict) -> Solution:
     described = meta["scene"]
-    sound.check(arrays, len(described["names"]))
     paints = {}
     for which, facts in meta["paints"].items():
         images = tuple(arrays[f"{which}_picture_{i}"] for i in range(facts["images"]))
@@ -111,16 +111,13 @@ def _restore(arrays: dict, meta: dict) -> Solution:
         scale=described["scale"], source=described["source"],
     )  # fmt: skip
     patches = Patches(scene, arrays["patches_columns"], arrays["patches_rows"])
-    if len(arrays["irradiance"]) != len(patches):
-        raise SceneError(f"{len(arrays['irradiance'])} results for {len(patches)} patches")
     state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
-    power = arrays.get("surface_power")
-    if power is not None and power.shape != (2, scalars["replicates"], len(scene.names), len(scene.bands)):
-        raise SceneError(f"powers of surfaces of shape {power.shape}")
-    scalars |= {"state": state, "surface_power": power}
-    return Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars)
+    scalars |= {"state": state, "surface_power": arrays.get("surface_power")}
+    solution = Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars)
+    validate(solution)
+    return solution
 
 
 def _camera(origin, target, up, **rest) -> Camera:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ....errors import SceneError, shown
+from ...arguments import LARGEST
 from ...assemble import Part, ReadOptions, warn
 from ...combine import combine
 from ...model import Back, Camera, Scene
@@ -92,6 +93,10 @@ class Looks:
             if not faces.any():
                 raise SceneError(f"{source}: surface {number + 1} ('{self.entries[number].name}') has a power but no area")
             emission[faces] = back[faces] = np.asarray(self.entries[number].power) / areas[faces].sum()
+            if not (emission[faces] < LARGEST).all():
+                name, power, area = self.entries[number].name, self.entries[number].power, areas[faces].sum()
+                text = f"has a power of {power} on {area:.3g} m²; the exitance must be below {LARGEST:g}"
+                raise SceneError(f"{source}: surface {number + 1} ('{name}') {text}")
         return replace(scene, emission=emission, back_emission=back)
 
 

@@ -1,0 +1,126 @@
+"""Whether what a solution file holds fits together: shapes, kinds, indices and ranges, before anything is computed from it.
+
+A result is believed as it stands; that its numbers were measured cannot be seen from them.
+"""
+
+import math
+
+import numpy as np
+
+from ..scene.model import Back, Scene
+from ..scene.paint import Paint
+from .books import Books
+from .model import Solution
+
+LARGEST = 1e18  # metres, as `Scene.from_arrays` takes them
+MOST, MOST_OF_PAINTS = 1e60, 1e30  # of other quantities: squares of powers are finite
+
+
+def validate(solution: Solution) -> None:
+    """Raises:
+    ValueError: what does not fit.
+    """
+    scene, patches = solution.patches.scene, solution.patches
+    _scene(scene)
+    n, bands = scene.n_faces, scene.n_bands
+    for name, cells in (("columns", patches.columns), ("rows", patches.rows)):
+        _array(name, cells, "iu", (n,))
+        _that((cells >= 1).all(), f"{name} below 1")
+    _that((patches.columns == patches.rows)[~scene.is_quad].all(), "triangles cut unevenly")
+    # in floating point, where products cannot overflow; a number of patches that is not the results' is never allocated
+    count = patches.columns.astype(float) * patches.rows * np.where(scene.back == Back.RADIATES, 2, 1)
+    n_patches = len(solution.irradiance) if solution.irradiance.ndim else -1
+    _that(count.sum() == n_patches, f"{n_patches} results for {count.sum():.0f} patches")
+    _array("irradiance", solution.irradiance, "f", (n_patches, bands))
+    none_yet = solution.quanta == 0 and np.isnan(solution.irradiance).all()  # a run stopped within its first stage
+    _that(none_yet or (np.abs(solution.irradiance) <= MOST).all(), "irradiance that is not finite")
+    _array("errors", solution.irradiance_standard_error, "f", (n_patches, bands))
+    error = solution.irradiance_standard_error
+    _that((np.isnan(error) | ((error >= 0) & (error <= MOST))).all(), "errors out of range")
+    _array("arrivals", solution.arrivals, "iu", (n_patches,))
+    _that((solution.arrivals >= 0).all() and solution.arrivals.sum(dtype=float) < 2**63, "arrivals out of range")
+    _scalars(solution, bands)
+    if solution.surface_power is not None:
+        _array("powers", solution.surface_power, "f", (2, solution.replicates, len(scene.names), bands))
+        _that((np.abs(solution.surface_power) <= MOST).all(), "powers that are not finite")
+    history = solution.history
+    _that(history.ndim == 2 and history.shape[1] == 2 and history.dtype.kind in "fiu", "a history of another shape")
+
+
+def _scene(scene: Scene) -> None:
+    _that(scene.vertices.ndim == 2 and scene.faces.ndim == 2 and scene.reflectance.ndim == 2, "arrays of other dimensions")
+    n, n_vertices, bands = len(scene.faces), len(scene.vertices), scene.n_bands
+    _array("vertices", scene.vertices, "f", (n_vertices, 3))
+    _array("faces", scene.faces, "i", (n, 4))
+    _that(n > 0, "no faces")
+    _that(((scene.faces >= (0, 0, 0, -1)) & (scene.faces < n_vertices)).all(), "faces of vertices that there are not")
+    _that((np.abs(scene.vertices[scene.faces]) <= LARGEST).all(), "vertices that are not finite")
+    _that((scene.area > 0).all(), "faces without area")
+    _array("back", scene.back, "u", (n,))
+    _that((scene.back <= max(Back)).all(), "backs of no known kind")
+    _array("surface", scene.surface, "i", (n,))
+    _that(((scene.surface >= 0) & (scene.surface < len(scene.names))).all(), "surfaces without a name")
+    for name in ("reflectance", "back_reflectance", "emission", "back_emission"):
+        value = getattr(scene, name)
+        _array(name, value, "f", (n, bands))
+        most = 1 if "reflectance" in name else MOST
+        _that(((value >= 0) & (value < most)).all(), f"{name} out of range")
+    for paint in (scene.reflectance_paint, scene.emission_paint):
+        if paint is not None:
+            _paint(paint, n, bands)
+    for what, names, count in (("surface", scene.names, len(scene.patch_size)), ("band", scene.bands, bands)):
+        _that(len(names) == count and all(isinstance(name, str) for name in names), f"other than {count} {what} names")
+    _array("patch_size", scene.patch_size, "f", (len(scene.names),))
+    _that(isinstance(scene.photometric, bool) and isinstance(scene.source, str), "units or source of another kind")
+    _number("scale", scene.scale, above=0)
+    for camera in scene.cameras:
+        for vector in (camera.origin, camera.target, camera.up):
+            _that(len(vector) == 3 and all(map(_is_number, vector)), "a camera without three coordinates")
+        _number("field of view", camera.fov, above=0)
+        _that(all(type(edge) is int and edge > 0 for edge in (camera.width, camera.height)), "a camera without a size")
+
+
+def _paint(paint: Paint, n: int, bands: int) -> None:
+    for image in paint.images:
+        _that(image.ndim == 3 and image.dtype.kind == "f" and image.size > 0, "an image of another shape")
+        _that(image.shape[2] in (1, bands) and bool(((image >= 0) & (image < MOST_OF_PAINTS)).all()), "an image out of range")
+    _array("image", paint.image, "i", (n,))
+    _that(((paint.image >= -1) & (paint.image < len(paint.images))).all(), "images that there are not")
+    _array("uv", paint.uv, "f", (n, 4, 2))
+    _that(np.isfinite(paint.uv[paint.image >= 0]).all(), "texture coordinates that are not finite")
+    _that(paint.color.ndim == 3 and paint.color.shape[2] in (1, bands), "colours of another shape")
+    _array("color", paint.color, "f", (n, 4, paint.color.shape[2]))
+    _that(((paint.color >= 0) & (paint.color < MOST_OF_PAINTS)).all(), "colours out of range")
+    _that(_is_number(paint.limit, finite=False) and paint.limit > 0, "a paint without a limit")
+
+
+def _scalars(solution: Solution, bands: int) -> None:
+    for name, least in (("rays", 0), ("quanta", 0), ("replicates", 1)):
+        value = getattr(solution, name)
+        _that(type(value) is int and value >= least, f"{name} that is no whole number from {least}")
+    _number("seconds", solution.seconds, least=0)
+    _that(isinstance(solution.status, str), "a status that is no text")
+    known = isinstance(solution.provenance, dict) and {"method", "seed"} <= set(solution.provenance)
+    _that(known, "no word of method and seed")
+    _that(len(solution.books) == bands, f"{len(solution.books)} books for {bands} bands")
+    for book in solution.books:
+        _that(isinstance(book, dict) and {*Books.COLUMNS, "closes"} <= set(book), "books without a column")
+        _that(all(_is_number(book[name], finite=False) for name in Books.COLUMNS), "books that are no numbers")
+        _that(book["closes"] is None or isinstance(book["closes"], bool), "books that close or not in another way")
+
+
+def _array(name: str, value: np.ndarray, kinds: str, shape: tuple[int, ...]) -> None:
+    _that(value.dtype.kind in kinds and value.shape == shape, f"{name} of {value.dtype} and shape {value.shape}, not {shape}")
+
+
+def _number(name: str, value, *, above: float = -math.inf, least: float = -math.inf) -> None:
+    _that(_is_number(value) and value > above and value >= least, f"{name} {value!r}")
+
+
+def _is_number(value, *, finite: bool = True) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and (not finite or math.isfinite(value))
+
+
+def _that(holds, otherwise: str) -> None:
+    if not holds:
+        raise ValueError(otherwise)

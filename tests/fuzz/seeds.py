@@ -1,0 +1,236 @@
+"""Small valid files of every format that is read, and how number k of the damaged ones is made.
+
+File k of a format is the same on every machine: all that is drawn comes from ``Random(f"{format} {k}")``.
+"""
+
+import base64
+import io
+import json
+import struct
+import tempfile
+import zipfile
+from functools import cache
+from pathlib import Path
+from random import Random
+
+import numpy as np
+from mutate import mutated
+from samples import MTL, OBJ, SQUARE, box_gltf, ply_bytes, ply_text, png, stl_bytes, stl_text
+
+TRIANGLES = np.array(SQUARE)[[[0, 1, 2], [0, 2, 3]]]
+MIXED = ([0, 1, 2, 3], [0, 1, 4], [4, 3, 2, 1, 0])
+TEXTURED = OBJ.replace("usemtl white", "usemtl light").replace("f -4 -3 -2 -1", "f -4/1 -3/2 -2/3 -1/4")
+TOML = """geometry = ["lamp.stl", {file = "room.ply", unit = "mm", scale = 2.5, name = "room"}]
+unit = "cm"
+photometric = false
+[[surface]]
+name = "lamp*"
+reflectance = [0.1, 0.2, 0.3]
+power = 40
+sides = 1
+[[surface]]
+name = "room"
+reflectance = 0.5
+patch_size = 0.1
+[[camera]]
+origin = [0, 1, 2]
+target = [1, 1, 2]
+fov = 50
+"""
+XML = b"""<scene version="3.0.0"><default name="r" value="0.3"/>
+<sensor type="perspective"><float name="fov" value="45"/><film type="hdrfilm"><integer name="width" value="32"/></film>
+<transform name="to_world"><lookat origin="0,0,5" target="0,0,0" up="0,1,0"/></transform></sensor>
+<bsdf type="twosided" id="w"><bsdf type="diffuse"><rgb name="reflectance" value="$r,.2,.1"/></bsdf></bsdf>
+<shape type="rectangle" id="floor"><ref id="w"/></shape>
+<shape type="obj"><string name="filename" value="mesh.obj"/><ref id="w"/></shape>
+<shape type="cube"><bsdf type="plastic"><spectrum name="diffuse_reflectance" value="400:0.1, 700:0.9"/></bsdf>
+<transform name="to_world"><rotate x="1" angle="20"/><scale value="-2"/></transform></shape>
+<shape type="sphere"><float name="radius" value="2"/><emitter type="area"><rgb name="radiance" value="1,2,3"/></emitter></shape>
+<shape type="cylinder"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance"/></bsdf></shape>
+<shape type="shapegroup" id="g"><shape type="disk"/></shape><shape type="instance"><ref id="g"/></shape>
+<shape type="ply"><string name="filename" value="mesh.ply"/></shape>
+<shape type="rectangle"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="wall.png"/>
+</texture></bsdf></shape><emitter type="constant"/></scene>"""
+MGF = b"""# comment
+i part.mgf -a 3 -t 1 0 0
+c red =
+\tcxy 0.6 0.3
+m paint = wall
+\tc red
+\trd 0.4
+\ted 20
+v a =
+\tp 0 0 0
+\tn 0 0 1
+v b =
+\tp 1 0 0
+v c = b
+\tp 1 1 0
+o thing
+xf -rx 30 -s 2 -a 2 -t 0 0 1
+f a b c
+xf
+sph a .5
+ring a 0 1
+prism a b c 1
+cone a 1 b 0
+o
+"""
+PART = b"m wall =\n\tsides 1\n\trd .5\nv q =\n p 0 0 9\nv r =\n p 1 0 9\nv s =\n p 0 1 9\nf q r s\n"
+
+
+@cache
+def gltf_text() -> bytes:
+    gltf = box_gltf()
+    uri = "data:application/octet-stream;base64," + base64.b64encode(gltf.data).decode()
+    gltf.tree["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}]
+    gltf.node(camera=0, translation=[0, 0, 9], rotation=[0, 0, 0, 1])
+    return json.dumps({**gltf.tree, "buffers": [{"byteLength": len(gltf.data), "uri": uri}]}).encode()
+
+
+@cache
+def solution() -> dict[str, bytes]:
+    """The members of a solution file: painted, three bands, two replicates."""
+    import warnings
+
+    import radiosity as rd
+
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore", rd.RadiosityWarning)
+        scene = rd.load_scene(box_gltf().write(Path(folder, "box.glb")))
+        rd.solve(rd.subdivide(scene, cells=2), quanta=16, replicates=2, progress=None).save(Path(folder, "box.npz"))
+        with zipfile.ZipFile(Path(folder, "box.npz")) as file:
+            return {name: file.read(name) for name in file.namelist()}
+
+
+def _gltf(random: Random) -> dict[str, bytes]:
+    return {"scene.gltf": mutated(gltf_text(), random)}
+
+
+def _glb(random: Random) -> dict[str, bytes]:
+    """Damage anywhere, or in one chunk with all lengths right."""
+    data = box_gltf_bytes()
+    if random.random() < 0.4:
+        return {"scene.glb": mutated(data, random)}
+    size = int.from_bytes(data[12:16], "little")
+    text, chunk = data[20 : 20 + size], data[28 + size :]
+    if random.random() < 0.5:
+        text = mutated(text, random)
+    else:
+        chunk = mutated(chunk, random)
+    return {"scene.glb": _packed(text, chunk)}
+
+
+@cache
+def box_gltf_bytes() -> bytes:
+    return box_gltf().glb()
+
+
+def _packed(text: bytes, chunk: bytes) -> bytes:
+    body = struct.pack("<I", len(text)) + b"JSON" + text + struct.pack("<I", len(chunk)) + b"BIN\0" + chunk
+    return b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
+
+
+@cache
+def picture() -> bytes:
+    return png(np.arange(48).reshape(4, 4, 3))
+
+
+def _glb_png(random: Random) -> dict[str, bytes]:
+    """A square whose picture is damaged."""
+    image = mutated(picture(), random)
+    geometry = np.array(SQUARE, "<f4").tobytes() + np.array([[0, 0], [1, 0], [1, 1], [0, 1]], "<f4").tobytes()
+    geometry += np.array([0, 1, 2, 0, 2, 3], "<u2").tobytes()
+    places, sizes = (0, 48, 80, 92), (48, 32, 12, len(image))
+    views = [{"buffer": 0, "byteOffset": at, "byteLength": size} for at, size in zip(places, sizes, strict=True)]
+    kinds = ((5126, 4, "VEC3"), (5126, 4, "VEC2"), (5123, 6, "SCALAR"))
+    accessors = [{"bufferView": i, "componentType": c, "count": n, "type": t} for i, (c, n, t) in enumerate(kinds)]
+    tree = {
+        "asset": {"version": "2.0"}, "buffers": [{"byteLength": 92 + len(image)}], "bufferViews": views, "accessors": accessors,
+        "images": [{"bufferView": 3, "mimeType": "image/png"}], "textures": [{"source": 0}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}]}],
+        "nodes": [{"mesh": 0}],
+    }  # fmt: skip
+    return {"scene.glb": _packed(json.dumps(tree).encode(), geometry + image)}
+
+
+def _obj(random: Random) -> dict[str, bytes]:
+    files = {"scene.obj": TEXTURED.encode(), "wall.png": picture()}
+    files["box.mtl"] = (MTL + "map_Kd -s 2 2 1 wall.png\nillum 2\nKs 0.1 0.1 0.1\nd 1\n").encode()
+    name = random.choice(("scene.obj", "scene.obj", "box.mtl"))
+    return {**files, name: mutated(files[name], random)}
+
+
+def _toml(random: Random) -> dict[str, bytes]:
+    return {"scene.toml": mutated(TOML.encode(), random), "lamp.stl": stl_bytes(TRIANGLES), "room.ply": ply_text().encode()}
+
+
+def _xml(random: Random) -> dict[str, bytes]:
+    files = {"scene.xml": XML, "mesh.obj": OBJ.encode(), "mesh.ply": ply_bytes(), "wall.png": picture()}
+    name = random.choice(("scene.xml",) * 6 + ("mesh.obj", "mesh.ply"))
+    return {**files, name: mutated(files[name], random)}
+
+
+def _mgf(random: Random) -> dict[str, bytes]:
+    files = {"scene.mgf": MGF, "part.mgf": PART}
+    name = random.choice(("scene.mgf", "scene.mgf", "part.mgf"))
+    return {**files, name: mutated(files[name], random)}
+
+
+def _npz(random: Random) -> dict[str, bytes]:
+    """Damage to the archive, or inside of members whose checksums are right."""
+    members, where = dict(solution()), random.random()
+    if where > 0.1:
+        names = ["meta.npy"] if where < 0.5 else random.sample(sorted(members), random.choice((1, 1, 2)))
+        for name in names:
+            members[name] = _npy(members[name], random)
+        if random.random() < 0.05:
+            members.pop(random.choice(sorted(members)))
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", random.choice((zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED))) as archive:
+        for name, data in members.items():
+            archive.writestr(zipfile.ZipInfo(name), data)
+    data = file.getvalue()
+    return {"scene.npz": data if where > 0.1 else mutated(data, random)}
+
+
+def _npy(data: bytes, random: Random) -> bytes:
+    """Damage to an array file; the text in ``meta`` stays an array of its own length."""
+    if random.random() < 0.4:
+        return mutated(data, random)
+    value = np.load(io.BytesIO(data))
+    if value.dtype.kind == "U":
+        value = np.array(mutated(str(value).encode(), random).decode("utf-8", "replace").rstrip("\0") or " ")
+    elif value.size:
+        raw = mutated(value.tobytes(), random)[: value.nbytes]
+        value = np.frombuffer(raw.ljust(value.nbytes, b"\0"), value.dtype).reshape(value.shape)
+    out = io.BytesIO()
+    np.save(out, value)
+    return out.getvalue()
+
+
+def _one(name: str, make):
+    return lambda random: {name: mutated(make(), random)}
+
+
+COLORED = cache(lambda: ply_text([*SQUARE, [0, 0, 1]], MIXED, colors=np.arange(15).reshape(5, 3)).encode())
+FORMATS = {
+    "mgf": _mgf,
+    "xml": _xml,
+    "glb": _glb,
+    "glb-png": _glb_png,
+    "gltf": _gltf,
+    "obj": _obj,
+    "ply-ascii": _one("scene.ply", COLORED),
+    "ply-binary": _one("scene.ply", lambda: ply_bytes([*SQUARE, [0, 0, 1]], MIXED)),
+    "stl-ascii": _one("scene.stl", lambda: stl_text({"a": TRIANGLES, "b": TRIANGLES + 1}).encode()),
+    "stl-binary": _one("scene.stl", lambda: stl_bytes(TRIANGLES)),
+    "toml": _toml,
+    "npz": _npz,
+}
+
+
+def damaged(name: str, number: int) -> dict[str, bytes]:
+    """The files, by name, of damaged file ``number`` of a format; the scene is the one called ``scene.*``."""
+    return FORMATS[name](Random(f"{name} {number}"))
