@@ -44,7 +44,7 @@ def coverage(
     Args:
         truth: (n_patches,) radiosity.
         lines: of one replicate.
-        visited: leave out patches where fewer lines land in the mean run; black ones are left out, too.
+        visited: leave out patches where fewer lines land in the mean run; those that reflect nothing are left out, too.
 
     Raises:
         ValueError: no patch is left.
@@ -54,7 +54,7 @@ def coverage(
     mean = float(case.patches.area @ case.patches.reflectance[:, 0] / case.patches.area.sum())
     process.advance(max(1, round(lines * (1 - mean))), lambda lines: None)
     state = process.capture()
-    lit = case.patches.reflectance[:, 0] > 0  # the radiosity of black patches is known
+    lit = (case.patches.reflectance[:, 0] > 0) & (truth > case.patches.emission[:, 0])  # others are known exactly
     here = lit & (process.tally.arrivals(problem, state) >= visited * seeds)
     if not here.any():
         raise ValueError(f"no patch of {case.name} has {visited:g} arrivals a run")
