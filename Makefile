@@ -9,12 +9,13 @@ ARGS :=
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 python; do \
 	"$$p" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo "$$p"; break; }; done)
 
-.PHONY: help demo test bench check ci clean
+.PHONY: help demo test bench validate check ci clean
 
 help:
 	@echo 'make demo    solve the built-in room and write a picture, a mesh and the numbers into $(OUT)/'
 	@echo 'make test    run the tests (make test ARGS="-k name" for some of them)'
 	@echo 'make bench   print lines per second against the bare ray caster'
+	@echo 'make validate  compare with exact solutions, Mitsuba and Radiance, and write docs/validation (ARGS=--quick: a minute)'
 	@echo 'make check   lint and types'
 	@echo 'make ci      what the continuous integration runs: check, test and every command of the README'
 	@echo 'make clean   remove what these made, except $(VENV)'
@@ -28,6 +29,9 @@ test: $(VENV)/.developer
 
 bench: $(VENV)/.developer
 	$(BIN)/python benchmarks/bench.py $(ARGS)
+
+validate: $(VENV)/.developer
+	$(BIN)/python -m validation $(ARGS)
 
 check: $(VENV)/.developer
 	$(BIN)/ruff check

@@ -22,6 +22,12 @@ def strangers() -> Path:
     return STRANGERS
 
 
+@pytest.fixture(scope="session")
+def strangers_or_none() -> Path | None:
+    """The same, for tests that have more than these: None where it is absent."""
+    return STRANGERS if STRANGERS.is_dir() else None
+
+
 @pytest.fixture
 def random() -> np.random.Generator:
     return np.random.Generator(np.random.Philox(7))

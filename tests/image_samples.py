@@ -21,6 +21,7 @@ def solution(patches, radiosity=None, *, unit="W/m²"):
     return SimpleNamespace(
         patches=patches, radiosity=radiosity, irradiance=2 * radiosity, standard_error=0.1 * radiosity,
         irradiance_standard_error=0.2 * radiosity, arrivals=np.arange(n), bands=bands, unit=unit, surface_table=lambda: table,
+        quanta=1, few=np.arange(n) < 30, interval=lambda level, quantity: (1.5 * radiosity, 2.5 * radiosity),
     )  # fmt: skip
 
 

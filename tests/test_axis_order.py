@@ -25,6 +25,7 @@ def short(monkeypatch):
     """Launches of few lines, so that stages have many of them."""
     for module, name, value in (
         (lanes, "CHUNK", 1 << 12),
+        (lanes, "CORE_CHUNK", 1),
         (matrix, "LAUNCH", 3_000),
         (mixing, "VISITS", 8),
         (multipath, "BATCH", 1),

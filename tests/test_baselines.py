@@ -12,6 +12,7 @@ from replicates import difference, powers
 import radiosity as rd
 from radiosity.deterministic import estimate
 from radiosity.deterministic.progressive import recent
+from radiosity.engine import memory
 
 # coarse hemicubes and few samples say that they are off; one test looks for it
 pytestmark = pytest.mark.filterwarnings("ignore:.*out of balance:radiosity.RadiosityWarning")
@@ -250,10 +251,10 @@ def test_sequences_of_decisions_have_no_replicates(scheme):
 
 
 def test_what_does_not_fit_is_refused_with_numbers_and_the_way_out(room, monkeypatch):
-    monkeypatch.setattr(estimate, "free_memory", lambda: 1e6)
-    with pytest.raises(rd.MethodError, match=r"GiB of memory, and .* GiB are free; take larger patches"):
+    monkeypatch.setattr(memory, "free", lambda: 1e6)
+    with pytest.raises(rd.MethodError, match=r"iB of memory, and .* MiB are free; take larger patches"):
         rd.solve(room[0], "full-matrix")
-    with pytest.raises(rd.MethodError, match=r"GiB of memory.*take larger patches"):
+    with pytest.raises(rd.MethodError, match=r"iB of memory.*take larger patches"):
         rd.solve(room[0], "progressive-refinement")
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from enclosures import cube
-from view_factors import parallel
 
 import radiosity as rd
 from radiosity.deterministic.factors import exchange
@@ -13,6 +12,7 @@ from radiosity.engine.geometry import Geometry
 from radiosity.engine.matrix.balance import restored
 from radiosity.engine.matrix.missed import missed
 from radiosity.scene.shapes import quad
+from validation.closed_forms.rectangles import parallel
 
 
 def geometry_of(scene: rd.Scene, cells: int) -> Geometry:
@@ -74,4 +74,3 @@ def test_shares_that_escape_and_are_lost():
     assert escaped == pytest.approx([1 - parallel(1, 1), 1], abs=1e-3)
     single, _ = missed(geometry_of(scene.take(np.array([0])), 1), 1)
     assert single.tolist() == [1]
-

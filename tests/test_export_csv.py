@@ -36,9 +36,12 @@ def test_a_row_for_each_patch_and_each_surface(tmp_path, monkeypatch):
         "irradiance blue [W/m²]": result.irradiance[:, 2],
         "standard error of irradiance blue [W/m²]": result.irradiance_standard_error[:, 2],
         "arrivals": result.arrivals,
+        "few arrivals": result.few,
+        "irradiance, 95 % from red [W/m²]": result.interval(0.95, "irradiance")[0][:, 0],
+        "irradiance, 95 % to blue [W/m²]": result.interval(0.95, "irradiance")[1][:, 2],
     }.items():
         np.testing.assert_allclose([float(row[title]) for row in table], expected, rtol=1e-8)
-    assert len(table[0]) == 3 + 6 + 1 + 6 * 3 + 1
+    assert len(table[0]) == 3 + 6 + 1 + 6 * 3 + 2 + 2 * 3
     surfaces = rows(tmp_path / "a.surfaces.csv")
     assert [row["surface"] for row in surfaces] == list(patches.scene.names)
     assert list(surfaces[0]) == ["surface", "area [m²]", *(f"emitted {band} [W]" for band in patches.scene.bands), "error"]

@@ -13,7 +13,7 @@ import radiosity as rd
 from radiosity.lab import cases, slopes
 from radiosity.lab.bits import bits
 from radiosity.lab.calibration import LEVELS, coverage
-from radiosity.lab.discretisation import discretisation, parents
+from radiosity.lab.discretisation import discretisation
 from radiosity.lab.experiments import EXPERIMENTS, module
 from radiosity.lab.run import run
 from radiosity.lab.start import starts
@@ -144,15 +144,6 @@ def test_discretisation_error_falls_with_the_mesh_and_is_less_for_continuous_wal
     assert fine.discrete < 0.9 * coarse.discrete
     assert coarse.continuous < coarse.discrete
     assert 0.3 * coarse.discrete < coarse.delta < 1.5 * coarse.discrete
-
-
-def test_parents_hold_their_cells():
-    scene = rd.load_scene("room")
-    coarse, fine = rd.subdivide(scene, cells=2), rd.subdivide(scene, cells=8)
-    of = parents(fine, coarse)
-    assert np.bincount(of, fine.area) == pytest.approx(coarse.area)
-    middle = np.stack([np.bincount(of, fine.area * axis) for axis in fine.centroid.T], axis=1) / coarse.area[:, None]
-    assert middle == pytest.approx(coarse.centroid)
 
 
 def test_the_command_writes_a_report_that_stands_alone(tmp_path, capsys):

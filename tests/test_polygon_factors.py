@@ -5,12 +5,12 @@ import pytest
 from enclosures import coaxial_discs, cube, sphere
 from hypothesis import given
 from hypothesis import strategies as st
-from view_factors import discs, inclined, parallel, perpendicular
 
 import radiosity as rd
 from radiosity.deterministic.factors import exchange, from_points
 from radiosity.deterministic.factors.contour import around
 from radiosity.scene.shapes import quad
+from validation.closed_forms.rectangles import discs, inclined, parallel, perpendicular
 
 
 def one_pair(one: np.ndarray, other: np.ndarray) -> float:

@@ -24,6 +24,12 @@ def test_rays_are_met_within_five_percent_in_colour(name):
 
 
 @pytest.mark.parametrize("name", rd.PRESETS)
+def test_rays_are_met_after_several_stages(name):
+    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), name, rays=3_000_000, replicates=2)
+    assert solution.rays == pytest.approx(3_000_000, rel=0.05)
+
+
+@pytest.mark.parametrize("name", rd.PRESETS)
 def test_quanta_replay_the_bits_and_files_keep_them(name, coloured, tmp_path):
     solution = rd.solve(coloured, name, rays=200_000, replicates=3)
     again = rd.solve(coloured, name, quanta=solution.quanta, replicates=3)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from enclosures import cube, sphere
-from view_factors import parallel
 
 import radiosity as rd
 from radiosity.engine.device import choose
@@ -11,6 +10,7 @@ from radiosity.engine.geometry import Geometry
 from radiosity.engine.visibility import Polygons, visible_share
 from radiosity.errors import MethodError
 from radiosity.scene.shapes import quad
+from validation.closed_forms.rectangles import parallel
 
 
 def geometry_of(scene: rd.Scene, cells: int = 1) -> Geometry:

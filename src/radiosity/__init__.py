@@ -15,21 +15,23 @@ from . import llvm
 from .errors import DeviceError, MethodError, OutputError, RadiosityError, RadiosityWarning, SceneError
 
 if TYPE_CHECKING:
+    from .engine.refine import refine_check
     from .engine.solve import solve
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
     from .scene import Back, Camera, Scene, load_scene
-    from .solution import Solution, load_solution
+    from .solution import RefineCheck, Solution, load_solution
 
 llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
+    "engine.refine": ("refine_check",),
     "engine.solve": ("solve",),
     "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
     "patches": ("Patches", "subdivide"),
     "scene": ("Back", "Camera", "Scene", "load_scene"),
-    "solution": ("Solution", "load_solution"),
+    "solution": ("RefineCheck", "Solution", "load_solution"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -46,11 +48,13 @@ __all__ = [
     "Patches",
     "RadiosityError",
     "RadiosityWarning",
+    "RefineCheck",
     "Scene",
     "SceneError",
     "Solution",
     "load_scene",
     "load_solution",
+    "refine_check",
     "solve",
     "subdivide",
 ]

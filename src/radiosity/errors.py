@@ -30,3 +30,8 @@ def shown(names, most: int = 8) -> str:
     names = [str(name) for name in names]
     text = ", ".join(f"'{name}'" for name in names[:most])
     return text if len(names) <= most else f"{text} and {len(names) - most} more"
+
+
+def printable(text) -> str:
+    """A name or message for one line of a terminal: control characters, which could move its cursor or hide text, as escapes."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape", "backslashreplace").decode() for c in str(text))

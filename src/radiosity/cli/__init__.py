@@ -5,7 +5,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Run ``radiosity`` and return its exit status.
 
     0: done; 1: it could not be done, or `check` and `doctor` found something serious; 2: the input is wrong;
-    130: interrupted, with everything written that was there.
+    130: interrupted, with everything written that was there; 143: likewise by SIGTERM.
 
     Without ``arguments`` it is the program itself: it takes those of the command line, and Ctrl-C is of no effect after it.
     """
@@ -20,4 +20,6 @@ def main(arguments: list[str] | None = None) -> int:
             return run(sys.argv[1:] if arguments is None else list(arguments))
     except KeyboardInterrupt:  # outside of what `run` looks after
         print("radiosity: interrupted", file=sys.stderr)
-        return 130
+        from .interrupts import status
+
+        return status()

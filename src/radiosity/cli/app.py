@@ -8,7 +8,7 @@ from io import TextIOWrapper
 
 from cyclopts import App, CoercionError, CycloptsError
 
-from ..errors import DeviceError, RadiosityError, RadiosityWarning
+from ..errors import DeviceError, RadiosityError, RadiosityWarning, printable
 from . import interrupts
 from .check import check
 from .doctor import doctor
@@ -17,7 +17,7 @@ from .methods import methods
 from .render import render
 from .solve import solve
 
-FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
+FAILED, WRONG_INPUT = 1, 2
 
 
 def _version() -> str:
@@ -63,7 +63,7 @@ def run(arguments: list[str]) -> int:
         return FAILED if isinstance(error, DeviceError) else WRONG_INPUT
     except KeyboardInterrupt:
         say("interrupted", "stopped before the end; what was not written yet is lost")
-        return INTERRUPTED
+        return interrupts.status()
     except BrokenPipeError:
         # whoever read our output has gone; nothing more can be said there, not even by Python as it ends
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -87,7 +87,7 @@ def run(arguments: list[str]) -> int:
 
 def say(kind: str, message) -> None:
     """One line on stderr: ``radiosity: error: ...``."""
-    print(f"radiosity: {kind}: {' '.join(str(message).split())}", file=sys.stderr, flush=True)
+    print(f"radiosity: {kind}: {printable(' '.join(str(message).split()))}", file=sys.stderr, flush=True)
 
 
 @contextmanager

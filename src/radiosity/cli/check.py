@@ -1,12 +1,16 @@
 """``radiosity check``"""
 
+from ..errors import printable
 from .options import DeviceName, Flag
 
 COLORS = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 MOST_ROWS = 40
 
 
-def check(scene: str, /, *, max_reflectance: float = 0.95, strict: Flag = False, device: DeviceName = "auto") -> int:
+def check(
+    scene: str, /, *, max_reflectance: float = 0.95, strict: Flag = False, allow_outside: Flag = False,
+    device: DeviceName = "auto",
+) -> int:  # fmt: skip
     """Say what a scene holds and what in it is probably not meant.
 
     Parameters
@@ -17,12 +21,16 @@ def check(scene: str, /, *, max_reflectance: float = 0.95, strict: Flag = False,
         Bring larger reflectances in the scene down to this.
     strict
         Faults in the scene that could be skipped with a warning are errors.
+    allow_outside
+        The scene may name files (includes, meshes, textures) outside its folder.
     device
         auto, cpu or cuda: what the lines are traced on.
     """
     from ..scene.check import check_file
 
-    report = check_file(scene, max_reflectance=max_reflectance, strict=strict, device=device)
+    report = check_file(
+        scene, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside, device=device
+    )
     _print(report)
     return 1 if report.serious else 0
 
@@ -39,7 +47,7 @@ def _print(report) -> None:
         if len(report.surfaces) > MOST_ROWS:
             console.print(Text(f"and {len(report.surfaces) - MOST_ROWS} smaller surfaces"))
     for finding in report.findings:
-        console.print(Text(finding.severity, COLORS[finding.severity]), Text(f"{finding.kind}: {finding.message}"))
+        console.print(Text(finding.severity, COLORS[finding.severity]), Text(printable(f"{finding.kind}: {finding.message}")))
     if not report.findings:
         console.print(Text("nothing suspicious found", "green"))
 
@@ -48,7 +56,7 @@ def _facts(report):
     scene = report.scene
     low, high = scene.bounds
     size = " x ".join(f"{d:.4g}" for d in high - low)
-    yield report.source
+    yield printable(report.source)
     scale = "" if abs(scene.scale - 1) < 1e-12 else f" (a unit of the file is {scene.scale:g} m)"
     yield f"extent    {size} m{scale}, from {_point(low)} to {_point(high)}"
     quads = int(scene.is_quad.sum())
@@ -78,8 +86,8 @@ def _table(report):
     rows = sorted(report.surfaces, key=lambda s: (not any(s.power), -s.area))  # emitters first, then by area
     for s in rows[:MOST_ROWS]:
         lit = any(s.power)
-        table.add_row(Text(s.name), str(s.faces), f"{s.area:.4g}", _bands(s.reflectance), _bands(s.emission) if lit else "-",
-                      _bands(s.power) if lit else "-", s.sides)  # fmt: skip
+        table.add_row(Text(printable(s.name)), str(s.faces), f"{s.area:.4g}", _bands(s.reflectance),
+                      _bands(s.emission) if lit else "-", _bands(s.power) if lit else "-", s.sides)  # fmt: skip
     return table
 
 

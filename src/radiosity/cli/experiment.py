@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
+from . import interrupts
 from .options import Flag, Folder
-
-INTERRUPTED = 130
 
 
 def experiment(which: str, /, *, quick: Flag = False, image: Flag = False, output: Folder = Path("out/experiments")) -> int:
@@ -40,6 +39,6 @@ def experiment(which: str, /, *, quick: Flag = False, image: Flag = False, outpu
             report = make(numbers, QUICK if quick else FULL, output, command, told, image=image)
     except KeyboardInterrupt:
         say("interrupted", f"the series that are done lie in {output / 'series'}; the same command goes on with the others")
-        return INTERRUPTED
+        return interrupts.status()
     print(report)
     return 0

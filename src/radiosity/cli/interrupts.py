@@ -1,4 +1,4 @@
-"""Ctrl-C at any moment ends the program with one line and status 130.
+"""Ctrl-C at any moment ends the program with one line and status 130; SIGTERM likewise, with status 143.
 
 An exception out of a signal handler that goes through a half-done import leaves libraries broken: some swallow it, some
 turn it into another error, and compiled ones may end the process. So an interruption waits until no import is under way.
@@ -9,13 +9,14 @@ import threading
 from contextlib import contextmanager
 
 AGAIN = 0.02  # seconds until an interruption that fell into an import is tried again
+INTERRUPTED, TERMINATED = 130, 143
 
 
 class _Ears:
-    """The handler of SIGINT: raises KeyboardInterrupt, but never through an import."""
+    """The handler of SIGINT and SIGTERM: raises KeyboardInterrupt, but never through an import."""
 
     def __init__(self):
-        self.raised = False
+        self.raised = self.terminated = False
         self.timer: threading.Timer | None = None
 
     def __call__(self, number, frame) -> None:
@@ -23,9 +24,15 @@ class _Ears:
             self.raised = True
             raise KeyboardInterrupt
         self.cancel()
-        self.timer = threading.Timer(AGAIN, signal.raise_signal, [signal.SIGINT])
+        self.timer = threading.Timer(AGAIN, signal.raise_signal, [number])
         self.timer.daemon = True
         self.timer.start()
+
+    def terminate(self, number, frame) -> None:
+        """SIGTERM does what Ctrl-C does at this moment; where that is ignored, what it would do."""
+        self.terminated = True
+        handler = signal.getsignal(signal.SIGINT)
+        (handler if callable(handler) else self)(number, frame)
 
     def cancel(self) -> None:
         if self.timer is not None:
@@ -35,9 +42,19 @@ class _Ears:
 _ears = _Ears()
 
 
+def status() -> int:
+    """The exit status of an interrupted program."""
+    return TERMINATED if _ears.terminated else INTERRUPTED
+
+
+def answer() -> None:
+    """An interruption was told by who caught it, and `kept` says no more."""
+    _ears.raised = False
+
+
 @contextmanager
 def heard(*, last: bool):
-    """Take over SIGINT, unless this is no main thread or another handler is set (in the background it is ignored).
+    """Take over SIGINT and SIGTERM in the main thread, each unless another handler is set (in the background SIGINT is ignored).
 
     Args:
         last: nothing but the end of the process follows: SIGINT is then ignored, so that the exit status stays.
@@ -45,16 +62,21 @@ def heard(*, last: bool):
     global _ears
     _ears = _Ears()
     here = threading.current_thread() is threading.main_thread()
-    if not here or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
-        yield
-        return
-    signal.signal(signal.SIGINT, _ears)
+    interrupts = here and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    ends = here and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+    if ends:
+        signal.signal(signal.SIGTERM, _ears.terminate)
+    if interrupts:
+        signal.signal(signal.SIGINT, _ears)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        if interrupts:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
         _ears.cancel()
-        if not last:
+        if ends:
+            signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        if interrupts and not last:
             signal.signal(signal.SIGINT, signal.default_int_handler)
 
 

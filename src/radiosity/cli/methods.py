@@ -1,5 +1,7 @@
 """``radiosity methods``"""
 
+UNKNOWN = "The errors of baselines are unknown: they are those of form factors and meshes, which replicates do not show"
+
 
 def methods(name: str | None = None, /) -> int:
     """List the methods, or say what one is, when to take it, its parameters and whom to cite.
@@ -51,6 +53,7 @@ def _list() -> None:
         fields = dict(preset.source.fields)
         table.add_row(name, scheme, ", ".join(choices), f"{_family(fields['author'])} {fields['year']}")
     console.print(table)
+    print(f"{UNKNOWN}.")
     print("\n`radiosity methods NAME` explains one; `radiosity methods numbers` (equation, lines, order) the choices of an axis,")
     print("which replace a method's own: radiosity solve room --method particle-tracing --numbers sobol")
 
@@ -103,4 +106,6 @@ def _explain(name: str) -> None:
         for parameter, meaning in preset.parameters:
             print(f"  {parameter:<16} {meaning}")
         print()
+    if name in BASELINES:
+        print(f"{UNKNOWN}.\n")
     print(preset.source.bibtex)

@@ -1,9 +1,10 @@
 """Output files: refused before the run where they cannot be written, and none lost because of another."""
 
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
-from ..errors import OutputError, RadiosityError
+from ..errors import OutputError, RadiosityError, printable
 
 
 def check(paths) -> None:
@@ -23,11 +24,12 @@ def check(paths) -> None:
         check_writable(path)
 
 
-def write(solution, paths, *, exposure: float | None = None) -> None:
+def write(solution, paths, *, exposure: float | None = None, checkpoint: Path | None = None) -> None:
     """Write each output. Where one fails the others are written all the same; then its error is raised.
 
     Raises:
-        OutputError: at least one file could not be written. The solution has then been saved somewhere as NPZ.
+        OutputError: at least one file could not be written. The solution has then been saved as NPZ, as ``checkpoint`` or in a
+            new folder, if there is any place for it.
     """
     failures, saved = [], False
     for path in paths:
@@ -39,13 +41,26 @@ def write(solution, paths, *, exposure: float | None = None) -> None:
             failures.append(f"{path}: {type(error).__name__}: {error}")
         else:
             saved |= Path(path).suffix.lower() == ".npz"
-            print(f"wrote {path}")
+            print(f"wrote {printable(path)}")
     if failures:
-        kept = "" if saved else f"; the solution was kept in {_rescue(solution)}"
+        kept = "" if saved else f"; {_rescue(solution, checkpoint)}"
         raise OutputError("; ".join(failures) + kept)
 
 
-def _rescue(solution) -> Path:
-    folder = Path(tempfile.mkdtemp(prefix="radiosity-"))
-    solution.save(folder / "solution.npz")
-    return folder / "solution.npz"
+def _rescue(solution, checkpoint: Path | None) -> str:
+    """Save it where it can be, and say where."""
+    if checkpoint is not None:
+        with suppress(RadiosityError):
+            solution.save(checkpoint)
+            return f"the solution was kept in {checkpoint} (make room, then --resume it)"
+    with suppress(RadiosityError, OSError):
+        folder = Path(tempfile.mkdtemp(prefix="radiosity-"))
+        try:
+            solution.save(folder / "solution.npz")
+        except RadiosityError:
+            folder.rmdir()
+            raise
+        return f"the solution was kept in {folder / 'solution.npz'}"
+    if checkpoint is not None and checkpoint.exists():
+        return f"there was no place for the solution; make room, and go on with --resume {checkpoint}"
+    return "there was no place for the solution either; make room, and solve the scene again"

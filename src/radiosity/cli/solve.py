@@ -3,11 +3,10 @@
 from pathlib import Path
 
 from ..errors import MethodError
-from . import outputs
+from . import checkpoints, interrupts, outputs
 from .options import Chosen, Count, DeviceName, Flag, Length, Outputs, Seconds, Seed, Share, Stops
 
 DEFAULT_RAYS = 10_000_000
-INTERRUPTED = 130
 
 
 def solve(
@@ -18,6 +17,7 @@ def solve(
     rays: Count = None,
     seconds: Seconds = None,
     error: Share = None,
+    error_of: str | None = None,
     quanta: Count = None,
     method: str = "random-walk",
     equation: str | None = None,
@@ -46,9 +46,14 @@ def solve(
     seed: Seed = 0,
     device: DeviceName = "auto",
     resume: Path | None = None,
+    checkpoint: Path | None = None,
+    no_checkpoint: Flag = False,
+    memory: str | None = None,
     coherent: Flag = False,
     max_reflectance: float = 0.95,
     strict: Flag = False,
+    refine_check: Flag = False,
+    allow_outside: Flag = False,
     exposure: Stops = None,
 ) -> int:
     """Solve a scene, print a report and write the outputs.
@@ -65,7 +70,9 @@ def solve(
     seconds
         Or: for how long to trace, such as 60, 5min or 1h.
     error
-        Or: until the relative error is below this, such as 1% or 0.01.
+        Or: until the relative error is below this, such as 1% or 0.01; in 95 % of runs the true error is.
+    error_of
+        Whose error: surface:NAME, or surface:PATTERN. Default: the whole scene's.
     quanta
         Or: exactly so many quanta of power in each replicate; the report of a run names its number.
     method
@@ -123,12 +130,25 @@ def solve(
     resume
         Go on from this .npz of the same scene, method, seed and replicates, also an interrupted one. Its lines count.
         Default of the patches: as it has them. Not for full-matrix and hierarchical.
+    checkpoint
+        An .npz file to keep the run's state in, every 30 seconds or so, for --resume after a crash, a kill or a power cut; it is
+        removed when all outputs are written. Default: once a run takes a minute, beside the first output: out/box.glb ->
+        out/box.checkpoint.npz.
+    no_checkpoint
+        Keep none.
+    memory
+        That the run may take, such as 8G or none; more is refused before it begins. Default: 70 % of what is free.
     coherent
         Trace packets of like lines: faster, but not equal bit for bit where a line meets two faces in one point.
     max_reflectance
         Bring larger reflectances in the scene down to this.
     strict
         Faults in the scene that could be skipped with a warning are errors.
+    refine_check
+        Solve on patches cut into four, too, and report sampling and discretisation errors apart; with a .csv output also as
+        NAME.refine.csv.
+    allow_outside
+        The scene may name files (includes, meshes, textures) outside its folder.
     exposure
         Of pictures and meshes: stops brighter than the automatic scale; +1 is twice.
     """
@@ -136,7 +156,10 @@ def solve(
     given = [f"--{name}" for name, value in asked.items() if value is not None]
     if len(given) > 1:
         raise MethodError(f"give one of --rays, --seconds, --error and --quanta, not {' and '.join(given)}")
-    outputs.check(output)
+    if refine_check and (resume is not None or checkpoint is not None):
+        raise MethodError("--refine-check solves anew on two meshes; it cannot --resume a run, and keeps no --checkpoint")
+    tables = [path.with_suffix(".refine.csv") for path in output if path.suffix.lower() == ".csv"] if refine_check else []
+    outputs.check([*output, *tables])
 
     import radiosity as rd
 
@@ -152,17 +175,38 @@ def solve(
     chosen = rd.method.resolve(method, **choices)
     if not given and isinstance(chosen, rd.Method):
         asked["rays"] = DEFAULT_RAYS
-    loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict)
+    loaded = rd.load_scene(scene, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside)
     before = None if resume is None else rd.load_solution(resume)
+    keeper = None if refine_check else checkpoints.chosen(checkpoint, no_checkpoint, output, chosen, resume)
     patches = loaded
     if patch_size is not None or cells is not None:
         patches = rd.subdivide(loaded, size=patch_size, cells=cells, powers_of_two=chosen.needs_powers_of_two)
     elif before is not None and before.patches.scene.hash == loaded.hash:
         patches = before.patches
-    with bar() as progress:
-        solution = rd.solve(
-            patches, chosen, **asked, replicates=replicates, seed=seed, device=device, progress=progress, resume=before
-        )
-    print(solution.report())
-    outputs.write(solution, output, exposure=exposure)
-    return INTERRUPTED if solution.status == "interrupted" else 0
+    from .app import say
+
+    checked = None
+    try:
+        with bar() as progress:
+            options = {**asked, "error_of": error_of, "seed": seed, "device": device, "progress": progress, "memory": memory}
+            if refine_check:
+                checked = rd.refine_check(patches, chosen, replicates=8 if replicates is None else replicates, **options)
+                solution = checked.coarse
+            else:
+                solution = rd.solve(patches, chosen, **options, replicates=replicates, resume=before, checkpoint=keeper)
+        print(solution.report())
+        if checked is not None:
+            print(f"\n{checked.report()}")
+            for path in tables:
+                checked.export(path)
+        outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path)
+    except KeyboardInterrupt:
+        if keeper is None or not keeper.written:
+            raise
+        interrupts.answer()
+        say("interrupted", f"stopped before the end; --resume {keeper.path} goes on from there")
+        return interrupts.status()
+    left = checkpoints.finish(keeper, solution, output, named=checkpoint is not None, resume=resume)
+    if left is not None:
+        say("interrupted", f"stopped before the end; --resume {left} goes on from there")
+    return interrupts.status() if solution.status == "interrupted" else 0

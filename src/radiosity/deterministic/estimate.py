@@ -1,17 +1,16 @@
 """What a baseline will take, before it begins: refused where memory would not do, told where it takes long."""
 
-import os
 import time
 import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import MethodError, RadiosityWarning
+from ..engine import memory
+from ..errors import RadiosityWarning
 from .rows import AbstractRows
 
 BYTES_A_FACTOR = 96  # 12 in the matrix, the rest while pairs are sorted; 91 were measured in a closed cube
-SHARE = 0.7  # of the memory that is free now
 LONG = 60.0  # seconds that are worth a word
 TRIAL_ROWS = 16
 
@@ -31,12 +30,7 @@ class Estimate:
         Raises:
             MethodError: more memory than there is.
         """
-        free = free_memory()
-        if self.memory > SHARE * free:
-            raise MethodError(
-                f"{self.what} would take about {self.memory / 2**30:.3g} GiB of memory, "
-                f"and {free / 2**30:.3g} GiB are free; {self.way_out}"
-            )
+        memory.refuse(self.memory, self.what, self.way_out)
         if self.seconds > LONG:
             warnings.warn(
                 f"{self.what} takes about {self.memory / 2**30:.2g} GiB and {self.seconds / 60:.2g} minutes on this machine; "
@@ -46,29 +40,15 @@ class Estimate:
             )
 
 
-def free_memory() -> float:
-    """Bytes that a new array may take; infinite where the system does not tell."""
-    try:
-        with open("/proc/meminfo", encoding="ascii") as file:
-            facts = dict(line.split(":", 1) for line in file)
-        return 1024.0 * int(facts["MemAvailable"].split()[0])
-    except (OSError, KeyError, ValueError):
-        pass
-    try:
-        return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (AttributeError, OSError, ValueError):
-        return np.inf
-
-
 def full_matrix(rows: AbstractRows, n: int, times: float, *, reciprocal: bool) -> Estimate:
     """Of n patches, so many times all rows."""
     factors = float(n) * n
     what = f"the matrix of {n} patches ({factors:.2g} form factors)"
     way_out = "take larger patches, or a method that forms no matrix, such as random-walk"
-    memory = factors * BYTES_A_FACTOR * (2 if reciprocal else 1)
-    if memory > SHARE * free_memory():
-        return Estimate(memory, np.nan, what, way_out)
-    return Estimate(memory, seconds_a_row(rows, n) * n * times, what, way_out)
+    wanted = factors * BYTES_A_FACTOR * (2 if reciprocal else 1)
+    if wanted > memory.room():
+        return Estimate(wanted, np.nan, what, way_out)
+    return Estimate(wanted, seconds_a_row(rows, n) * n * times, what, way_out)
 
 
 def seconds_a_row(rows: AbstractRows, n: int) -> float:
@@ -86,7 +66,7 @@ def progressive(rows: AbstractRows, n: int) -> Estimate:
     """Of n patches: a few numbers for each, and the rows that are kept for a while; about one row a patch is made."""
     from .progressive.recent import AHEAD, MOST_ENTRIES
 
-    memory = 400.0 * n + 32.0 * MOST_ENTRIES + 64.0 * AHEAD * n
+    wanted = 400.0 * n + 32.0 * MOST_ENTRIES + 64.0 * AHEAD * n
     what, way_out = f"progressive refinement of {n} patches", "take larger patches, or stop it early (seconds, rays)"
-    fits = memory <= SHARE * free_memory()
-    return Estimate(memory, seconds_a_row(rows, n) * n if fits else np.nan, what, way_out)
+    fits = wanted <= memory.room()
+    return Estimate(wanted, seconds_a_row(rows, n) * n if fits else np.nan, what, way_out)

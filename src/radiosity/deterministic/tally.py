@@ -12,6 +12,8 @@ class SolvedTally(AbstractTally):
     groups), W that escaped and was lost; seen (n_patches,), how many of others each patch exchanges light with; history (k, 2):
     steps, and the largest residual relative to the largest radiosity."""
 
+    counts_landings = False
+
     def lines(self, problem: Problem, state: State) -> int:
         return int(state["lines"])
 

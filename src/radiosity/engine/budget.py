@@ -9,6 +9,8 @@ from .quanta import LIMIT
 FIRST_STAGE = 1 << 20  # quanta of all replicates together in the first stage
 FULL = 0.95 * LIMIT  # lines of a replicate: its counters have 32 bits
 LEAST_QUANTA = 1024
+AIM, AIM_ONCE = 0.97, 0.9  # of a target error, at the last stage; lower where a stage between two rungs cannot be gone on from
+LEAST_STEP = 1.05  # times the lines so far
 DONE = 1 << 31  # quanta, more than any baseline takes: it ends when there is nothing left to do
 BASELINE_RUNGS = {"full-matrix": 1, "progressive": 64, "hierarchical": 1}  # the whole matrix; shots; passes of refinement
 
@@ -94,13 +96,15 @@ def on_ladder(quanta: int, first: int) -> bool:
 
 @dataclass(frozen=True)
 class Progressed:
-    """What is known after a stage: quanta of each replicate, lines of all, seconds, and the error so far (or NaN)."""
+    """What is known after a stage: quanta of each replicate, lines of all, seconds, what the error may be (or NaN), and the slope
+    at which it falls with lines."""
 
     quanta: int
     lines: int
     seconds: float
     stage_seconds: float
     error: float
+    slope: float = 0.5
 
 
 def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, most: float, *, replay: bool) -> int | None:
@@ -113,7 +117,7 @@ def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, mos
     if replay and not on_ladder(at.quanta, first):
         return None
     rung = rung_after(at.quanta, first)
-    wanted = _wanted(budget, replicates, rung, at)
+    wanted = _wanted(budget, replicates, rung, at, replay)
     if wanted is None or wanted <= at.quanta * 1.01:
         return None
     target = min(rung, wanted)
@@ -122,7 +126,7 @@ def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, mos
     return target
 
 
-def _wanted(budget: Budget, replicates: int, rung: int, at: Progressed) -> int | None:
+def _wanted(budget: Budget, replicates: int, rung: int, at: Progressed, replay: bool) -> int | None:
     if budget.quanta is not None:
         return int(budget.quanta)
     if budget.rays is not None:
@@ -131,4 +135,7 @@ def _wanted(budget: Budget, replicates: int, rung: int, at: Progressed) -> int |
         left = budget.seconds - at.seconds
         rate = max(at.lines, 1) / max(at.stage_seconds, 1e-9) / 2  # a stage fires about half of all lines so far
         return round(at.quanta * (1 + 0.9 * left * rate / max(at.lines, 1))) if left > 0 else None
-    return None if math.isnan(at.error) or at.error <= (budget.error or 0) else rung
+    if math.isnan(at.error) or at.error <= (budget.error or 0):
+        return None
+    aim = (AIM_ONCE if replay else AIM) * (budget.error or 0)
+    return max(math.ceil(at.quanta * (at.error / aim) ** (1 / at.slope)), math.ceil(LEAST_STEP * at.quanta))

@@ -89,9 +89,11 @@ class AbstractTally(ABC):
 
     Attributes:
         settles: with several replicates, results are quick to read and smaller than the state they are read from.
+        counts_landings: arrivals are lines that landed, and a patch's power comes with them.
     """
 
     settles: ClassVar[bool] = False
+    counts_landings: ClassVar[bool] = True
 
     @abstractmethod
     def lines(self, problem: Problem, state: State) -> int:

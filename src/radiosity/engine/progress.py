@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from .budget import DONE, Budget
 
 SLOPE = 0.6  # of the error against lines, as measured with low discrepancy numbers
+LAST = 4  # stages that a run's own slope is taken from
+FLATTEST, STEEPEST = 0.35, 1.0
 
 
 @dataclass(frozen=True)
@@ -45,8 +47,9 @@ class Teller:
     def __init__(self, budget: Budget, listener: Listener | None):
         self.budget, self.listener = budget, listener
         self.begun = self.tracing_since = time.perf_counter()
-        self.stage, self.lines, self.lines_before, self.error = 0, 0, 0, math.nan
+        self.stage, self.lines, self.lines_before, self.error, self.bound = 0, 0, 0, math.nan, math.nan
         self.lines_a_quantum = 0.0
+        self.known: list[tuple[float, float]] = []  # logarithms to base 2 of lines and error after each stage
 
     @property
     def elapsed(self) -> float:
@@ -56,9 +59,24 @@ class Teller:
         """Tracing begins, with lines of an earlier run done."""
         self.tracing_since, self.lines, self.lines_before = time.perf_counter(), lines, lines
 
-    def complete(self, lines: int, quanta: int, error: float) -> None:
-        """A stage is complete."""
+    def complete(self, lines: int, quanta: int, error: float, margin: float = 1.0) -> None:
+        """A stage is complete; the error may be ``margin`` times what is stated."""
+        self.bound = error * margin
         self.stage, self.lines, self.error, self.lines_a_quantum = self.stage + 1, lines, error, lines / quanta
+        if error > 0 and lines > 0:
+            self.known.append((math.log2(lines), math.log2(error)))
+
+    @property
+    def slope(self) -> float:
+        """Of the error against lines, a positive power: of this run's last stages by least squares, drawn towards `SLOPE` as if
+        by one more doubling."""
+        last = self.known[-LAST:]
+        if len(last) < 2:
+            return SLOPE
+        x, y = ([value - sum(column) / len(last) for value in column] for column in zip(*last, strict=True))
+        spread = sum(a * a for a in x)
+        slope = (SLOPE * 0.5 - sum(a * b for a, b in zip(x, y, strict=True))) / (0.5 + spread)
+        return min(max(slope, FLATTEST), STEEPEST)
 
     def tell(self, message: str) -> None:
         """Pass the moment on."""
@@ -93,7 +111,7 @@ class Teller:
             return self.lines_a_quantum * self.budget.quanta or None
         if self.budget.error is None or not self.error > 0:
             return None
-        return max(self.lines, self.lines * (self.error / self.budget.error) ** (1 / SLOPE))
+        return max(self.lines, self.lines * (self.bound / self.budget.error) ** (1 / self.slope))
 
 
 class Interrupted(Exception):

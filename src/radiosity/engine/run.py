@@ -10,15 +10,19 @@ from ..errors import MethodError, RadiosityWarning
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import Solution
+from ..solution.without_results import without_results
+from . import demand
 from .baseline_budget import warn_of_missing
-from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder
+from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
+from .checkpoint import Checkpoint
 from .device import choose, give_back_memory
 from .geometry import Geometry
 from .problem import Problem
-from .process import AbstractProcess, make
+from .process import AbstractProcess, State, make
 from .progress import Interrupted, Listener, Stop, Teller
 from .snapshot import Snapshot
 from .state import check_same
+from .target import rows_of
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
@@ -33,9 +37,11 @@ class Run:
     """A problem, a method and a budget."""
 
     def __init__(self, patches: Patches, method: Method | Baseline, budget: Budget, replicates: int, seed: int, device: str,
-                 listener: Listener | None, resume: Solution | None):  # fmt: skip
+                 listener: Listener | None, resume: Solution | None, checkpoint: Checkpoint | None,
+                 error_of: str | None = None):  # fmt: skip
         self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
-        self.replicates, self.resume = replicates, resume
+        self.replicates, self.resume, self.checkpoint = replicates, resume, checkpoint
+        self.snapshot: Snapshot | None = None  # of the last complete stage
         self.seconds_before = 0.0 if resume is None else resume.seconds
         self.problem = Problem.of(patches)
         bands = self.problem.groups.n_groups
@@ -44,9 +50,11 @@ class Run:
                 f"order '{method.order}' cannot carry {bands} different bands: "
                 "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
             )
+        demand.check(method, patches, bands, replicates, budget.rays)
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = first_rung(method.order, replicates, self.problem.source.share)
         self.teller, self.stop = Teller(budget, listener), Stop()
+        self.error_of, self.rows = error_of, slice(None) if error_of is None else rows_of(patches, error_of)
         self.teller.tell("compiling")
         self.device = choose(device)
         if resume is not None:
@@ -60,57 +68,98 @@ class Run:
 
     def _stages(self) -> Solution:
         process, target = self._process(self.problem, self.replicates), 0
+        self.process = process
         if self.resume is None:
             target = self._first_quanta()
         else:
             process.restore(self.resume.state)
             target = process.quanta
-            if not process.nested and not process.unfinished(self.resume.state) and not on_ladder(target, self.rung):
+            last = not process.nested and not process.unfinished(self.resume.state) and not on_ladder(target, self.rung)
+            if last and (self.budget.seconds is not None or self._budget != self.resume.provenance.get("budget")):
                 raise MethodError(
                     f"a run by {self.method} in {self.problem.groups.n_groups} groups of bands cannot go on from {target} quanta "
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
         self.teller.begin(0 if self.resume is None else process.tally.lines(self.problem, process.capture()))
-        snapshot, status, pending = None, "complete", {}
+        status, pending, steps = "complete", {}, [target]
         while target:
             started = time.perf_counter()
             try:
-                process.advance(target, self._swept)
+                for step in steps:
+                    process.advance(step, self._swept)
             except Interrupted as reason:
                 status, pending = str(reason), process.capture()
                 break
             if self.replicates * len(self.patches) > LARGE:
                 give_back_memory()
-            snapshot = Snapshot(self.problem, process.tally, process.capture())
-            error = snapshot.error() if self.replicates > 1 and self._error_matters else math.nan
+            snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture())
+            known = self.replicates > 1 and self._error_matters
+            error = snapshot.error(self.rows) if known else math.nan
+            margin = snapshot.margin(self.rows) if known and self.budget.error is not None else 1.0
             lines = snapshot.lines
-            self.teller.complete(lines, target, error)
+            self.teller.complete(lines, target, error, margin)
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
                 break
             if snapshot.done:
                 break
-            at = Progressed(target, lines, self.teller.elapsed, time.perf_counter() - started, error)
-            target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=not process.nested)
+            stage, slope = time.perf_counter() - started, self.teller.slope
+            at = Progressed(target, lines, self.teller.elapsed, stage, error * margin, slope)
+            replay = not process.nested
+            if replay and self._missed(at):
+                self.process = process = self._process(self.problem, self.replicates)
+                steps = self._climb(target)
+                target = steps[-1]
+                continue
+            target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
+            steps = [target]
             if target and self.replicates > 1:
                 snapshot.settle()
-        if snapshot is None:
-            if self.resume is None:
-                if status == COUNTERS_FULL:
-                    raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
-                raise KeyboardInterrupt
-            return replace(self.resume, status=status, state=pending)
-        if status == "complete" and not self._reached(snapshot):
-            status = COUNTERS_FULL
-        return self._solution(snapshot, status, pending)
+        if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
+            raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
+        if self.snapshot is None:
+            solution = self._so_far(status, pending)
+        else:
+            if status == "complete" and not self._reached(self.snapshot):
+                status = COUNTERS_FULL
+            solution = self._solution(self.snapshot, status, pending)
+        if self.checkpoint is not None:
+            self.checkpoint.end(solution)
+        if solution.quanta == 0:
+            raise KeyboardInterrupt
+        return solution
+
+    @property
+    def _had_results(self) -> bool:
+        return self.resume is not None and self.resume.quanta > 0
+
+    def _so_far(self, status: str, state: State) -> Solution:
+        """Results of the last complete stage, if any, and a state to go on from."""
+        seconds = self.teller.elapsed + self.seconds_before
+        if self.snapshot is not None:
+            return self._read(self.snapshot, status, state)
+        if self.resume is not None and self._had_results:
+            return replace(self.resume, seconds=seconds, status=status, state=state, provenance=self._provenance())
+        return without_results(self.patches, self.replicates, seconds, status, self._provenance(), state)
+
+    def _missed(self, at: Progressed) -> bool:
+        """The stage was to be the last, and its error is above what was asked for."""
+        return self.budget.error is not None and at.error > self.budget.error and not on_ladder(at.quanta, self.rung)
+
+    def _climb(self, quanta: int) -> list[int]:
+        """The rungs up to the one above N: from N itself no run goes on to the bits of a longer one, so another one begins."""
+        rungs = [self.rung]
+        while rungs[-1] < quanta:
+            rungs.append(rung_after(rungs[-1], self.rung))
+        return rungs
 
     def _reached(self, snapshot: Snapshot) -> bool:
         """The budget was used up; else the counters were. Where nothing is received there is no error to wait for."""
         if snapshot.done:
             return True
         if self.budget.error is not None:
-            return not self.teller.error > self.budget.error
+            return not self.teller.bound > self.budget.error
         if self.budget.quanta is not None:
             return snapshot.quanta >= self.budget.quanta
         return self.budget.rays is None or snapshot.lines >= 0.5 * self.budget.rays
@@ -133,6 +182,8 @@ class Run:
         seconds = self.budget.seconds
         if seconds is not None and self.teller.stage and self.teller.elapsed > PATIENCE * seconds + 1:
             raise Interrupted("complete")
+        if self.checkpoint is not None and self.checkpoint.due:
+            self.checkpoint.write(lambda: self._so_far("interrupted", self.process.capture()))
 
     def _first_quanta(self) -> int:
         """N of the first stage: the ladder's first rung, or less where the budget asks for less."""
@@ -179,18 +230,25 @@ class Run:
             )
         if isinstance(self.method, Baseline):
             warn_of_missing(self.method, snapshot.books, snapshot.state)
+        return self._read(snapshot, status, pending or snapshot.state)
+
+    def _read(self, snapshot: Snapshot, status: str, state: State) -> Solution:
         mean, error = snapshot.irradiance
         return Solution(
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
             snapshot.quanta, self.replicates,
-            snapshot.books, status, self._provenance(), pending or snapshot.state,
+            snapshot.books, status, self._provenance(), state, snapshot.surface_power,
         )  # fmt: skip
+
+    @property
+    def _budget(self) -> dict:
+        return {name: value for name, value in {**vars(self.budget), "error_of": self.error_of}.items() if value is not None}
 
     def _provenance(self) -> dict:
         return {
             "scene": self.patches.scene.hash, "source": self.patches.scene.source, "method": str(self.method),
             "choices": asdict(self.method), "seed": self.seed, "replicates": self.replicates, "device": self.device.name,
             "patches": len(self.patches), "cut": self.patches.hash,
-            "budget": {k: v for k, v in vars(self.budget).items() if v is not None},
+            "budget": self._budget,
             "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }  # fmt: skip

@@ -5,7 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..solution.errors import mean_and_error, relative_error
+from ..solution.errors import inner_products, margin, mean_and_error, relative_error
+from ..solution.intervals import least_error
 from .problem import Problem
 from .process import AbstractBiasedTally, AbstractTally, State
 
@@ -22,7 +23,7 @@ class Snapshot:
         """Read all that is asked of it now, and let go of the state, where that is quick and takes less memory: what the process
         writes next goes to a copy of whatever is held."""
         if self.tally.settles:
-            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.books
+            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.books
             self.state = {}
 
     @cached_property
@@ -51,7 +52,28 @@ class Snapshot:
             one, its_error = self._irradiance(group)
             for band in np.flatnonzero(groups.index == group):
                 mean[:, band], error[:, band] = one * groups.scale[band], its_error * groups.scale[band]
+        if self.tally.counts_landings:
+            error = least_error(mean, error, self.arrivals, self.problem.patches.area)
         return mean, error
+
+    @cached_property
+    def surface_power(self) -> np.ndarray:
+        """See `Solution.surface_power`."""
+        patches = self.problem.patches
+        return self.sums(patches.surface, len(patches.scene.names))
+
+    def sums(self, key: np.ndarray, count: int) -> np.ndarray:
+        """(2, replicates, count, n_bands) W or lm: what patches of an equal key receive, and of it reflect, in each replicate.
+
+        Args:
+            key: (n_patches,) int, 0 to count - 1.
+        """
+        groups, found = self.problem.groups, []
+        for group in range(groups.n_groups):
+            values, unit = self.tally.irradiance(self.problem, self.state, group)
+            rho = groups.reflectance[:, group]
+            found.append([[np.bincount(key, row * weight, count) * unit for row in values] for weight in (1.0, rho)])
+        return np.stack([np.array(found[g]) * s for g, s in zip(groups.index, groups.scale, strict=True)], axis=-1)
 
     def _irradiance(self, group: int) -> tuple[np.ndarray, np.ndarray]:
         values, unit = self.tally.irradiance(self.problem, self.state, group)
@@ -63,11 +85,21 @@ class Snapshot:
         error *= factor
         return mean, error
 
-    def error(self) -> float:
-        """See `Solution.error`."""
-        irradiance, error = self.irradiance
-        rho, area = self.problem.patches.reflectance, self.problem.patches.area
+    def error(self, rows: np.ndarray | slice = slice(None)) -> float:
+        """See `Solution.error`; of some patches."""
+        irradiance, error = (values[rows] for values in self.irradiance)
+        rho, area = self.problem.patches.reflectance[rows], self.problem.patches.area[rows]
         return relative_error(rho * irradiance, rho * error, area, (irradiance, error))
+
+    def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
+        """How many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""
+        area, groups, found = self.problem.patches.area[rows], self.problem.groups, []
+        for group in range(groups.n_groups):
+            values, _ = self.tally.irradiance(self.problem, self.state, group)
+            rho = groups.reflectance[rows, group]
+            weight = (rho if rho.any() else np.ones(len(rho))) / np.sqrt(area)
+            found.append(margin(inner_products(np.asarray(values)[:, rows], weight), len(values)))
+        return max(found)
 
     @cached_property
     def books(self) -> tuple[dict, ...]:

@@ -1,5 +1,9 @@
 """Scene in, solution out."""
 
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 from ..errors import MethodError
 from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
@@ -7,7 +11,12 @@ from ..scene.model import Scene
 from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
+from .checkpoint import Checkpoint
+from .memory import limited
 from .progress import Listener
+
+if TYPE_CHECKING:
+    from .run import Run
 
 
 def solve(
@@ -23,6 +32,10 @@ def solve(
     device: str = "auto",
     progress: Listener | None = None,
     resume: Solution | None = None,
+    error_of: str | None = None,
+    checkpoint: str | Path | Checkpoint | None = None,
+    checkpoint_every: float = 30.0,
+    memory: str | float | None = None,
     **choices,
 ) -> Solution:
     """Solve B = E + rho F B.
@@ -34,7 +47,9 @@ def solve(
             another order or other lines than the method's drop its warm-up.
         rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
-            scene (`Solution.error`); or N of each replicate, which replays a run bit for bit.
+            scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run bit
+            for bit.
+        error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead.
         replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
         seed: with the same inputs, the same bits.
         device: "auto", "cpu" or "cuda".
@@ -43,16 +58,35 @@ def solve(
             budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
             their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
             from a stage that is a power of two.
+        checkpoint: an .npz file that is written every now and then, whole or not at all, for ``resume=load_solution(checkpoint)``
+            after the process has been killed. Until a first stage is complete it has no results (NaN, 0 quanta). An interruption
+            writes it too; at the end it stays, brought up to date.
+        checkpoint_every: seconds; longer where writing takes more than a thirtieth of that.
+        memory: that the run may take, such as "8G", a number of bytes, or "none" for no limit. Default: 70 % of what is free.
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
         unfinished stage are kept for ``resume``.
 
     Raises:
-        SceneError: nothing emits. MethodError: a choice or budget that makes no sense, or a solution that cannot be
-            resumed. DeviceError: nothing to run on. KeyboardInterrupt: Ctrl-C before the first stage was complete.
+        SceneError: nothing emits. MethodError: a choice or budget that makes no sense, a solution that cannot be resumed, or
+            more memory than the run may take. OutputError: no checkpoint can be written there. DeviceError: nothing to run on.
+            KeyboardInterrupt: Ctrl-C before the first stage was complete; a checkpoint has been written.
     """
-    chosen = resolve(method, **choices)
+    with limited(memory):
+        return prepared(
+            scene, resolve(method, **choices), rays=rays, seconds=seconds, error=error, quanta=quanta, replicates=replicates,
+            seed=seed, device=device, progress=progress, resume=resume, error_of=error_of, checkpoint=checkpoint,
+            checkpoint_every=checkpoint_every,
+        ).solve()  # fmt: skip
+
+
+def prepared(
+    scene: Scene | Patches, chosen: Method | Baseline, *, rays=None, seconds=None, error=None, quanta=None, replicates=None,
+    seed=0, device="auto", progress=None, resume=None, error_of=None,
+    checkpoint=None, checkpoint_every=30.0,
+) -> "Run":  # fmt: skip
+    """A checked run that has not begun; arguments and errors are those of `solve`."""
     usual = 1 if isinstance(chosen, Baseline) else 8
     replicates = usual if replicates is None else _whole(replicates, "replicates", 1)
     seed = _whole(seed, "seed", 0)
@@ -69,9 +103,30 @@ def solve(
         raise MethodError(f"resume takes a Solution, not {type(resume).__name__}; load a file with load_solution")
     if resume is not None and len(resume.patches) != len(scene):
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
+    if error_of is not None and error is None:
+        raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
+    keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
     from .run import Run
 
-    return Run(scene, chosen, budget, replicates, seed, device, progress, resume).solve()
+    return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper, error_of)
+
+
+def _keeper(path, every, method: Method | Baseline) -> Checkpoint:
+    if isinstance(path, Checkpoint):
+        path.check(method)
+        return path
+    try:
+        good = not isinstance(every, bool) and math.isfinite(every) and every >= 0
+    except TypeError:
+        good = False
+    if not good:
+        raise MethodError(f"checkpoint_every is {every!r}; it must be a number of seconds")
+    try:
+        keeper = Checkpoint(Path(path), float(every))
+    except TypeError:
+        raise MethodError(f"checkpoint is {path!r}; it must be the path of an .npz file") from None
+    keeper.check(method)
+    return keeper
 
 
 def _whole(value, name: str, least: int) -> int:

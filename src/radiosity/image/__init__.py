@@ -5,7 +5,7 @@ from pathlib import Path
 
 from .look import Look
 from .output import check_writable as _check
-from .output import require
+from .output import require, require_results
 from .render import render
 
 FORMATS = {
@@ -60,6 +60,7 @@ def export(solution, path, *, smooth=True, quantity="radiosity", band=None, expo
     if path.suffix.lower() == ".npz":
         solution.save(path)
     else:
+        require_results(solution)
         module = import_module(f".{FORMATS[path.suffix.lower()]}", __package__)
         module.write(solution, path, Look(quantity, band, smooth, exposure, scale))
     return path

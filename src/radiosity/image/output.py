@@ -53,6 +53,18 @@ def require(module: str, purpose: str) -> None:
         raise OutputError(f"{purpose} needs '{module}', which is not installed; pip install 'radiosity[plots]'")
 
 
+def require_results(solution) -> None:
+    """Refuse a run's checkpoint that has no results yet.
+
+    Raises:
+        OutputError: the first stage was not complete.
+    """
+    if solution.quanta == 0:
+        raise OutputError(
+            "there are no results yet: the run was stopped within its first stage; `radiosity solve --resume` goes on"
+        )
+
+
 @contextmanager
 def replacing(path):
     """A path in the same folder to write to; the finished file then takes the place of ``path`` in one step.

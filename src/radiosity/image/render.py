@@ -10,7 +10,7 @@ from ..scene import Camera
 from . import bitmap, tone
 from . import false_color as maps
 from .look import Look
-from .output import check_writable, require
+from .output import check_writable, require, require_results
 from .picture import choose_camera, first_hits, take
 from .quantity import choose
 
@@ -67,6 +67,7 @@ def render(
         require("PIL", f"{path}: writing PNG")
     if false_color:
         require("matplotlib", "the legend of false colours")
+    require_results(solution)
     hits = hits or first_hits
     shown = choose(solution, quantity, band, single=false_color)
     view = choose_camera(solution, camera, width, height, hits)

@@ -50,6 +50,11 @@ def _patches(solution, path: Path) -> None:
             label = f"{title} {band}" if len(bands) > 1 else title
             columns[f"{label} [{measure}]" if measure else label] = np.asarray(values)[:, i]
     columns["arrivals"] = np.asarray(solution.arrivals)
+    columns["few arrivals"] = np.asarray(solution.few).astype(int)
+    low, high = solution.interval(0.95, "irradiance")
+    for title, values in (("irradiance, 95 % from", low), ("irradiance, 95 % to", high)):
+        for i, band in enumerate(bands):
+            columns[f"{title}{f' {band}' if len(bands) > 1 else ''} [{unit}]"] = values[:, i]
     row = ",".join("%.9g" if value.dtype.kind == "f" else "%s" for value in columns.values()).__mod__
     with replacing(path) as temporary, _text(temporary) as file:
         file.write(_cells(columns) + "\n")
@@ -64,6 +69,18 @@ def _surfaces(solution, path: Path) -> None:
     with replacing(path) as temporary, _text(temporary) as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(_titled(key, units) for key in rows[0])
+        writer.writerows(row.values() for row in rows)
+
+
+def write_rows(rows: list[dict], path) -> None:
+    """A table of like rows, as it is.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    with replacing(Path(path)) as temporary, _text(temporary) as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(rows[0])
         writer.writerows(row.values() for row in rows)
 
 

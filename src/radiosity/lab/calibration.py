@@ -8,6 +8,7 @@ from ..engine.device import choose
 from ..engine.geometry import Geometry
 from ..engine.problem import Problem
 from ..engine.process import make
+from ..solution.intervals import student
 from .measure import radiosity
 from .study import Arm, Case
 
@@ -26,27 +27,44 @@ class Coverage:
         covered: for each of `LEVELS`, the share of patches and runs whose interval holds the truth, and its standard error (over
             runs, since patches of one run share lines).
         rms: root mean square error of the runs' means.
+        visited: share of the patches that were looked at.
     """
 
     arm: str
     covered: tuple[tuple[float, float], ...]
     rms: float
+    visited: float
 
 
-def coverage(arm: Arm, case: Case, truth: np.ndarray, seed: int) -> Coverage:
-    """Student intervals of runs of eight replicates each; a run is a group of replicates of one seed."""
-    from scipy.stats import t
+def coverage(
+    arm: Arm, case: Case, truth: np.ndarray, seed: int, *, lines: float = LINES, seeds: int = SEEDS, visited: float = 0
+) -> Coverage:
+    """Student intervals of runs of eight replicates each; a run is a group of replicates of one seed.
 
+    Args:
+        truth: (n_patches,) radiosity.
+        lines: of one replicate.
+        visited: leave out patches where fewer lines land in the mean run; those that reflect nothing are left out, too.
+
+    Raises:
+        ValueError: no patch is left.
+    """
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
-    process = make(geometry, problem, arm.method, seed, REPLICATES * SEEDS)
+    process = make(geometry, problem, arm.method, seed, REPLICATES * seeds)
     mean = float(case.patches.area @ case.patches.reflectance[:, 0] / case.patches.area.sum())
-    process.advance(max(1, round(LINES * (1 - mean))), lambda lines: None)
-    found = radiosity(process, problem, process.capture()).reshape(SEEDS, REPLICATES, -1)
+    process.advance(max(1, round(lines * (1 - mean))), lambda lines: None)
+    state = process.capture()
+    lit = (case.patches.reflectance[:, 0] > 0) & (truth > case.patches.emission[:, 0])  # others are known exactly
+    here = lit & (process.tally.arrivals(problem, state) >= visited * seeds)
+    if not here.any():
+        raise ValueError(f"no patch of {case.name} has {visited:g} arrivals a run")
+    found = radiosity(process, problem, state).reshape(seeds, REPLICATES, -1)[..., here]
     middle, error = found.mean(axis=1), found.std(axis=1, ddof=1) / np.sqrt(REPLICATES)
     known = error > 0
-    apart = np.where(known, np.abs(middle - truth) / np.where(known, error, 1), np.inf)
+    apart = np.where(known, np.abs(middle - truth[here]) / np.where(known, error, 1), np.inf)
     covered = []
     for level in LEVELS:
-        share = (apart <= t.ppf(0.5 + level / 2, REPLICATES - 1)).mean(axis=1)
-        covered.append((float(share.mean()), float(share.std(ddof=1) / np.sqrt(SEEDS))))
-    return Coverage(arm.name, tuple(covered), float(np.sqrt(((middle - truth) ** 2).mean())))
+        share = (apart <= student(level, REPLICATES)).mean(axis=1)
+        covered.append((float(share.mean()), float(share.std(ddof=1) / np.sqrt(seeds))))
+    rms = float(np.sqrt(((middle - truth[here]) ** 2).mean()))
+    return Coverage(arm.name, tuple(covered), rms, float(here.mean()))

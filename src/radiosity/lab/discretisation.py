@@ -12,6 +12,7 @@ import numpy as np
 from ..engine.caster import first_hits
 from ..method import Method
 from ..patches import Patches, cells, subdivide
+from ..patches.nesting import parents
 from ..scene import Scene, load_scene
 
 FINER = 4
@@ -55,14 +56,6 @@ def discretisation(count: int, lines: float, seed: int) -> Discretisation:
     # the product of independent halves has no noise in its mean
     square = fine.area @ (halves[0] * halves[1])
     return Discretisation(len(coarse), errors["discrete"], errors["continuous"], float(np.sqrt(max(square, 0.0)) / scale))
-
-
-def parents(fine: Patches, coarse: Patches) -> np.ndarray:
-    """(n_fine,) the coarse patch that each fine one lies in; parallelograms, cut the same on all faces."""
-    column, row, _ = fine.place
-    face = fine.face
-    cell = (row // FINER) * coarse.columns[face] + column // FINER
-    return coarse.first[face] + np.where(fine.is_back, coarse.cells_per_face[face], 0) + cell
 
 
 def delta(scene: Scene, fine: Patches, coarse: Patches, parent: np.ndarray, radiosity: np.ndarray, random) -> np.ndarray:

@@ -11,6 +11,7 @@ from .model import Patches
 
 DEFAULT_PATCHES = 20_000
 MOST_PATCHES = 2**31 - 2**16
+SLACK = 1 + 1e-7  # added to the smallest size that will do: faces of one size are cut alike wherever they lie, rounded or not
 
 
 def subdivide(
@@ -85,7 +86,7 @@ def _default_size(scene: Scene, powers_of_two: bool, about: int) -> float:
         columns, rows = _by_size(scene, middle, powers_of_two)
         patches = columns * rows * sides
         low, high = (middle, high) if patches[columns * rows > 1].sum() > about else (low, middle)
-    return high
+    return high * SLACK
 
 
 def _checked(scene: Scene, columns, rows) -> Patches:

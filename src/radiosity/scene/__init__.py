@@ -10,7 +10,7 @@ from .model import Back, Camera, Scene
 __all__ = ["Back", "Camera", "Scene", "load_scene"]
 
 
-def load_scene(name, *, max_reflectance: float = 0.95, strict: bool = False) -> Scene:
+def load_scene(name, *, max_reflectance: float = 0.95, strict: bool = False, allow_outside: bool = False) -> Scene:
     """Load a scene file, or build a built-in scene by its name.
 
     Args:
@@ -18,6 +18,7 @@ def load_scene(name, *, max_reflectance: float = 0.95, strict: bool = False) -> 
             ``cornell-box``, ``room``, ``labyrinth``.
         max_reflectance: larger reflectances in the file are brought down to this, with one warning.
         strict: faults in a file that could be skipped with a warning are errors.
+        allow_outside: the file may name others (includes, meshes, textures) that lie outside its folder.
 
     Raises:
         SceneError: the file cannot be used; the message says why and what to do.
@@ -26,7 +27,8 @@ def load_scene(name, *, max_reflectance: float = 0.95, strict: bool = False) -> 
 
     if not isinstance(name, str | os.PathLike):
         raise SceneError(f"load_scene takes a path or the name of a built-in scene, not {type(name).__name__}")
-    options = ReadOptions(max_reflectance, strict)
     if str(name) in builtin.SCENES:
         return builtin.SCENES[str(name)]()
+    root = None if allow_outside else Path(os.path.realpath(Path(name).parent))
+    options = ReadOptions(max_reflectance, strict, root=root)
     return formats.read(Path(name), options)

@@ -13,7 +13,9 @@ LITTLE = 0.01  # of the lines: that much is lost on the backs of lamps in many s
 BOX_SIDES = ("x low", "x high", "y low", "y high", "z low", "z high")
 
 
-def check_file(name, *, max_reflectance: float = 0.95, strict: bool = False, device: str = "auto") -> Report:
+def check_file(
+    name, *, max_reflectance: float = 0.95, strict: bool = False, allow_outside: bool = False, device: str = "auto"
+) -> Report:
     """Load a scene and check it; what the reader says about the file is among the findings."""
     from . import load_scene
 
@@ -21,7 +23,7 @@ def check_file(name, *, max_reflectance: float = 0.95, strict: bool = False, dev
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RadiosityWarning)
         try:
-            scene = load_scene(name, max_reflectance=max_reflectance, strict=strict)
+            scene = load_scene(name, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside)
         except SceneError as error:
             scene, findings = None, [Finding(SERIOUS, "file", str(error))]
     said = dict.fromkeys(str(w.message) for w in caught if issubclass(w.category, RadiosityWarning))
@@ -90,7 +92,8 @@ def _topology(scene: Scene):
     edges = topology.open_edges(scene)
     if len(edges.face):
         metres = np.bincount(scene.surface[edges.face], edges.length, len(scene.names))
-        worst = [scene.names[s] for s in np.argsort(-metres) if metres[s] > 0]
+        ranks = np.round(metres / metres.max(), 6)  # equal lengths in the order of surfaces, wherever they lie
+        worst = [scene.names[s] for s in np.argsort(-ranks, kind="stable") if metres[s] > 0]
         count = f"{len(edges.face)} of {edges.total} edges ({edges.length.sum():.3g} m) belong to one face only"
         harmless = "no harm in free-standing faces, and where a long edge meets several short ones"
         yield Finding(NOTE, "open edges", f"{count}, most on {shown(worst, 4)}; {harmless}")

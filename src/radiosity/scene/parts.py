@@ -1,7 +1,9 @@
 """What the readers of files hand over: parts of surfaces with materials, and how to take them."""
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -72,12 +74,32 @@ class ReadOptions:
         max_reflectance: larger reflectances are brought down to this, with a warning.
         strict: faults that can be skipped are errors.
         edit: changes the parts that were read before they become a scene (the .toml reader's hook).
+        root: the folder outside which no file is read, resolved; None: any file may be.
     """
 
     max_reflectance: float = 0.95
     strict: bool = False
     edit: Callable[[list[Part]], list[Part]] | None = None
+    root: Path | None = None
 
     def __post_init__(self):
         if not 0 < self.max_reflectance < 1:
             raise SceneError(f"max_reflectance is {self.max_reflectance}; it must lie between 0 and 1")
+
+    def admit(self, file: Path, source) -> Path:
+        """A file that the scene file ``source`` asks for, if it lies in the scene's folder: a scene of strangers is not to read
+        what else there is on this machine. Links are followed first.
+
+        Raises:
+            SceneError: it lies outside.
+        """
+        try:
+            place = Path(os.path.realpath(file))
+        except (OSError, ValueError) as error:
+            raise SceneError(f"{source}: '{file}' is no path ({error})") from None
+        if self.root is not None and not place.is_relative_to(self.root):
+            raise SceneError(
+                f"{source}: asks for '{file}', which lies outside the scene's folder {self.root}; copy it there, or allow it "
+                "with --allow-outside (allow_outside=True)"
+            )
+        return file

@@ -1,43 +1,51 @@
-"""NPZ files of anyone: nothing is unpickled, and sizes are held against the file's length before memory is taken."""
+"""NPZ files of strangers: what they announce is compared with what they hold, before memory is taken."""
 
 import math
-import os
 import zipfile
+from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
-from numpy.lib import format as npy
 
-MOST_RATIO = 100  # bytes unpacked for one of the file; ours are not compressed
+from ..errors import SceneError
+
+MOST_UNPACKED = 200  # times the file's bytes that compressed members may become; counters and zeros compress well
 MOST_MEMBERS = 10_000
-HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 
 
-def read_arrays(file: BinaryIO) -> dict[str, np.ndarray]:
-    """All arrays of an NPZ file by name.
+def check_sizes(opened: BinaryIO, path: Path) -> None:
+    """Look at the headers of all members of an open file, which is then at its begin again.
 
     Raises:
-        ValueError: an array of objects, sizes that do not fit the file, or very many members.
-        zipfile.BadZipFile: damaged.
+        SceneError: a member is no plain array, announces more numbers than it holds, or unpacks to very much more than the file.
+        zipfile.BadZipFile, ValueError, EOFError, KeyError: damaged.
     """
-    length = os.fstat(file.fileno()).st_size
-    with zipfile.ZipFile(file) as archive:
+    size = opened.seek(0, 2)
+    opened.seek(0)
+    with zipfile.ZipFile(opened) as archive:
         members = archive.infolist()
-        if len(members) > MOST_MEMBERS:
-            raise ValueError(f"{len(members)} members")
-        if sum(member.file_size for member in members) > MOST_RATIO * length:
-            raise ValueError(f"unpacks to more than {MOST_RATIO} times its length")
-        return {member.filename.removesuffix(".npy"): _array(archive, member, length) for member in members}
+        whole = sum(member.file_size for member in members)
+        if len(members) > MOST_MEMBERS or whole > MOST_UNPACKED * size:
+            raise SceneError(
+                f"{path}: {len(members)} members would unpack to {whole:,} bytes from a file of {size:,}; it is no solution of "
+                "this program"
+            )
+        for member in members:
+            _check_member(archive, member, path)
+    opened.seek(0)
 
 
-def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, length: int) -> np.ndarray:
-    if member.compress_type == zipfile.ZIP_STORED and member.file_size > length:
-        raise ValueError(f"{member.filename} announces more bytes than the file has")
-    with archive.open(member) as opened:
-        shape, _, dtype = HEADERS[npy.read_magic(opened)](opened)
-    if dtype.hasobject:
-        raise ValueError(f"{member.filename} holds objects")
-    if min(shape, default=1) < 0 or math.prod(shape) * dtype.itemsize > member.file_size:
-        raise ValueError(f"{member.filename} announces {shape} of {dtype}; it has {member.file_size} bytes")
-    with archive.open(member) as opened:
-        return npy.read_array(opened, allow_pickle=False)
+def _check_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> None:
+    with archive.open(member) as file:
+        version = np.lib.format.read_magic(file)
+        read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, _, dtype = read(file)
+        if dtype.hasobject:
+            raise SceneError(
+                f"{path}: '{member.filename[:60]}' holds Python objects, which are never read; it is no solution of this program"
+            )
+        announced, held = math.prod(shape) * dtype.itemsize, member.file_size - file.tell()
+        if announced != held:
+            raise SceneError(
+                f"{path}: '{member.filename[:60]}' announces {announced:,} bytes and holds {held:,}; the file is damaged"
+            )

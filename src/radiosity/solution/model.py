@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..patches.model import Patches
+from . import intervals
 from .errors import relative_error
 
 
@@ -19,7 +20,8 @@ class Solution:
         irradiance: (n_patches, n_bands) float64, W/m² or lm/m².
         irradiance_standard_error: the same shape; NaN (unknown) without replicates. Of density estimation, with the size of its
             bias: the root of their sum of squares.
-        arrivals: (n_patches,) int64, lines that landed, all replicates together. 0: never visited, so zero is no measurement.
+        arrivals: (n_patches,) int64, lines that landed, all replicates together. 0: never visited, so zero is no measurement,
+            and the standard error is that of one arrival.
         rays: lines traced in all.
         seconds: wall time.
         quanta: N of each replicate; ``solve(..., quanta=N)`` replays the run bit for bit.
@@ -30,6 +32,8 @@ class Solution:
         status: "complete", "interrupted" or a reason for the early end.
         provenance: scene hash, method, seed, versions.
         state: integers of the run, to go on from.
+        surface_power: (2, replicates, n_surfaces, n_bands) float64, W or lm: what the patches of each surface receive, and of it
+            reflect, in each replicate. None in files of older versions.
     """
 
     patches: Patches
@@ -44,6 +48,7 @@ class Solution:
     status: str
     provenance: dict
     state: dict = field(default_factory=dict)
+    surface_power: np.ndarray | None = None
 
     @cached_property
     def radiosity(self) -> np.ndarray:
@@ -67,6 +72,38 @@ class Solution:
     @property
     def escaped(self) -> np.ndarray:
         return np.array([book["escaped"] for book in self.books])
+
+    @cached_property
+    def few(self) -> np.ndarray:
+        """(n_patches,) bool: so few lines landed (fewer than `intervals.FEW`) that the standard error says little, and `interval`
+        goes up to a bound from their number. Of baselines, which do not count lines, nowhere."""
+        if "scheme" in self.provenance.get("choices", {}):
+            return np.zeros(len(self.patches), bool)
+        return self.arrivals < intervals.FEW
+
+    def interval(self, level: float = 0.95, quantity: str = "radiosity") -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper end, (n_patches, n_bands) each, in the solution's unit, of intervals that hold the true value of a
+        patch with probability ``level``: Student's over replicates, and where `few` lines landed up to a bound from their number.
+        NaN where unknown: without replicates.
+
+        Args:
+            quantity: "radiosity" or "irradiance".
+
+        Raises:
+            MethodError: another quantity, or a level outside (0, 1).
+        """
+        return intervals.of_patches(self, level, quantity)
+
+    def surface_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
+        """As `interval`, of the area mean over each surface, (n_surfaces, n_bands) each."""
+        rows = [np.array([i]) for i in range(len(self.patches.scene.names))]
+        return intervals.of_surfaces(self, level, quantity, rows)
+
+    def scene_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
+        """As `interval`, of the area mean over the whole scene, (n_bands,) each."""
+        rows = [np.arange(len(self.patches.scene.names))]
+        low, high = intervals.of_surfaces(self, level, quantity, rows)
+        return low[0], high[0]
 
     @cached_property
     def error(self) -> float:

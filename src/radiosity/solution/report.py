@@ -4,6 +4,9 @@ import math
 
 import numpy as np
 
+from ..errors import printable
+from .intervals import FEW
+
 MOST_ROWS = 24
 
 
@@ -14,14 +17,17 @@ def report(solution) -> str:
     error = _error(solution)
     unvisited = int((solution.arrivals == 0).sum())
     lines = [
-        f"scene     {scene.source}: {scene.n_faces} faces, {len(scene.names)} surfaces, {len(solution.patches)} patches",
+        f"scene     {printable(scene.source)}: {scene.n_faces} faces, {len(scene.names)} surfaces, "
+        f"{len(solution.patches)} patches",
         f"method    {solution.provenance['method']}, seed {solution.provenance['seed']}",
         f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({rate / 1e6:.1f} million a second), {_counted(solution)}",
         f"error     {error}",
         f"status    {solution.status}",
     ]
-    if unvisited:
-        lines.append(f"unvisited {unvisited} patches that no line reached (their zero is no measurement)")
+    few = int(solution.few.sum())
+    if few:
+        none = f", {unvisited} of them none (their zero is no measurement)" if unvisited else ""
+        lines.append(f"few       {few} patches that fewer than {FEW} lines reached{none}: their errors are rough (see the .csv)")
     for name, book in zip(scene.bands, solution.books, strict=True):
         label = f"power [{name}]" if len(scene.bands) > 1 else "power"
         closed = {True: "closes exactly", False: "DOES NOT CLOSE", None: "rounding is what does not balance"}[book["closes"]]
@@ -40,8 +46,12 @@ def _counted(solution) -> str:
 
 
 def _error(solution) -> str:
+    if solution.quanta == 0:
+        return "unknown (no stage is complete yet)"
+    if "scheme" in solution.provenance.get("choices", {}):
+        return "unknown: it is that of the form factors, which replicates do not show"
     if solution.replicates < 2:
-        return "unknown (one replicate)"
+        return "unknown (one replicate; from 2 on there are errors)"
     if np.isnan(solution.error):
         return "none: no line landed anywhere"
     reflected = (solution.patches.reflectance * solution.irradiance).any()
@@ -52,18 +62,20 @@ def _surfaces(solution) -> list[str]:
     rows, scene = solution.surface_table(), solution.patches.scene
     tails = [f" [{name}]" for name in scene.bands] if len(scene.bands) > 1 else [""]
     rows.sort(key=lambda row: -sum(row[f"left{tail}"] for tail in tails))
-    width = max(len("surface"), *(min(len(row["surface"]), 32) for row in rows[:MOST_ROWS]))
+    width = max(len("surface"), *(min(len(printable(row["surface"])), 32) for row in rows[:MOST_ROWS]))
     short = [name[0].upper() if len(scene.bands) == 3 else name for name in scene.bands] if len(tails) > 1 else [""]
     heads = [f"B {s}".strip() for s in short] + [f"H {s}".strip() for s in short]
-    title = f"{'surface':<{width}} {'patches':>8} {'area m²':>9} " + " ".join(f"{h:>9}" for h in heads) + f" {'error':>7}"
-    result = [f"radiosity B and irradiance H in {scene.unit}, area means", title]
+    heads = [f"{head:>9}" for head in heads] + [f"{head:>7}" for head in ("H ±", "error")]
+    title = f"{'surface':<{width}} {'patches':>8} {'area m²':>9} " + " ".join(heads)
+    about = f"radiosity B and irradiance H in {scene.unit}, area means; ±: 95 % interval of H; error: RMS over patches, relative"
+    result = [about, title]
     for row in rows[:MOST_ROWS]:
         values = [row[f"radiosity{t}"] for t in tails] + [row[f"irradiance{t}"] for t in tails]
-        error = "?" if np.isnan(row["error"]) else f"{row['error']:.2%}"
+        error, sure = ("?" if np.isnan(row[key]) else f"{row[key]:.2%}" for key in ("error", "interval"))
         result.append(
-            f"{row['surface'][:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
+            f"{printable(row['surface'])[:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
             + " ".join(f"{v:>9.4g}" for v in values)
-            + f" {error:>7}"
+            + f" {sure:>7} {error:>7}"
         )
     if len(rows) > MOST_ROWS:
         result.append(f"... and {len(rows) - MOST_ROWS} more surfaces (export a .csv for all)")

@@ -1,20 +1,19 @@
 """Save and load solutions: one NPZ file that stands alone (scene, results, provenance, the run's integers)."""
 
 import json
-import os
-import tempfile
 from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
-from ..errors import OutputError, SceneError
+from ..errors import SceneError
 from ..patches.model import Patches
 from ..scene.model import Camera, Scene
 from ..scene.paint import Paint
-from .archive import read_arrays
+from .archive import check_sizes
 from .model import Solution
 from .validate import validate
+from .whole import whole_file
 
 FORMAT = 1
 SCENE_ARRAYS = (
@@ -33,8 +32,13 @@ SOLUTION_ARRAYS = ("irradiance", "irradiance_standard_error", "arrivals")
 SCALARS = ("rays", "seconds", "quanta", "replicates", "books", "status", "provenance")
 
 
-def save(solution: Solution, path: Path) -> None:
+def save(solution: Solution, path: Path, *, derived: bool = True) -> None:
     """Write ``path``; a failed write leaves the old file as it was.
+
+    Args:
+        solution: to write.
+        path: of the file.
+        derived: with what follows from the rest, for other readers of the file.
 
     Raises:
         OutputError: the file cannot be written.
@@ -50,28 +54,18 @@ def save(solution: Solution, path: Path) -> None:
             paints[which] = {"images": len(paint.images), "limit": None if np.isinf(paint.limit) else paint.limit}
     arrays |= {"patches_columns": patches.columns, "patches_rows": patches.rows}
     arrays |= {name: getattr(solution, name) for name in SOLUTION_ARRAYS}
-    arrays |= {"radiosity": solution.radiosity, "standard_error": solution.standard_error}
+    if solution.surface_power is not None:
+        arrays["surface_power"] = solution.surface_power
+    if derived:
+        arrays |= {"radiosity": solution.radiosity, "standard_error": solution.standard_error}
     arrays |= {f"state_{name}": value for name, value in solution.state.items()}
     meta = {name: getattr(solution, name) for name in SCALARS}
     meta |= {"format": FORMAT, "paints": paints, "scene": {
         "names": scene.names, "bands": scene.bands, "photometric": scene.photometric, "scale": scene.scale,
         "source": scene.source, "cameras": [asdict(c) for c in scene.cameras]}}  # fmt: skip
     arrays["meta"] = np.array(json.dumps(meta))
-    folder = path.resolve().parent
-    try:
-        handle, temporary = tempfile.mkstemp(suffix=".part", dir=folder)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({error.strerror})") from None
-    try:
-        with os.fdopen(handle, "wb") as file:
-            np.savez(file, **arrays)
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, path)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({error.strerror})") from None
-    finally:
-        if os.path.exists(temporary):
-            os.unlink(temporary)
+    with whole_file(path) as file:
+        np.savez(file, **arrays)
 
 
 def load_solution(path) -> Solution:
@@ -83,7 +77,9 @@ def load_solution(path) -> Solution:
     path = Path(path)
     try:
         with path.open("rb") as opened:
-            arrays = read_arrays(opened)
+            check_sizes(opened, path)
+            with np.load(opened, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
         meta = json.loads(str(arrays["meta"]))
         if meta["format"] != FORMAT:
             raise SceneError(f"{path}: written in format {meta['format']}; this version reads {FORMAT}")
@@ -118,16 +114,11 @@ def _restore(arrays: dict, meta: dict) -> Solution:
     state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
-    solution = Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars, state=state)
+    scalars |= {"state": state, "surface_power": arrays.get("surface_power")}
+    solution = Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars)
     validate(solution)
     return solution
 
 
 def _camera(origin, target, up, **rest) -> Camera:
     return Camera(tuple(origin), tuple(target), tuple(up), **rest)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

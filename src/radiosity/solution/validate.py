@@ -32,13 +32,17 @@ def validate(solution: Solution) -> None:
     n_patches = len(solution.irradiance) if solution.irradiance.ndim else -1
     _that(count.sum() == n_patches, f"{n_patches} results for {count.sum():.0f} patches")
     _array("irradiance", solution.irradiance, "f", (n_patches, bands))
-    _that((np.abs(solution.irradiance) <= MOST).all(), "irradiance that is not finite")
+    none_yet = solution.quanta == 0 and np.isnan(solution.irradiance).all()  # a run stopped within its first stage
+    _that(none_yet or (np.abs(solution.irradiance) <= MOST).all(), "irradiance that is not finite")
     _array("errors", solution.irradiance_standard_error, "f", (n_patches, bands))
     error = solution.irradiance_standard_error
     _that((np.isnan(error) | ((error >= 0) & (error <= MOST))).all(), "errors out of range")
     _array("arrivals", solution.arrivals, "iu", (n_patches,))
     _that((solution.arrivals >= 0).all() and solution.arrivals.sum(dtype=float) < 2**63, "arrivals out of range")
     _scalars(solution, bands)
+    if solution.surface_power is not None:
+        _array("powers", solution.surface_power, "f", (2, solution.replicates, len(scene.names), bands))
+        _that((np.abs(solution.surface_power) <= MOST).all(), "powers that are not finite")
     history = solution.history
     _that(history.ndim == 2 and history.shape[1] == 2 and history.dtype.kind in "fiu", "a history of another shape")
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...engine import memory
 from ...errors import MethodError, RadiosityWarning
 from ...patches import Hierarchy, elements
-from ..estimate import LONG, SHARE, free_memory
+from ..estimate import LONG
 from .kernel import PLANE
 from .refine import MOST_LINKS
 
@@ -85,9 +86,9 @@ def _of(pairs: int) -> Estimate:
 
 
 def _refuse(wanted: Estimate, most: int) -> None:
-    free = free_memory()
-    if wanted.pairs > most or (most == MOST_LINKS and wanted.bytes > SHARE * free):
+    room = memory.room()
+    if wanted.pairs > most or (most == MOST_LINKS and wanted.bytes > room):
         raise MethodError(
             f"hierarchical radiosity begins with a link for all faces that see each other: {wanted} or more; {most:.3g} are the "
-            f"most, and {free / 2**30:.3g} GiB are free; merge small faces in the scene, or take a method that forms no matrix"
+            f"most, in {memory.size(room)} of memory; merge small faces in the scene, or take a method that forms no matrix"
         )

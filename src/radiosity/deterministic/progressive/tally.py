@@ -23,6 +23,8 @@ class ProgressiveTally(AbstractTally):
     ambient: bool
     solved: SolvedTally
 
+    counts_landings = False
+
     def lines(self, problem: Problem, state: State) -> int:
         return self.solved.lines(problem, state)
 

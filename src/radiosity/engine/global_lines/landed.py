@@ -28,13 +28,13 @@ class Landed(AbstractTally):
         return state["ends"].sum(axis=0) + first_shot.arrivals(state)
 
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        watts = unit(problem, state["ends_per_line"], group) / int(state["done"])
+        watts = unit(problem, state["ends_per_line"], group) / int(state["lines_done"])
         if first_shot.PREFIX + "fired" not in state:
             return state["landed"][group], watts
         return state["landed"][group] * watts + first_shot.landed(problem, state, group)[0], 1.0
 
     def books(self, problem: Problem, state: State, group: int) -> dict:
-        counts, lines = state["landed"][group], int(state["done"])
+        counts, lines = state["landed"][group], int(state["lines_done"])
         replicates = len(counts)
         fired, reflected, escaped, lost = (
             sum((int(high) << 32) + int(low) for high, low in rows) for rows in state["ledger"][group]

@@ -143,7 +143,7 @@ class Multipath(AbstractProcess):
         shape = (len(self.exchanges), self.replicates, self.n)
         limbs = [[[divmod(x, 2**32) for x in ledger[name]] for name in LEDGER] for ledger in self.ledger]
         state = {
-            "quanta": np.array(self._quanta), "done": np.array(self.done), "ends": self.ends.copy(),
+            "quanta": np.array(self._quanta), "lines_done": np.array(self.done), "ends": self.ends.copy(),
             "ends_per_line": self.spans.ends_per_line, "ledger": np.array(limbs, np.uint64),
             "unshot": np.stack([frozen(x.unshot) for x in self.exchanges]).reshape(shape),
             "landed": np.stack([frozen(x.landed) for x in self.exchanges]).reshape(shape),
@@ -151,11 +151,11 @@ class Multipath(AbstractProcess):
         return state if self.shot is None else state | self.shot.capture()
 
     def restore(self, state: State) -> None:
-        wanted = {"quanta", "done", "ends", "ledger", "unshot", "landed"}
+        wanted = {"quanta", "lines_done", "ends", "ledger", "unshot", "landed"}
         if wanted - set(state) or state["ends"].shape != self.ends.shape:
             raise MethodError("the solution to go on from lacks the sums of its multipath run; start anew")
         UInt64 = self.geometry.device.types.UInt64
-        self._quanta, self.done, self.ends = int(state["quanta"]), int(state["done"]), state["ends"].astype(np.int64)
+        self._quanta, self.done, self.ends = int(state["quanta"]), int(state["lines_done"]), state["ends"].astype(np.int64)
         for g, exchange in enumerate(self.exchanges):
             exchange.unshot, exchange.landed = upload(UInt64, state["unshot"][g]), upload(UInt64, state["landed"][g])
             self.ledger[g] = {
@@ -166,7 +166,7 @@ class Multipath(AbstractProcess):
             self.shot.restore(state)
 
     def unfinished(self, state: State) -> bool:
-        return int(state["done"]) < int(state["quanta"])
+        return int(state["lines_done"]) < int(state["quanta"])
 
     @property
     def tally(self) -> Landed:

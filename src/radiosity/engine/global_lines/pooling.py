@@ -162,22 +162,22 @@ class Pooling(AbstractProcess):
 
     def capture(self) -> State:
         state = {name: getattr(self, name).copy() for name in ARRAYS}
-        numbers = {"quanta": self._quanta, "done": self.done, "replicates": self.replicates}
+        numbers = {"quanta": self._quanta, "lines_done": self.done, "replicates": self.replicates}
         state |= {name: np.array(number) for name, number in numbers.items()}
         return state if self.shot is None else state | self.shot.capture()
 
     def restore(self, state: State) -> None:
-        wanted = {"quanta", "done", *ARRAYS}
+        wanted = {"quanta", "lines_done", *ARRAYS}
         if wanted - set(state) or state["ends"].shape != self.ends.shape:
             raise MethodError("the solution to go on from lacks the sums of its iterations; start anew")
         for name in ARRAYS:
             setattr(self, name, state[name].copy())
-        self._quanta, self.done = int(state["quanta"]), int(state["done"])
+        self._quanta, self.done = int(state["quanta"]), int(state["lines_done"])
         if self.shot is not None:
             self.shot.restore(state)
 
     def unfinished(self, state: State) -> bool:
-        return int(state["done"]) < _each(int(state["quanta"]))
+        return int(state["lines_done"]) < _each(int(state["quanta"]))
 
     @property
     def tally(self) -> Pooled:

@@ -28,7 +28,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
     Raises:
         SceneError: the file or one that it refers to is missing, damaged or not understood.
     """
-    file = load(path)
+    file = load(path, options)
     nodes = walk(file)
     materials = Materials(file)
     left_out: dict[str, list[str]] = {}

@@ -5,12 +5,14 @@ silence, drops what it cannot load, and loses names and emissive strength.
 """
 
 import json
+import re
 from base64 import b64decode
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes
 
 from ....errors import SceneError, shown
+from ...parts import ReadOptions
 from .glb import chunks
 
 KNOWN_EXTENSIONS = ("KHR_texture_transform", "KHR_mesh_quantization", "KHR_lights_punctual", "EXT_texture_webp")
@@ -21,6 +23,7 @@ class GltfFile:
     """Parsed but not interpreted. Every lookup raises a `SceneError` that names what is wrong."""
 
     path: Path
+    options: ReadOptions
     tree: dict
     chunk: bytes | None = None  # of a .glb
     known: dict = field(default_factory=dict)  # buffers already read
@@ -72,8 +75,10 @@ class GltfFile:
                 return b64decode(body, validate=False) if head.endswith(";base64") else unquote_to_bytes(body)
             except ValueError as error:
                 raise self.fail(f"the data URI of {what} cannot be decoded ({error})") from None
+        if re.match(r"[A-Za-z][A-Za-z0-9+.-]+:", uri):  # one letter alone is a drive
+            raise self.fail(f"{what} is at '{uri[:80]}': nothing is fetched from addresses; put the file beside this one")
         try:
-            file = self.path.parent / unquote(uri)
+            file = self.options.admit(self.path.parent / unquote(uri), self.path)
             if not file.is_file():
                 raise self.fail(f"{what} is in '{uri}', but there is no file {file}; put it there or export as .glb")
             return file.read_bytes()
@@ -105,7 +110,7 @@ class GltfFile:
         return data[start : start + size], self.whole(info, "byteStride", what, 0)
 
 
-def load(path: Path) -> GltfFile:
+def load(path: Path, options: ReadOptions) -> GltfFile:
     """Read and check the outer layers of a .glb or .gltf file.
 
     Raises:
@@ -122,7 +127,7 @@ def load(path: Path) -> GltfFile:
     version = str(tree["asset"].get("version"))
     if not version.startswith("2."):
         raise SceneError(f"{path}: glTF version {version}; only 2.0 is read")
-    file = GltfFile(path, tree, chunk)
+    file = GltfFile(path, options, tree, chunk)
     required = [str(name) for name in file.items(tree, "extensionsRequired")]
     unknown = [name for name in required if name not in KNOWN_EXTENSIONS and not name.startswith("KHR_materials_")]
     if unknown:

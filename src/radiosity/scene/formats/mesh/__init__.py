@@ -126,6 +126,7 @@ def _color(path: Path, columns: Columns) -> np.ndarray | None:
 def _texture(path: Path, ply: Ply, options: ReadOptions) -> np.ndarray | None:
     names = [comment.split(None, 1)[1].strip() for comment in ply.comments if comment.lower().startswith("texturefile ")]
     for name in names[:1]:
+        options.admit(path.parent / name, path)
         try:
             return linear_image((path.parent / name).read_bytes(), str(path.parent / name))
         except (SceneError, OSError, ValueError) as error:

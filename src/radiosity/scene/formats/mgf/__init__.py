@@ -35,7 +35,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
         ModuleNotFoundError: pyradiance or mapbox-earcut is not installed.
     """
     faults = Faults(options.strict)
-    statements = read_source(path, faults)
+    statements = read_source(path, faults, options)
     reader = FaceReader(statements, faults)
     reader.follow(reduce_to_faces(statements, faults, str(path)))
     points = np.array(reader.contexts.points)

@@ -15,6 +15,7 @@ UNDERSTOOD = "#,xf,o,c,cxy,m,sides,rd,td,ed,rs,ts,v,p,f"
 MOST_RUNS = 200  # mgfilt stops at a fault: it is run again without that line
 SECONDS = 120  # for one run
 MOST_BYTES = 1 << 29  # of output
+MOST_MEMORY = 4 << 30
 FAULT = re.compile(rb"<stdin>: (\d+): ([^:\n]+)")
 # what stands for a faulty statement, so that what follows does not change the context before it
 INSTEAD = {b"c": b"c", b"v": b"v"}
@@ -66,12 +67,26 @@ def program(name: str) -> str:
     return path
 
 
+def _bound(pid: int) -> None:
+    """Limits on memory and processor time of a program that works on strangers' data, where the system has them."""
+    try:
+        import resource
+
+        resource.prlimit(pid, resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+        resource.prlimit(pid, resource.RLIMIT_CPU, (SECONDS, SECONDS))
+    except (ImportError, AttributeError, OSError, ValueError):  # not Linux, ended already, or a stricter limit in force
+        pass
+
+
 def _run(data: bytes, source: str) -> tuple[bytes, bytes, int]:
     """Output, error text and status of one run, with bounds on time and output."""
     with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as errors:
         given.write(data)
         given.seek(0)
-        process = subprocess.Popen([program("mgfilt"), UNDERSTOOD], stdin=given, stdout=subprocess.PIPE, stderr=errors)
+        process = subprocess.Popen(
+            [program("mgfilt"), UNDERSTOOD], stdin=given, stdout=subprocess.PIPE, stderr=errors, env={}, cwd=tempfile.gettempdir()
+        )
+        _bound(process.pid)
         assert process.stdout is not None
         late = threading.Event()
         timer = threading.Timer(SECONDS, lambda: (late.set(), process.kill()))
@@ -89,6 +104,11 @@ def _run(data: bytes, source: str) -> tuple[bytes, bytes, int]:
             if process.poll() is None and size > MOST_BYTES:
                 process.kill()
             status = process.wait()
+        if status < 0 and not late.is_set():
+            raise SceneError(
+                f"{source}: mgfilt was ended by signal {-status} (it may take {MOST_MEMORY >> 30} GiB and {SECONDS} s); "
+                "split the scene"
+            )
         if late.is_set():
             raise SceneError(f"{source}: mgfilt did not finish in {SECONDS} s; split the scene")
         errors.seek(0)

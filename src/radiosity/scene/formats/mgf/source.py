@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 from ....errors import SceneError
+from ...parts import ReadOptions
 from .faults import Faults, Statement, decode
 
 ENTITIES = set(
@@ -14,26 +15,34 @@ LONGEST = 4000  # bytes of a statement that the standard parser takes
 MOST = 20_000_000  # statements
 
 
-def read_source(path: Path, faults: Faults) -> list[Statement]:
+def read_source(path: Path, faults: Faults, options: ReadOptions) -> list[Statement]:
     """All statements in order. ``i file [transform]`` becomes the file's statements, between two ``xf`` if transformed.
 
     Statements that the standard parser would stop at for their form are faults.
 
     Raises:
-        SceneError: the file cannot be read or is not text; the includes unfold without end.
+        SceneError: the file cannot be read or is not text; the includes unfold without end, or lie outside the scene's folder;
+            a line that would run a command.
     """
     result: list[Statement] = []
-    _include(os.fspath(path), (), {}, result, faults)
+    _include(os.fspath(path), (), {}, result, faults, options)
     return result
 
 
-def _include(name: str, above: tuple[str, ...], known: dict, result: list[Statement], faults: Faults) -> None:
+def _include(
+    name: str, above: tuple[str, ...], known: dict, result: list[Statement], faults: Faults, options: ReadOptions
+) -> None:
     if name not in known:
         known[name] = _statements(name)
     for statement in known[name]:
         words = statement.text.split()
         if words[0] == b"i":
-            _include_statement(statement, words, (*above, name), known, result, faults)
+            _include_statement(statement, words, (*above, name), known, result, faults, options)
+        elif words[0].startswith(b"!"):
+            raise SceneError(
+                f"{statement.place}: '{decode(statement.text)[:60]}' would run a command; a scene is data, and nothing in it is "
+                "run: take the line out, or put there what the command writes"
+            )
         elif words[0] == b"ies":
             faults.add(statement.place, "the luminaire is not read: IES photometry is no diffuse surface")
         elif words[0] not in ENTITIES:
@@ -46,10 +55,13 @@ def _include(name: str, above: tuple[str, ...], known: dict, result: list[Statem
         raise SceneError(f"{name}: the included files unfold to more than {MOST} statements; split the scene")
 
 
-def _include_statement(statement: Statement, words, above, known, result: list[Statement], faults: Faults) -> None:
+def _include_statement(
+    statement: Statement, words, above, known, result: list[Statement], faults: Faults, options: ReadOptions
+) -> None:
     if len(words) < 2:
         return faults.add(statement.place, "an include names no file")
     name = os.path.normpath(Path(statement.file).parent / os.fsdecode(words[1].lstrip(b"/")))
+    options.admit(Path(name), statement.place)
     if name in above:
         return faults.add(statement.place, f"'{name}' includes itself")
     if len(above) >= DEEPEST:
@@ -60,7 +72,7 @@ def _include_statement(statement: Statement, words, above, known, result: list[S
     if transformed:
         result.append(Statement(b" ".join([b"xf", *words[2:]]), statement.file, statement.line))
     try:
-        _include(name, above, known, result, faults)
+        _include(name, above, known, result, faults, options)
     except (OSError, ValueError) as error:
         if isinstance(error, SceneError):
             raise

@@ -38,8 +38,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
     Raises:
         SceneError: malformed XML, a file that is missing or damaged, or no shape that can be used.
     """
-    root, folders = parse(path)
-    reader = Reader(path, folders)
+    root, folders = parse(path, options)
+    reader = Reader(path, folders, options)
     for shape in root.of("Shape"):
         if shape.plugin != "shapegroup":  # it is seen through its instances
             reader.add(shape, np.eye(4), "")
@@ -56,10 +56,10 @@ class Reader:
         left_out: what does not take part, by name.
     """
 
-    def __init__(self, path: Path, folders: list[Path]):
+    def __init__(self, path: Path, folders: list[Path], options: ReadOptions):
         self.left_out: dict[str, None] = {}
-        self._path, self._folders = path, folders
-        self._colors = Colors(folders)
+        self._path, self._folders, self._options = path, folders, options
+        self._colors = Colors(folders, options)
         self._parts: list[Part] = []
         self._names: dict[str, int] = {}
         self._geometries: dict[int, Geometry] = {}
@@ -127,7 +127,7 @@ class Reader:
             if node.plugin in ANALYTIC:
                 self._geometries[id(node)] = ANALYTIC[node.plugin](node)
             else:
-                file = find_file(self._folders, str(node.values.get("filename", "")), node)
+                file = find_file(self._folders, str(node.values.get("filename", "")), node, self._options)
                 self._geometries[id(node)] = read_mesh(node, file)
         return self._geometries[id(node)]
 

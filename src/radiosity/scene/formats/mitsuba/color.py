@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ....errors import SceneError
+from ...parts import ReadOptions
 from .image import find_file, read_image
 from .node import Node, Spectrum
 
@@ -46,8 +47,8 @@ def collapse(color) -> Color:
 class Colors:
     """Reads colours; images are found in ``folders`` and read once."""
 
-    def __init__(self, folders: list[Path]):
-        self._folders = folders
+    def __init__(self, folders: list[Path], options: ReadOptions):
+        self._folders, self._options = folders, options
         self._images: dict[tuple[Path, bool], np.ndarray] = {}
 
     def get(self, node: Node, key: str, default: float, *, emission: bool = False) -> "Color | Image | VertexColors":
@@ -91,7 +92,7 @@ class Colors:
         name = node.values.get("filename")
         if not isinstance(name, str):
             raise SceneError(f"{node.place}: a bitmap without a filename")
-        file = find_file(self._folders, name, node)
+        file = find_file(self._folders, name, node, self._options)
         raw = bool(node.values.get("raw", False))
         if (file, raw) not in self._images:
             self._images[file, raw] = read_image(file, raw)

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from ....errors import SceneError
+from ...parts import ReadOptions
 from ..textures import decode_srgb, linear_image
 from .node import Node
 from .parse import message
@@ -12,16 +13,16 @@ from .parse import message
 FLOAT_IMAGES = (".exr", ".hdr", ".pfm", ".rgbe")
 
 
-def find_file(folders: list[Path], name: str, node: Node) -> Path:
+def find_file(folders: list[Path], name: str, node: Node, options: ReadOptions) -> Path:
     """A file that a plugin names, in one of the folders or beside the XML file that names it.
 
     Raises:
-        SceneError: there is none.
+        SceneError: there is none, or it lies outside the scene's folder.
     """
     for folder in (*folders, Path(node.place.rsplit(" (", 1)[0]).parent):
         for file in (folder / name, folder / name.replace("\\", "/")):
             if file.is_file():
-                return file
+                return options.admit(file, node.place)
     raise SceneError(f"{node.place}: the file '{name}' of this '{node.plugin}' does not exist in {folders[0]}")
 
 

@@ -10,17 +10,18 @@ from typing import Any
 import numpy as np
 
 from ....errors import SceneError
-from .depth import check_depth
+from ...parts import ReadOptions
+from .inspection import check
 from .node import Node, Spectrum
 
 
-def parse(path: Path) -> tuple[Node, list[Path]]:
+def parse(path: Path, options: ReadOptions) -> tuple[Node, list[Path]]:
     """The scene node of a file, and the folders where it looks for others.
 
     Raises:
         SceneError: malformed XML, or what Mitsuba refuses: its message, with line and column.
     """
-    check_depth(path)
+    check(path, options)
     import mitsuba as package
     import mitsuba.scalar_rgb  # its types, by its own module: the variant that a user has set stays as it is
 

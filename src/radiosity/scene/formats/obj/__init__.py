@@ -54,6 +54,7 @@ def _libraries(path: Path, tables: Tables, options: ReadOptions) -> dict[str, Fi
         # a name may hold blanks, and a line may hold several names
         whole = path.parent / text.replace("\\", "/")
         for file in [whole] if whole.is_file() else [path.parent / name.replace("\\", "/") for name in text.split()]:
+            options.admit(file, path)
             if file.is_file():
                 result.update(read_library(file, options))
             else:

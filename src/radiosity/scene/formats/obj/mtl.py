@@ -11,6 +11,8 @@ from ...model import Back
 from .mtl_map import Map, Maps
 from .text import lines
 
+LARGEST = 1e30  # what is multiplied by a texture stays finite
+
 
 @dataclass(frozen=True, eq=False)
 class Finish:
@@ -36,7 +38,7 @@ def read_library(path: Path, options: ReadOptions) -> dict[str, Finish]:
             current = entries.setdefault(" ".join(words[1:]), {})
         else:
             current[words[0].lower()] = (number, " ".join(words[1:]))
-    maps = Maps(path, options.strict)
+    maps = Maps(path, options)
     result = {name: _finish(path, entry, maps) for name, entry in entries.items()}
     if maps.lost:
         warn(f"{path}: textures that cannot be read are left out: {'; '.join(dict.fromkeys(maps.lost))}")
@@ -89,6 +91,8 @@ def _color(path: Path, entry: dict, key: str) -> tuple[float, ...] | None:
     if not values:
         return None
     values = values[:3] if len(values) >= 3 else values[:1]
-    if not all(0 <= v < np.inf for v in values):
-        raise SceneError(f"{path}, line {entry[key][0]}: {key} is {shown(values)}; values must be finite and not negative")
+    if not all(0 <= v < LARGEST for v in values):
+        raise SceneError(
+            f"{path}, line {entry[key][0]}: {key} is {shown(values)}; values must be below {LARGEST:g} and not negative"
+        )
     return tuple(values[:1] if len(set(values)) == 1 else values)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ....errors import SceneError
+from ...parts import ReadOptions
 from ..textures import linear_image
 
 # options of map_Kd and map_Ke, and how many values follow (-o, -s, -t: one to three numbers)
@@ -32,7 +33,7 @@ class Maps:
     """Reads the textures of a library, each image once."""
 
     path: Path
-    strict: bool
+    options: ReadOptions
     images: dict[Path, np.ndarray] = field(default_factory=dict)
     lost: list[str] = field(default_factory=list)
 
@@ -51,14 +52,20 @@ class Maps:
         name = " ".join(words)
         try:
             file = self._find(name)
+        except (OSError, ValueError) as error:
+            return self._lose(line, name, error)
+        self.options.admit(file, f"{self.path}, line {line}")
+        try:
             if file not in self.images:
                 self.images[file] = linear_image(file.read_bytes(), str(file))
-        except (SceneError, OSError, ValueError) as error:
-            if self.strict:
-                raise SceneError(f"{self.path}, line {line}: texture '{name}': {error}") from None
-            self.lost.append(str(error))
-            return None
+        except (OSError, ValueError) as error:
+            return self._lose(line, name, error)
         return Map(self.images[file], np.array(moves["-s"]), np.array(moves["-o"]))
+
+    def _lose(self, line: int, name: str, error: Exception) -> None:
+        if self.options.strict:
+            raise SceneError(f"{self.path}, line {line}: texture '{name}': {error}") from None
+        self.lost.append(str(error))
 
     def _find(self, name: str) -> Path:
         """As named, or of that name beside the library: names of other machines are common."""

@@ -103,6 +103,7 @@ class Looks:
 def _geometry(path: Path, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
     from .. import read as read_any
 
+    options.admit(path, source)
     if path.suffix.lower() == ".toml":
         raise SceneError(f"{source}: geometry '{path.name}' is a .toml file; name its geometry files instead")
 

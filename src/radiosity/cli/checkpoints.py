@@ -1,0 +1,71 @@
+"""Where a run's state is kept while it goes on, and when that file goes away."""
+
+import warnings
+from contextlib import suppress
+from pathlib import Path
+
+from ..errors import OutputError, RadiosityWarning
+
+MINUTE = 60.0  # from which on a run is long, and between two checkpoints that nobody asked for
+
+
+def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None):
+    """The checkpoint that was named, or one beside the first output: ``box.glb`` -> ``box.checkpoint.npz``; or None.
+
+    Raises:
+        OutputError: the one that was named cannot be written, or is an output too. MethodError: nothing can go on from it.
+    """
+    from ..engine.checkpoint import Checkpoint, resumable
+
+    if path is not None:
+        if off:
+            raise OutputError(f"--checkpoint {path} and --no-checkpoint exclude each other; give one")
+        if _place(path) in map(_place, outputs):
+            raise OutputError(f"{path} is named twice; give the checkpoint a name of its own, since it is removed in the end")
+        keeper = Checkpoint(path)
+        keeper.check(method)
+        _point_at_earlier(path, resume, "half a minute")
+        return keeper
+    if off or not outputs or not resumable(method):
+        return None
+    beside: Path = outputs[0].with_name(f"{outputs[0].stem}.checkpoint.npz")
+    if _place(beside) in map(_place, outputs):
+        return None
+    keeper = Checkpoint(beside, MINUTE)
+    try:
+        keeper.check(method)
+    except OutputError:  # nobody asked for it
+        return None
+    _point_at_earlier(beside, resume, "a minute")
+    return keeper
+
+
+def _point_at_earlier(path: Path, resume: Path | None, when: str) -> None:
+    """Warn of a file that is not gone on from, while there is time to keep it."""
+    if path.exists() and (resume is None or _place(resume) != _place(path)):
+        warnings.warn(
+            f"{path}: the checkpoint of an earlier run, which --resume {path} goes on from; one of this run takes its place "
+            f"after {when}",
+            RadiosityWarning,
+            stacklevel=3,
+        )
+
+
+def finish(keeper, solution, outputs, *, named: bool, resume: Path | None) -> str | None:
+    """All outputs are written: remove what is not needed any more, or return the file to go on from."""
+    if keeper is None:
+        return None
+    path, stopped = keeper.path, solution.status == "interrupted"
+    elsewhere = not named and any(output.suffix.lower() == ".npz" for output in outputs)
+    if stopped and not elsewhere:
+        return str(path) if keeper.written else None
+    if keeper.written or (resume is not None and _place(resume) == _place(path)):
+        with suppress(OSError):
+            path.unlink()
+    return None
+
+
+def _place(path: Path) -> Path:
+    with suppress(OSError, RuntimeError, ValueError):
+        return Path(path).resolve()
+    return Path(path)

@@ -1,0 +1,122 @@
+"""Intervals that hold the true value with a stated probability (contract 5).
+
+Replicates are independent, so (mean - truth) / standard error follows Student's distribution with one degree of freedom less than
+there are replicates, where enough lines landed for the mean of one replicate to be near normal. Where few did, their number is
+what is known: as that of Poisson's lines, or of clusters of lines where arrivals vary more than Poisson's (all patches share one
+sequence, so at few lines a patch they come in clusters), it bounds what the patch receives from above (F. Garwood, "Fiducial
+limits for the Poisson distribution", Biometrika 28, 1936).
+"""
+
+import numpy as np
+
+from ..errors import MethodError
+from .errors import mean_and_error
+
+FEW = 30  # arrivals, all replicates together: Student's intervals of patches with fewer are too narrow (docs/errors.md)
+QUANTITIES = ("radiosity", "irradiance")
+
+
+def student(level: float, replicates: int) -> float:
+    """Half the width of a two-sided interval, in standard errors; NaN of a single replicate.
+
+    Raises:
+        MethodError: a level outside (0, 1).
+    """
+    if not 0 < level < 1:
+        raise MethodError(f"level is {level!r}; it must lie between 0 and 1, such as 0.95")
+    if replicates < 2:
+        return float("nan")
+    from scipy.stats import t
+
+    return float(t.ppf(0.5 + level / 2, replicates - 1))
+
+
+def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """(n_patches, n_bands) W or lm that a line brings to a patch, in the mean of replicates: of its own lines, or of the scene's
+    where none landed.
+
+    Args:
+        irradiance: (n_patches, n_bands). arrivals: (n_patches,), replicates together. area: (n_patches,) m².
+    """
+    power, count = irradiance * area[:, None], arrivals[:, None]
+    own = np.divide(power, count, out=np.zeros_like(power), where=count > 0)
+    usual = power.sum(axis=0) / max(int(arrivals.sum()), 1)
+    return np.where(own > 0, own, usual)
+
+
+def cluster(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """(n_bands,) lines that come together: the variance of arrivals over their number, on patches that few reached; 1 at
+    least."""
+    here = (arrivals > 0) & (arrivals < FEW)
+    if not here.any():
+        return np.ones(irradiance.shape[1])
+    one = power_of_an_arrival(irradiance, arrivals, area)[here]
+    relative = np.divide(error[here] * area[here, None], one, out=np.zeros_like(one), where=one > 0)
+    return np.maximum((relative**2).sum(axis=0) / arrivals[here].sum(), 1)
+
+
+def irradiance_bound(
+    irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, level: float, cluster: np.ndarray | float = 1.0
+) -> np.ndarray:
+    """(n_patches, n_bands) what the irradiance does not exceed, with a probability of ``level``, by the distribution of
+    arrivals alone: rough where many landed, and all that is known where none did. Arguments as of `power_of_an_arrival`."""
+    from scipy.stats import chi2
+
+    most = cluster * chi2.ppf(level, 2 * (arrivals[:, None] / cluster + 1)) / 2
+    return most * power_of_an_arrival(irradiance, arrivals, area) / area[:, None]
+
+
+def least_error(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """(n_patches, n_bands) standard error, where it is zero since few lines landed and all replicates agree by chance: that of
+    Poisson's arrivals, and of one arrival where there was none."""
+    lucky = (error == 0) & (arrivals < FEW)[:, None]
+    if not lucky.any():
+        return error
+    spread = power_of_an_arrival(irradiance, arrivals, area) * np.sqrt(np.maximum(arrivals, 1) / area**2)[:, None]
+    return np.where(lucky, spread, error)
+
+
+def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """See `Solution.interval`."""
+    _known(quantity)
+    mean, few = solution.irradiance, solution.few
+    half = student(level, solution.replicates) * solution.irradiance_standard_error
+    low, high = np.maximum(mean - half, 0), mean + half
+    counted = (mean, solution.arrivals, solution.patches.area)
+    together = cluster(mean, solution.irradiance_standard_error, *counted[1:])
+    bound = irradiance_bound(*counted, 0.5 + level / 2, together)
+    high = np.where(few[:, None], np.maximum(high, bound), high)  # NaN stays
+    if quantity == "irradiance":
+        return low, high
+    emission, rho = solution.patches.emission, solution.patches.reflectance
+    return tuple(np.where(rho == 0, emission, emission + rho * end) for end in (low, high))
+
+
+def of_surfaces(solution, level: float, quantity: str, rows: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """(k, n_bands) each: intervals of area means over k sets of surfaces, given by their numbers; NaN where unknown.
+
+    Each replicate has its own mean over the set, so what patches have in common does not narrow the interval.
+    """
+    _known(quantity)
+    patches, n = solution.patches, len(solution.patches.scene.names)
+    area = np.bincount(patches.surface, patches.area, n)
+    shape = (len(rows), patches.emission.shape[1])
+    if solution.surface_power is None:
+        return np.full(shape, np.nan), np.full(shape, np.nan)
+    power = solution.surface_power[0 if quantity == "irradiance" else 1]  # received, or reflected
+    low, high = np.empty(shape), np.empty(shape)
+    for i, some in enumerate(rows):
+        each = power[:, some].sum(axis=1) / area[some].sum()  # (replicates, n_bands)
+        mean, error = mean_and_error(each)
+        half = student(level, len(each)) * error
+        low[i], high[i] = np.maximum(mean - half, 0), mean + half
+        if quantity == "radiosity":
+            here = np.isin(patches.surface, some)
+            emitted = (patches.area[here] @ patches.emission[here]) / area[some].sum()
+            low[i], high[i] = low[i] + emitted, high[i] + emitted
+    return low, high
+
+
+def _known(quantity: str) -> None:
+    if quantity not in QUANTITIES:
+        raise MethodError(f"quantity '{quantity}' has no interval; known are {', '.join(QUANTITIES)}")

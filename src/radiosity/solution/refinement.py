@@ -1,0 +1,123 @@
+"""What two meshes say of a solution's discretisation error."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .model import Solution
+
+MOST_ROWS = 24
+ORDER = 1.0  # of the change of patch means in the patch size, see docs/errors.md
+
+
+@dataclass(frozen=True, eq=False)
+class RefineCheck:
+    """What `radiosity.refine_check` returns.
+
+    Attributes:
+        coarse: the solution asked for.
+        fine: that on patches cut into four.
+        parent: (n_fine,) the coarse patch of each fine one.
+        fine_error: (n_patches, n_bands) standard error of the fine solution's mean radiosity over each coarse patch.
+    """
+
+    coarse: Solution
+    fine: Solution
+    parent: np.ndarray
+    fine_error: np.ndarray
+
+    @cached_property
+    def fine_mean(self) -> np.ndarray:
+        """(n_patches, n_bands) mean radiosity of the fine solution over each coarse patch."""
+        return self._mean(self.fine.radiosity)
+
+    @cached_property
+    def change(self) -> np.ndarray:
+        """(n_patches, n_bands) how much a patch's mean radiosity changes when all patches are cut into four, noise included."""
+        return self.fine_mean - self.coarse.radiosity
+
+    @cached_property
+    def change_error(self) -> np.ndarray:
+        """(n_patches, n_bands) standard error of `change`, from the replicates of both runs."""
+        return np.hypot(self.coarse.standard_error, self.fine_error)
+
+    @cached_property
+    def square_of_means(self) -> np.ndarray:
+        """(n_patches, n_bands) estimate of the squared discretisation error of a patch's mean: that of the change, its noise
+        taken out (so it may be negative where there is little but noise), extrapolated to ever smaller patches."""
+        return (self.change**2 - self.change_error**2) / (1 - 2.0**-ORDER) ** 2
+
+    @cached_property
+    def square_within(self) -> np.ndarray:
+        """(n_patches, n_bands) the same of what a constant leaves out within a patch: the mean square of B(x) less the patch's
+        mean. Its four children show three quarters of it, where B is linear."""
+        apart = self.fine.radiosity - self.fine_mean[self.parent]
+        noise = self._mean(self.fine.standard_error**2) - self.fine_error**2
+        return (self._mean(apart**2) - noise) * (4 / 3)
+
+    def _mean(self, values: np.ndarray) -> np.ndarray:
+        area, n = self.fine.patches.area, len(self.coarse.patches)
+        sums = [np.bincount(self.parent, area * column, n) for column in values.T]
+        return np.stack(sums, axis=1) / self.coarse.patches.area[:, None]
+
+    def table(self) -> list[dict]:
+        """A row for the whole scene and one for each surface; errors are RMS over the patches' area, relative to that of the
+        light reflected (of the radiosity, where nothing is), the largest of the bands.
+
+        Keys: surface, patches, sampling (standard error of the coarse solution), discretisation (of patch means), within (what
+        constants leave out within patches), change (of the mean radiosity over the surface, signed, of the band that it is
+        largest in).
+        """
+        patches = self.coarse.patches
+        names = ["the whole scene", *patches.scene.names]
+        rows = [np.ones(len(patches), bool), *(patches.surface == i for i in range(len(patches.scene.names)))]
+        return [{"surface": name, **self._row(here)} for name, here in zip(names, rows, strict=True) if here.any()]
+
+    def _row(self, here: np.ndarray) -> dict:
+        patches, area = self.coarse.patches, self.coarse.patches.area[here]
+        size = np.sqrt(area @ (self.coarse.radiosity - patches.emission)[here] ** 2)
+        usual = np.sqrt(area @ self.coarse.radiosity[here] ** 2)
+        size = np.where(size > 0, size, np.where(usual > 0, usual, np.nan))
+
+        def relative(square: np.ndarray) -> float:
+            return _largest(np.sqrt(np.maximum(area @ square[here], 0)) / size)
+
+        moved = (area @ self.change[here]) / (np.sqrt(area.sum()) * size)
+        return {
+            "patches": int(here.sum()), "sampling": relative(self.coarse.standard_error**2),
+            "discretisation": relative(self.square_of_means), "within": relative(self.square_within),
+            "change": float(moved[np.nanargmax(np.abs(moved))]) if np.isfinite(moved).any() else float("nan"),
+        }  # fmt: skip
+
+    def report(self) -> str:
+        """The table in plain text, the surfaces with the largest errors first."""
+        first, *rows = self.table()
+        rows.sort(key=lambda row: -max(row["sampling"], row["discretisation"]))
+        shown = [first, *rows[:MOST_ROWS]]
+        width = max(len(row["surface"][:32]) for row in shown)
+        head = f"{'errors of the reflected light':<{width}} {'sampling':>9} {'patch means':>12} {'within':>8} {'mean moves':>11}"
+        lines = [f"refine check: {len(self.fine.patches)} patches against {len(self.coarse.patches)}", head]
+        for row in shown:
+            lines.append(
+                f"{row['surface'][:32]:<{max(width, 29)}} {row['sampling']:>9.2%} {row['discretisation']:>12.2%} "
+                f"{row['within']:>8.2%} {row['change']:>+11.2%}"
+            )
+        if len(rows) > MOST_ROWS:
+            lines.append(f"... and {len(rows) - MOST_ROWS} more surfaces (export a .csv for all)")
+        return "\n".join(lines)
+
+    def export(self, path) -> None:
+        """Write the table as CSV.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        from ..image.tables import write_rows
+
+        write_rows(self.table(), path)
+
+
+def _largest(values: np.ndarray) -> float:
+    known = values[np.isfinite(values)]
+    return float(known.max()) if len(known) else float("nan")

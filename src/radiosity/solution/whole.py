@@ -1,0 +1,95 @@
+"""Files that are there whole or not at all, also after a power cut."""
+
+import os
+import re
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from ..errors import OutputError
+
+LONGEST = 60  # letters of the file's name in that of its temporary one
+
+
+@contextmanager
+def whole_file(path: Path):
+    """A binary file to write to, which takes the place of ``path`` once all of it is on the disk.
+
+    Until then it is called ``.NAME.PID.part`` and lies in the same folder. One that a killed process left is removed by the
+    next that writes ``path``.
+
+    Raises:
+        OutputError: the system refuses; a file that was there stays as it was.
+    """
+    place = Path(os.path.realpath(path))
+    temporary = place.with_name(f".{place.name[:LONGEST]}.{os.getpid()}.part")
+    try:
+        remove_leftovers(place)
+        with suppress(FileNotFoundError):
+            temporary.unlink()
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+        with os.fdopen(os.open(temporary, flags, 0o666), "wb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(place)
+        _settle(place.parent)
+    except OutputError:
+        raise
+    except (OSError, ValueError) as error:
+        raise OutputError(f"{path}: cannot be written ({getattr(error, 'strerror', None) or error})") from None
+    finally:
+        with suppress(OSError, ValueError):
+            temporary.unlink()
+
+
+def check_place(path: Path) -> None:
+    """Find out whether `whole_file` could write there, without leaving a trace.
+
+    Raises:
+        OutputError: a folder of that name, or a folder that is not there or read-only.
+    """
+    place = Path(os.path.realpath(path))
+    if place.is_dir():
+        raise OutputError(f"{path}: is a folder; name a file in it")
+    trial = place.with_name(f".{place.name[:LONGEST]}.{os.getpid()}.part")
+    try:
+        trial.open("xb").close()
+        trial.unlink()
+    except (OSError, ValueError) as error:
+        raise OutputError(
+            f"{path}: cannot write there ({getattr(error, 'strerror', None) or error}); choose another place"
+        ) from None
+
+
+def remove_leftovers(path: Path) -> None:
+    """Remove what processes that are no more left of writing ``path``."""
+    if os.name != "posix":  # elsewhere asking for a process may end it
+        return
+    place = Path(os.path.realpath(path))
+    pattern = re.compile(rf"\.{re.escape(place.name[:LONGEST])}\.(\d+)\.part")
+    with suppress(OSError), os.scandir(place.parent) as entries:
+        for entry in entries:
+            found = pattern.fullmatch(entry.name)
+            if found and not _alive(int(found[1])):
+                with suppress(OSError):
+                    os.unlink(entry.path)
+
+
+def _alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True
+
+
+def _settle(folder: Path) -> None:
+    """Have the new name on the disk too, where the system can."""
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

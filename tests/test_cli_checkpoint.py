@@ -1,0 +1,257 @@
+"""Checkpoints, SIGTERM and full disks on the command line."""
+
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+from radiosity.cli import checkpoints, main
+from radiosity.engine import checkpoint as engine_checkpoints
+from radiosity.image import tables
+
+RUN = ("solve", "room", "--cells", "2", "--quanta", "300k", "--replicates", "2")
+PROGRAM = """
+import resource, sys
+from radiosity.cli import checkpoints, main
+from radiosity.engine import checkpoint
+checkpoint.TIMES = checkpoint.EVERY = checkpoints.MINUTE = 0
+sys.exit(main())
+"""
+
+
+def run(capsys, *arguments):
+    status = main([str(argument) for argument in arguments])
+    out, err = capsys.readouterr()
+    return status, out, err
+
+
+@pytest.fixture
+def soon(monkeypatch):
+    """Checkpoints that nobody asked for are written from the first sweep on."""
+    monkeypatch.setattr(checkpoints, "MINUTE", 0.0)
+    monkeypatch.setattr(engine_checkpoints, "TIMES", 0)
+
+
+@pytest.fixture
+def written(monkeypatch):
+    """Paths of the checkpoints that were written."""
+    paths = []
+    save = engine_checkpoints.save
+
+    def watch(solution, path, **options):
+        save(solution, path, **options)
+        paths.append(path.name)
+
+    monkeypatch.setattr(engine_checkpoints, "save", watch)
+    return paths
+
+
+def test_one_lies_beside_the_first_output_and_goes_when_all_is_written(capsys, tmp_path, soon, written):
+    assert run(capsys, *RUN, "-o", tmp_path / "a.csv", tmp_path / "a.ply")[0] == 0
+    assert set(written) == {"a.checkpoint.npz"}
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.ply", "a.surfaces.csv"]
+
+
+def test_a_named_one_goes_too(capsys, tmp_path, monkeypatch, written):
+    monkeypatch.setattr(engine_checkpoints, "TIMES", 0)
+    named = engine_checkpoints.Checkpoint(tmp_path / "c.npz", 0)
+    monkeypatch.setattr(engine_checkpoints, "Checkpoint", lambda path: named)
+    assert run(capsys, *RUN, "--checkpoint", tmp_path / "c.npz")[0] == 0
+    assert set(written) == {"c.npz"}
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("options", [("--no-checkpoint", "-o", "a.csv"), ()], ids=["off", "no output"])
+def test_none_is_written_where_none_is_wanted(capsys, tmp_path, monkeypatch, soon, written, options):
+    monkeypatch.chdir(tmp_path)
+    assert run(capsys, *RUN, *options)[0] == 0
+    assert written == []
+
+
+def test_short_runs_write_none(capsys, tmp_path, written):
+    assert run(capsys, *RUN, "-o", tmp_path / "a.csv")[0] == 0
+    assert written == []
+
+
+def test_an_earlier_one_is_pointed_at_and_a_resumed_one_removed(capsys, tmp_path):
+    kept, output = tmp_path / "a.checkpoint.npz", tmp_path / "a.npz"
+    rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), quanta=1000, replicates=2).save(kept)
+    status, _, err = run(capsys, *RUN, "-o", output)
+    assert status == 0
+    assert f"--resume {kept} goes on from" in err
+    assert kept.exists()
+    assert f"--resume {kept} goes on from" in run(capsys, *RUN, "--checkpoint", kept)[2]
+    assert kept.exists()
+    status, _, err = run(capsys, *RUN, "-o", output, "--resume", kept)
+    assert (status, err) == (0, "")
+    assert not kept.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (("--checkpoint", "a.npz", "-o", "a.npz"), "named twice"),
+        (("--checkpoint", "a.npz", "--no-checkpoint"), "exclude each other"),
+        (("--checkpoint", "a.csv"), r"is an \.npz file"),
+        (("--checkpoint", "file/a.npz"), "cannot write there"),
+        (("--checkpoint", "a.npz", "--method", "hierarchical"), "nothing to go on from"),
+    ],
+    ids=str,
+)
+def test_a_bad_one_is_refused_before_the_run(capsys, tmp_path, monkeypatch, options, reason):
+    monkeypatch.chdir(tmp_path)
+    Path("file").write_text("")
+    monkeypatch.setattr(rd, "solve", lambda *_, **__: pytest.fail("it ran"))
+    status, out, err = run(capsys, "solve", "room", *options)
+    assert (status, out) == (2, "")
+    assert re.fullmatch(rf"radiosity: error: .*{reason}.*\n", err)
+
+
+def heard_by_default():
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a test run in the background may have it ignored
+
+
+def started(*arguments) -> subprocess.Popen:
+    return subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        preexec_fn=heard_by_default,
+    )  # fmt: skip
+
+
+def appears(path: Path, process: subprocess.Popen) -> None:
+    """Wait until it does."""
+    while not path.exists():
+        try:
+            process.wait(0.02)
+        except subprocess.TimeoutExpired:
+            continue
+        pytest.fail(f"ended before {path.name} was there: {process.communicate()}")
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+def test_signals_leave_the_state(tmp_path, number, status):
+    kept, output = tmp_path / "room.checkpoint.npz", tmp_path / "room.csv"
+    arguments = ("solve", "room", "--cells", "2", "--replicates", "2", "--rays", "1G", "-o", output)
+    process = started(*arguments)
+    appears(kept, process)
+    process.send_signal(number)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == status
+    assert err == f"radiosity: interrupted: stopped before the end; --resume {kept} goes on from there\n"
+    found = rd.load_solution(kept)
+    assert found.status == "interrupted"
+    lines = found.state["fired"].sum()
+    cut = found.patches
+    more = rd.solve(cut, quanta=max(int(found.state["quanta"]), 1 << 19), replicates=2, resume=found)
+    assert more.rays >= lines > 0
+    assert np.array_equal(more.irradiance, rd.solve(cut, quanta=more.quanta, replicates=2).irradiance)
+
+
+def test_sigterm_outside_of_a_run(tmp_path):
+    """While there is nothing to keep: one line, and the status that shells give."""
+    code = "import sys, os, signal, time\nimport radiosity as rd\nfrom radiosity.cli import main\n" \
+           "rd.load_scene = lambda *_, **__: (os.kill(os.getpid(), signal.SIGTERM), time.sleep(5))\n" \
+           "sys.exit(main(['solve', 'room']))"  # fmt: skip
+    for before in ("", "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n"):  # as in the background of a shell
+        done = subprocess.run([sys.executable, "-c", before + code], capture_output=True, text=True)
+        assert done.returncode == 143
+        assert re.fullmatch("radiosity: interrupted: .*\n", done.stderr)
+
+
+def test_a_library_leaves_sigterm_alone():
+    before = signal.getsignal(signal.SIGTERM)
+    seen = []
+    rd.solve(rd.load_scene("room"), quanta=10, replicates=1, progress=lambda state: seen.append(signal.getsignal(signal.SIGTERM)))
+    assert set(seen) == {before}
+
+
+def test_failing_outputs_leave_the_solution_in_the_checkpoint(capsys, monkeypatch, tmp_path):
+    def fail(*_):
+        raise OSError("the disk is full")
+
+    monkeypatch.setattr(tables, "write", fail)
+    status, out, err = run(capsys, *RUN, "-o", tmp_path / "a.csv", tmp_path / "a.ply")
+    kept = tmp_path / "a.checkpoint.npz"
+    assert status == 2
+    assert f"wrote {tmp_path / 'a.ply'}" in out
+    assert f"the solution was kept in {kept} (make room, then --resume it)" in err
+    monkeypatch.undo()
+    status, out, err = run(capsys, *RUN, "-o", tmp_path / "a.csv", "--resume", kept)
+    assert (status, err) == (0, "")
+    assert not kept.exists()
+
+
+def test_an_interruption_while_outputs_are_written_names_the_checkpoint(capsys, monkeypatch, tmp_path, soon):
+    kept, output = tmp_path / "a.checkpoint.npz", tmp_path / "a.csv"
+    whole = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), quanta=300_000, replicates=2)
+    with monkeypatch.context() as patch:
+        patch.setattr(rd.Solution, "export", lambda *_, **__: signal.raise_signal(signal.SIGINT))
+        status, _, err = run(capsys, *RUN, "-o", output)
+    assert status == 130
+    assert err == f"radiosity: interrupted: stopped before the end; --resume {kept} goes on from there\n"
+    found = rd.load_solution(kept)
+    assert (found.status, found.rays) == ("complete", whole.rays)
+    assert np.array_equal(found.irradiance, whole.irradiance)
+    assert run(capsys, *RUN, "-o", output, "--resume", kept)[0] == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.surfaces.csv"]
+
+
+FULL_DISK = """
+import resource, sys
+from radiosity.cli import checkpoints, main
+from radiosity.engine import checkpoint
+import radiosity as rd
+if sys.argv.pop(1) == "after a checkpoint":
+    checkpoint.TIMES = checkpoints.MINUTE = 0
+solve, most = rd.solve, 12_000
+
+def filled(*arguments, **options):
+    solution = solve(*arguments, **options)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))  # Python ignores SIGXFSZ: a write fails, as on a full disk
+    return solution
+
+rd.solve = filled
+sys.exit(main())
+"""
+
+
+@pytest.mark.parametrize("when", ["after a checkpoint", "without one"])
+def test_a_disk_that_is_full_in_the_end(tmp_path, when):
+    """Small outputs are written, large ones named, and so is the checkpoint that there is room to go on from."""
+    pytest.importorskip("resource")
+    large, small, kept = tmp_path / "a.npz", tmp_path / "a.csv", tmp_path / "a.checkpoint.npz"
+    done = subprocess.run(
+        [sys.executable, "-c", FULL_DISK, when, *RUN, "-o", str(large), str(small)], capture_output=True, text=True
+    )
+    assert done.returncode == 2
+    assert f"wrote {small}" in done.stdout
+    assert done.stderr.count("\n") == 1
+    assert f"{large}: cannot be written (File too large)" in done.stderr
+    assert small.exists()
+    assert not large.exists()
+    assert kept.exists() == (when == "after a checkpoint")
+    if not kept.exists():
+        assert "there was no place for the solution either; make room, and solve the scene again" in done.stderr
+        return
+    assert f"go on with --resume {kept}" in done.stderr
+    found = rd.solve(rd.load_solution(kept).patches, quanta=300_000, replicates=2, resume=rd.load_solution(kept))
+    whole = rd.solve(found.patches, quanta=300_000, replicates=2)
+    assert np.array_equal(found.irradiance, whole.irradiance)
+
+
+def test_where_nothing_can_be_written_it_says_so(capsys, monkeypatch, tmp_path):
+    def fail(*_, **__):
+        raise rd.OutputError("x: cannot be written (No space left on device)")
+
+    monkeypatch.setattr(rd.Solution, "export", fail)
+    monkeypatch.setattr(rd.Solution, "save", fail)
+    status, _, err = run(capsys, *RUN, "-o", tmp_path / "a.npz")
+    assert status == 2
+    assert err.count("\n") == 1
+    assert "no place for the solution" in err

@@ -1,0 +1,78 @@
+"""Discretisation error apart from sampling error."""
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+from radiosity.cli.app import run as command
+from radiosity.patches.nesting import halved, parents
+
+
+@pytest.mark.parametrize(("name", "cells"), [("room", 3), ("cornell-box", 2)])
+def test_children_fill_their_parents(name, cells):
+    coarse = rd.subdivide(rd.load_scene(name), cells=cells)
+    fine = halved(coarse)
+    parent = parents(fine, coarse)
+    assert (np.bincount(parent) == 4).all()
+    assert np.bincount(parent, fine.area) == pytest.approx(coarse.area)
+    middle = np.stack([np.bincount(parent, fine.area * axis) for axis in fine.centroid.T], axis=1) / coarse.area[:, None]
+    assert middle == pytest.approx(coarse.centroid, abs=1e-12)
+
+
+def test_backs_have_parents_of_their_own():
+    scene = rd.Scene.from_arrays([[0, 0, 0], [2, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.5, 1.0, two_sided=True)
+    coarse = rd.subdivide(scene, cells=3)
+    fine = halved(coarse)
+    parent = parents(fine, coarse)
+    assert np.array_equal(coarse.is_back[parent], fine.is_back)
+    assert (np.bincount(parent) == 4).all()
+
+
+def test_a_furnace_has_no_discretisation_error():
+    """Its solution is one everywhere on any mesh: all change is noise, and the check says so."""
+    found = rd.refine_check(rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1), rays=2_000_000)
+    apart = found.change / found.change_error
+    assert np.mean(apart**2) < 2.5  # of Student's squares with seven degrees and more: 1.4 or less
+    assert np.abs(found.change).max() > 0
+    row = found.table()[0]
+    assert row["discretisation"] < 2 * row["sampling"]
+    assert row["within"] < 2 * row["sampling"]
+
+
+def test_errors_of_the_room_fall_with_the_patches():
+    rows = [rd.refine_check(rd.subdivide(rd.load_scene("room"), cells=k), rays=3_000_000).table()[0] for k in (2, 6)]
+    assert rows[1]["within"] < 0.6 * rows[0]["within"]  # 0.44 where it falls with h^0.75
+    assert rows[1]["discretisation"] < rows[0]["discretisation"]
+    assert rows[1]["sampling"] < 0.3 * rows[1]["discretisation"]
+
+
+def test_it_finds_the_known_error_of_a_mesh():
+    """Against a mesh of four times as many cells along each edge."""
+    coarse = rd.subdivide(rd.load_scene("room"), cells=1)
+    finest = rd.subdivide(rd.load_scene("room"), cells=8)
+    truth = rd.solve(finest, rays=20_000_000).radiosity
+    of = parents(finest, coarse)
+    mean = np.bincount(of, finest.area * truth[:, 0]) / coarse.area
+    found = rd.refine_check(coarse, rays=4_000_000)
+    exact = np.sqrt(coarse.area @ (mean - found.coarse.radiosity[:, 0]) ** 2)
+    stated = np.sqrt(coarse.area @ np.maximum(found.square_of_means[:, 0], 0))
+    assert 0.5 < stated / exact < 2
+    within = np.sqrt(finest.area @ (truth[:, 0] - mean[of]) ** 2)
+    assert 0.5 < np.sqrt(coarse.area @ np.maximum(found.square_within[:, 0], 0)) / within < 2
+
+
+@pytest.mark.parametrize(("choices", "says"), [({"replicates": 1}, "2 or more"), ({"method": "full-matrix"}, "baselines")])
+def test_what_cannot_be_checked(choices, says):
+    with pytest.raises(rd.MethodError, match=says):
+        rd.refine_check(rd.load_scene("room"), **choices, rays=1000)
+
+
+def test_on_the_command_line(tmp_path, capsys):
+    out = tmp_path / "a.csv"
+    assert command(["solve", "room", "--cells", "2", "--rays", "300k", "--refine-check", "-o", str(out)]) == 0
+    assert "the whole scene" in capsys.readouterr().out
+    lines = (tmp_path / "a.refine.csv").read_text().splitlines()
+    assert lines[0] == "surface,patches,sampling,discretisation,within,change"
+    assert len(lines) == 1 + 1 + 9
+    assert command(["solve", "room", "--refine-check", "--resume", str(out)]) == 2
+    assert "--resume" in capsys.readouterr().err

@@ -1,0 +1,172 @@
+"""View factors that are known exactly, and scenes to measure them in: black surfaces, of which one emits."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+import radiosity as rd
+
+from .closed_forms import offset_rectangles, rectangles, round, strings
+from .shapes import Facets, ball, disc, moved, quad, ring, scene, tube, turned
+
+LONG = 400.0  # over the width: how long "infinitely long" bodies are; the emitter is a piece of length one in the middle
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """Attributes:
+    name: what is where.
+    exact: the view factor from the emitter to the receiver.
+    build: its scene for a number of facets (ignored by flat ones); surface 0 emits, ``receiver`` receives.
+    facets: of the coarser of two meshes, of which the finer has twice as many along an edge; None: the scene is the thing itself.
+    receiver: surface.
+    bound: of what else the scene differs from the thing, in F.
+    flat: the emitter is one patch.
+    """
+
+    name: str
+    exact: float
+    build: Callable[[int], rd.Scene]
+    facets: int | None = None
+    receiver: int = 1
+    bound: float = 0.0
+    flat: bool = False
+
+
+def _facing(emitter: Facets, receiver: Facets) -> rd.Scene:
+    return scene(("emitter", 0.0, 1.0, emitter), ("receiver", 0.0, 0.0, receiver))
+
+
+def _flat(name: str, exchange: float, emitter: np.ndarray, receiver: np.ndarray) -> Configuration:
+    area = np.linalg.norm(np.cross(emitter[1] - emitter[0], emitter[-1] - emitter[0]))
+    return Configuration(name, float(exchange / area), lambda _: _facing([emitter], [receiver]), flat=True)
+
+
+def _hinged(angle: float, one: float, other: float) -> tuple[np.ndarray, np.ndarray]:
+    """Rectangles with a common edge of length one along y, and an angle between them."""
+    up = np.array([np.cos(angle), 0, np.sin(angle)])
+    return quad((0, 0, 0), (one, 0, 0), (0, 1, 0)), quad((0, 0, 0), (0, 1, 0), other * up)
+
+
+def _long(bottom: tuple, top: tuple, *others) -> rd.Scene:
+    """Segments ((x, z), (x, z)) extruded along y; of the first a piece in the middle emits. Fronts are on the left of their
+    direction."""
+
+    def wall(ends, length):
+        (a, b), (c, d) = ends
+        return quad((a, -length / 2, b), (c - a, 0, d - b), (0, length, 0))
+
+    parts = [("emitter", 0.0, 1.0, [wall(bottom, 1.0)]), ("receiver", 0.0, 0.0, [wall(top, LONG)])]
+    return scene(*parts, *((f"other {i}", 0.0, 0.0, [wall(o, LONG)]) for i, o in enumerate(others)))
+
+
+def _ends(reach: float) -> float:
+    """Largest share of cosine lines that leave a long body's middle and go farther along it than its half length before they
+    have gone ``reach`` across: of a line's direction cosine along y, 1 - sin is at most half the square of the ratio."""
+    return (reach / (LONG / 2 - 0.5)) ** 2 / 2
+
+
+def flat() -> list[Configuration]:
+    """Rectangles, exactly as they are."""
+    hinge_60, hinge_135 = _hinged(np.pi / 3, 1.0, 0.8), _hinged(3 * np.pi / 4, 0.7, 1.2)
+    spans = ((0, 1), (0, 1), (0.6, 2.0), (0.5, 1.3))
+    apart = ((0.2, 1.0), (0, 1), (0.1, 0.9), (0.3, 1.6))
+    return [
+        _flat("opposed rectangles 2 x 1 at 0.7 (C-11)", 0.49 * rectangles.parallel(2 / 0.7, 1 / 0.7),
+              quad((0, 0, 0), (2, 0, 0), (0, 1, 0)), quad((0, 0, 0.7), (0, 1, 0), (2, 0, 0))),
+        _flat("opposed squares of a cube (C-11)", rectangles.parallel(1, 1), quad((0, 0, 0), (1, 0, 0), (0, 1, 0)),
+              quad((0, 0, 1), (0, 1, 0), (1, 0, 0))),
+        _flat("rectangles square on each other, common edge (C-14)", rectangles.perpendicular(0.8, 1.5),
+              *_hinged(np.pi / 2, 0.8, 1.5)),
+        _flat("rectangles at 60°, common edge (C-16)", rectangles.inclined(1.0, 0.8, np.pi / 3), *hinge_60),
+        _flat("rectangles at 135°, common edge (C-16)", rectangles.inclined(0.7, 1.2, 3 * np.pi / 4), *hinge_135),
+        _flat("parallel rectangles, offset", offset_rectangles.parallel(*spans, 0.8), quad((0, 0, 0), (1, 0, 0), (0, 1, 0)),
+              quad((0.6, 0.5, 0.8), (0, 0.8, 0), (1.4, 0, 0))),
+        _flat("rectangles square on each other, apart and offset", offset_rectangles.perpendicular(*apart),
+              quad((0.2, 0, 0), (0.8, 0, 0), (0, 1, 0)), quad((0, 0.3, 0.1), (0, 1.3, 0), (0, 0, 0.8))),
+    ]  # fmt: skip
+
+
+def convex() -> list[Configuration]:
+    """A convex body in another, or on its own base: ratios of areas, exact also of the facets."""
+    corners = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], float)
+    faces = [corners[[1, 3, 2]], corners[[0, 2, 3]], corners[[0, 3, 1]], corners[[0, 1, 2]]]
+    inward = [f if np.linalg.det(f) < 0 else f[::-1] for f in faces]
+    inner, outer = ball(1.0, 3), turned(ball(2.0, 3))
+    cone = [(f + np.array([(0, 0, 1.5), (0, 0, 0), (0, 0, 0)]))[::-1] for f in disc(1.0, 0.0, 24)]
+    box = [quad((-2, -2, -2), (4, 0, 0), (0, 4, 0)), quad((-2, -2, 2), (0, 4, 0), (4, 0, 0)),
+           quad((-2, -2, -2), (0, 0, 4), (4, 0, 0)), quad((-2, 2, -2), (4, 0, 0), (0, 0, 4)),
+           quad((-2, -2, -2), (0, 4, 0), (0, 0, 4)), quad((2, -2, -2), (0, 0, 4), (0, 4, 0))]  # fmt: skip
+
+    def ratio(one: Facets, other: Facets) -> float:
+        return _area(one) / _area(other)
+
+    return [
+        Configuration("regular tetrahedron, a side to another", 1 / 3,
+                      lambda _: scene(("emitter", 0.0, 1.0, inward[:1]), ("receiver", 0.0, 0.0, inward[1:2]),
+                                      ("rest", 0.0, 0.0, inward[2:])), flat=True),
+        Configuration("concentric spheres, inner to outer", 1.0, lambda _: _facing(inner, outer)),
+        Configuration("concentric spheres, outer to inner", ratio(inner, outer), lambda _: _facing(outer, inner)),
+        Configuration("concentric spheres, outer to itself", 1 - ratio(inner, outer), lambda _: _facing(outer, inner),
+                      receiver=0),
+        Configuration("cube to a sphere in it", ratio(inner, box), lambda _: _facing(box, inner)),
+        Configuration("cone's inside to its base", ratio(disc(1.0, 0.0, 24), cone), lambda _: _facing(cone, disc(1.0, 0.0, 24))),
+    ]  # fmt: skip
+
+
+def _area(facets: Facets) -> float:
+    return float(sum(np.linalg.norm(sum(np.cross(a, b) for a, b in zip(f, np.roll(f, -1, axis=0), strict=True))) / 2
+                     for f in facets))  # fmt: skip
+
+
+def long() -> list[Configuration]:
+    """Ducts and strips, 400 widths long, by crossed strings."""
+    a, b, c = (0.0, 0.0), (1.0, 0.0), (0.3, 0.9)
+    sides = [float(np.hypot(p[0] - q[0], p[1] - q[1])) for p, q in ((a, b), (b, c), (c, a))]
+    return [
+        Configuration("long triangular duct, a side to another", strings.triangle(*sides),
+                      lambda _: _long((a, b), (b, c), (c, a)), bound=_ends(1.0), flat=True),
+        Configuration("long opposed strips, offset", strings.crossed(((0, 0), (1, 0)), ((0.5, 0.8), (1.8, 0.8))),
+                      lambda _: _long(((0, 0), (1, 0)), ((1.8, 0.8), (0.5, 0.8))), bound=_ends(2.0), flat=True),
+        Configuration("long opposed strips past a plate between them", strings.past_a_plate(1.0, 1.0, 0.4),
+                      lambda _: _long(((0, 0), (1, 0)), ((1, 1), (0, 1)), ((0.7, 0.5), (0.3, 0.5))), bound=_ends(1.5), flat=True),
+    ]  # fmt: skip
+
+
+def curved() -> list[Configuration]:
+    """Discs, cylinders and spheres of facets, extrapolated over two meshes."""
+
+    def strip(n: int) -> rd.Scene:
+        pipe = [f[:, [0, 2, 1]][::-1] + np.array([0, 0, 1.5]) for f in tube(0.5, -LONG / 2, LONG / 2, n)]
+        return _facing([quad((0.2, -0.5, 0), (1.5, 0, 0), (0, 1, 0))], pipe)
+
+    def pipes(n: int) -> rd.Scene:
+        one, other = tube(1.0, -0.5, 0.5, n), moved(tube(1.0, -LONG, LONG, n), (3.0, 0, 0))
+        return _facing(one, other)
+
+    return [
+        Configuration("coaxial discs (C-41)", round.disc_to_disc(1.0, 0.7, 0.9),
+                      lambda n: _facing(disc(1.0, 0.0, n), turned(disc(0.7, 0.9, n))), 48),
+        Configuration("disc to coaxial ring", round.disc_to_ring(0.8, 0.5, 1.2, 0.6),
+                      lambda n: _facing(disc(0.8, 0.0, n), turned(ring(0.5, 1.2, 0.6, n))), 48),
+        Configuration("ring to coaxial ring", round.ring_to_ring((0.4, 1.0), (0.6, 1.4), 0.5),
+                      lambda n: _facing(ring(0.4, 1.0, 0.0, n), turned(ring(0.6, 1.4, 0.5, n))), 48),
+        Configuration("cylinder, base to inside", round.base_to_wall(1.0, 1.5),
+                      lambda n: _facing(disc(1.0, 0.0, n), turned(tube(1.0, 0.0, 1.5, n))), 48),
+        Configuration("cylinder, inside to itself", round.wall_to_itself(1.0, 1.5),
+                      lambda n: _facing(turned(tube(1.0, 0.0, 1.5, n)), turned(disc(1.0, 1.5, n))), 48, receiver=0),
+        Configuration("coaxial cylinders, outer to inner", round.outer_to_inner(0.5, 1.2, 2.0),
+                      lambda n: _facing(turned(tube(1.2, 0.0, 2.0, n)), tube(0.5, 0.0, 2.0, n)), 48),
+        Configuration("long parallel cylinders", round.cylinder_to_cylinder(1.0), pipes, 48, bound=_ends(3.0) / 4),
+        Configuration("long strip to a parallel cylinder", round.strip_to_cylinder(0.2, 1.7, 1.5, 0.5), strip, 48,
+                      bound=_ends(2.5), flat=True),
+        Configuration("sphere to coaxial disc", round.sphere_to_disc(1.2, 1.0),
+                      lambda n: _facing(ball(0.5, n, (0, 0, 1.0)), disc(1.2, 0.0, 96 * 2 ** (n - 3))), 3),
+        Configuration("sphere to rectangle below its centre at a corner", round.sphere_to_rectangle(2.0, 1.0, 0.8),
+                      lambda n: _facing(ball(0.5, n, (0, 0, 0.8)), [quad((0, 0, 0), (2, 0, 0), (0, 1, 0))]), 3),
+    ]  # fmt: skip
+
+
+def every() -> list[Configuration]:
+    return [*flat(), *convex(), *long(), *curved()]
