@@ -13,6 +13,7 @@ import radiosity as rd
 from radiosity.engine.device import choose, upload
 from radiosity.engine.geometry import Geometry
 from radiosity.engine.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
+from radiosity.engine.tree import REACH
 from radiosity.errors import MethodError
 from radiosity.method.lines import global_lines
 from radiosity.patches import cells
@@ -182,7 +183,7 @@ def test_spans_are_those_that_numpy_finds(kind, passing):
     numbers = spans._numbers.points(index, types.UInt32(0), words, 32)
     make = global_lines.by_two_points if kind == "global" else global_lines.by_disc
     point, direction = (np.array(x, np.float64).T for x in make(numbers, types.Float(spans.radius), types.Array3f))
-    point = (point - 4 * direction) / tree.scale + tree.centre  # well before the scene
+    point = (point - 4 * 2.0**REACH * direction) / tree.scale + tree.centre  # well before the scene
     assert (np.diff(pairs.line.astype(int)) >= 0).all()
     wrong = 0
     for line, crossed in enumerate(all_hits(patches, point, direction)):

@@ -13,6 +13,10 @@ import numpy as np
 from ..scene.model import Scene
 from .device import Device, entered, upload
 
+# Scenes reach from -2^REACH to 2^REACH for the caster. Embree divides by twice a triangle's area seen along a line, and takes
+# no divisor below 1e-18: in a scene of size 1, hits of faces a billionth as long had wrong coordinates.
+REACH = 20
+
 _trees: "WeakKeyDictionary[Scene, dict[str, Tree]]" = WeakKeyDictionary()
 
 
@@ -43,7 +47,7 @@ def tree(scene: Scene, device: Device) -> Tree:
 def _build(scene: Scene, device: Device) -> Tree:
     low, high = scene.bounds
     centre = (low + high) / 2
-    scale = 2.0 ** -np.ceil(np.log2(max((high - low).max() / 2, 1e-300)))
+    scale = 2.0 ** (REACH - np.ceil(np.log2(max((high - low).max() / 2, 1e-300))))
     vertices = ((scene.vertices - centre) * scale).astype(np.float32)
     triangles, _ = primitives(scene)
     with entered(device) as mi:

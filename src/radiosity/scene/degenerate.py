@@ -9,6 +9,10 @@ from .model import Scene
 
 RESOLUTION = 4 * float(np.finfo(np.float32).eps)  # of the distance from the scene's centre: what the ray caster can tell apart
 
+# Twice a face's area over the square of half the scene's extent: where the caster's scene reaches to 2^20 (engine/tree.py),
+# smaller faces are so close to what Embree can divide by, seen along a line, that places of hits would be wrong.
+SMALLEST = 4e-27
+
 
 def leave_out(scene: Scene) -> Scene:
     """See `Scene.without_degenerate_faces`."""
@@ -35,10 +39,12 @@ def leave_out(scene: Scene) -> Scene:
 
 
 def without_area(scene: Scene) -> np.ndarray:
-    """(n_faces,) bool: faces whose height over their longest edge is below the resolution where they lie."""
+    """(n_faces,) bool: faces whose height over their longest edge is below the resolution where they lie, or whose area is below
+    what lines can tell apart beside the size of the scene."""
     _, first, second = scene.frames
     longest = np.max([np.linalg.norm(e, axis=1) for e in (first, second, second - first)], axis=0)
-    height = np.linalg.norm(np.cross(first, second), axis=1) / np.where(longest > 0, longest, 1)
-    centre = scene.bounds.mean(axis=0)
+    doubled = np.linalg.norm(np.cross(first, second), axis=1)
+    height = doubled / np.where(longest > 0, longest, 1)
+    centre, half = scene.bounds.mean(axis=0), np.ptp(scene.bounds, axis=0).max() / 2
     reach = np.abs(scene.vertices[scene.faces[:, :3]] - centre).max(axis=(1, 2))
-    return height <= RESOLUTION * reach
+    return (height <= RESOLUTION * reach) | (doubled <= SMALLEST * half**2)

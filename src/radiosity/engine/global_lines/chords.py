@@ -8,10 +8,11 @@ import numpy as np
 
 from ..device import frozen
 from ..lanes import paired
+from ..tree import REACH
 from .crossing import CODES, ESCAPED, ONE_WAY, PENDING, Crossings
 from .walking import Sink, step
 
-MARGIN = 1e-5  # lines begin this far outside the scene's box, in the caster's units, which make it 2 to 4 long
+MARGIN = 1e-5 * 2.0**REACH  # lines begin this far outside the scene's box, half of which is at most 2^REACH long
 
 
 @dataclass(frozen=True, eq=False)

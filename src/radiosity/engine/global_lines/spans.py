@@ -18,6 +18,7 @@ from ...method.numbers import make
 from .. import quanta as contract
 from ..device import upload
 from ..geometry import EPSILON, Geometry
+from ..tree import REACH
 from .chords import MARGIN, crossing_box, walk
 from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 from .entrance import Entrance
@@ -188,4 +189,4 @@ class Spans:
     @property
     def _box(self) -> np.ndarray:
         """(2, 3) the box, a little wider."""
-        return self._bounds + np.array([[-1.0], [1.0]]) * 4 * EPSILON
+        return self._bounds + np.array([[-1.0], [1.0]]) * 4 * EPSILON * 2.0**REACH
