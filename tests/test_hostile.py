@@ -173,7 +173,7 @@ def test_very_many_surfaces(n):
     unseen = solution.arrivals == 0
     assert unseen.sum() > n  # their zero is no measurement, which the report tells
     report = solution.report()
-    assert f"{unseen.sum()} of them none" in report
+    assert f"{unseen.sum()} of them none (their zero is no measurement)" in report
     assert f"{n + 6} surfaces" in report
 
 

@@ -112,7 +112,7 @@ class Solution:
         return self._relative(np.ones(len(self.patches), bool))
 
     def _relative(self, rows: np.ndarray) -> float:
-        reflected = (self.patches.reflectance * self.irradiance)[rows]
+        reflected = self.patches.reflectance[rows] * self.irradiance[rows]
         fallback = (self.irradiance[rows], self.irradiance_standard_error[rows])
         return relative_error(reflected, self.standard_error[rows], self.patches.area[rows], fallback)
 
