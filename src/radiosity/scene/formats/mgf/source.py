@@ -66,7 +66,7 @@ def _include_statement(
         return faults.add(statement.place, f"'{name}' includes itself")
     if len(above) >= DEEPEST:
         return faults.add(statement.place, f"files include each other more than {DEEPEST} deep")
-    if not Path(name).is_file():
+    if not os.path.isfile(name):
         return faults.add(statement.place, f"included file '{name}' does not exist")
     transformed = len(words) > 2
     if transformed:

@@ -5,6 +5,7 @@ are metres. ``Kd`` times texture times vertex colour (sRGB, as programs write it
 """
 
 from dataclasses import replace
+from os.path import isfile  # False for a name too long, where Path.is_file raises
 from pathlib import Path
 
 import numpy as np
@@ -53,22 +54,15 @@ def _libraries(path: Path, tables: Tables, options: ReadOptions) -> dict[str, Fi
     for text in dict.fromkeys(tables.libraries):
         # a name may hold blanks, and a line may hold several names
         whole = path.parent / text.replace("\\", "/")
-        for file in [whole] if _is_file(whole) else [path.parent / name.replace("\\", "/") for name in text.split()]:
+        for file in [whole] if isfile(whole) else [path.parent / name.replace("\\", "/") for name in text.split()]:
             options.admit(file, path)
-            if _is_file(file):
+            if isfile(file):
                 result.update(read_library(file, options))
             else:
                 lost.append(str(file.name))
     if lost:
         warn(f"{path}: material libraries that do not exist: {shown(lost)}; put them beside the file")
     return result
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except OSError:  # a name too long
-        return False
 
 
 def _part(name: str, material: str, rows, tables, finish: Finish | None) -> Part:
