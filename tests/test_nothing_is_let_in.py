@@ -216,6 +216,19 @@ def test_compressed_solutions_are_still_read(tmp_path):
     assert np.array_equal(rd.load_solution(tmp_path / "b.npz").irradiance, solution.irradiance)
 
 
+def test_characters_that_are_none(tmp_path):
+    """Numpy takes any four bytes for a character; Python fails on it much later, when a name is printed."""
+    rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=2_000).save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as file:
+        arrays = dict(file)
+    codes = np.frombuffer(arrays["meta"].tobytes(), np.uint32).copy()
+    codes[str(arrays["meta"]).index("floor")] = 0x110000
+    arrays["meta"] = np.frombuffer(codes.tobytes(), arrays["meta"].dtype)[0:1].reshape(())
+    np.savez(tmp_path / "b.npz", **arrays)
+    with pytest.raises(rd.SceneError, match="meta is no text"):
+        rd.load_solution(tmp_path / "b.npz")
+
+
 # ---- names ---------------------------------------------------------------------------------------------------------------
 
 NAMES = ["two words", "it's \"quoted\"", "100 %s %d", "-rf", "Größe 壁", "a\nb", "[red]x[/red]", "x\x1b[2J\x07y", "=1+1", "{0}"]

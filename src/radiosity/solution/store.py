@@ -16,6 +16,7 @@ from .validate import validate
 from .whole import whole_file
 
 FORMAT = 1
+LAST_CHARACTER = 0x10FFFF
 SCENE_ARRAYS = (
     "vertices",
     "faces",
@@ -80,7 +81,7 @@ def load_solution(path) -> Solution:
             check_sizes(opened, path)
             with np.load(opened, allow_pickle=False) as file:
                 arrays = {name: file[name] for name in file.files}
-        meta = json.loads(str(arrays["meta"]))
+        meta = json.loads(_text(arrays["meta"]))
         if meta["format"] != FORMAT:
             raise SceneError(f"{path}: written in format {meta['format']}; this version reads {FORMAT}")
         return _restore(arrays, meta)
@@ -95,6 +96,14 @@ def load_solution(path) -> Solution:
             raise
         text = " ".join(str(error).split())[:200]
         raise SceneError(f"{path}: is no solution of this program, or damaged ({text}); solve the scene again") from None
+
+
+def _text(value: np.ndarray) -> str:
+    """Of an array of one text. Numpy takes any four bytes for a character; what Python cannot hold breaks out much later."""
+    native = value.astype(value.dtype.newbyteorder("="))
+    if value.dtype.kind != "U" or value.ndim or (np.frombuffer(native.tobytes(), np.uint32) > LAST_CHARACTER).any():
+        raise ValueError("meta is no text")
+    return str(native)
 
 
 def _restore(arrays: dict, meta: dict) -> Solution:

@@ -38,7 +38,8 @@ def surface_table(solution) -> list[dict]:
     groups = np.split(order, np.cumsum(count)[:-1])
     low, high = solution.surface_interval()
     middle = np.stack([columns[f"irradiance{f' [{name}]' if len(scene.bands) > 1 else ''}"] for name in scene.bands], axis=1)
-    wide = np.divide((high - low) / 2, middle, out=np.full(middle.shape, np.nan), where=middle > 0)
+    with np.errstate(over="ignore"):  # of what is next to nothing
+        wide = np.divide((high - low) / 2, middle, out=np.full(middle.shape, np.nan), where=middle > 0)
     columns["interval"] = np.array([row[~np.isnan(row)].max() if (~np.isnan(row)).any() else np.nan for row in wide])
     columns["error"] = np.array([solution._relative(rows) if len(rows) else np.nan for rows in groups])
     columns["arrivals"] = total(solution.arrivals).astype(np.int64)

@@ -97,7 +97,7 @@ def _paint(paint: Paint, n: int, bands: int) -> None:
 def _scalars(solution: Solution, bands: int) -> None:
     for name, least in (("rays", 0), ("quanta", 0), ("replicates", 1)):
         value = getattr(solution, name)
-        _that(type(value) is int and value >= least, f"{name} that is no whole number from {least}")
+        _that(type(value) is int and least <= value < 2**63, f"{name} that is no whole number from {least}")
     _number("seconds", solution.seconds, least=0)
     _that(isinstance(solution.status, str), "a status that is no text")
     known = isinstance(solution.provenance, dict) and {"method", "seed"} <= set(solution.provenance)
