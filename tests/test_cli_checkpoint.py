@@ -187,7 +187,15 @@ def test_failing_outputs_leave_the_solution_in_the_checkpoint(capsys, monkeypatc
     assert not kept.exists()
 
 
-def test_an_interruption_while_outputs_are_written_names_the_checkpoint(capsys, monkeypatch, tmp_path, soon):
+@pytest.fixture
+def interruptible():
+    """SIGINT is ignored where tests run in the background of a shell."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_an_interruption_while_outputs_are_written_names_the_checkpoint(capsys, monkeypatch, tmp_path, soon, interruptible):
     kept, output = tmp_path / "a.checkpoint.npz", tmp_path / "a.csv"
     whole = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), quanta=300_000, replicates=2)
     with monkeypatch.context() as patch:
