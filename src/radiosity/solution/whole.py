@@ -43,7 +43,7 @@ def whole_file(path: Path):
 
 
 def check_place(path: Path) -> None:
-    """Find out whether `whole_file` could write there, without leaving a trace.
+    """Find out whether `whole_file` could write there, without leaving a trace; what killed processes left is removed.
 
     Raises:
         OutputError: a folder of that name, or a folder that is not there or read-only.
@@ -55,6 +55,7 @@ def check_place(path: Path) -> None:
     try:
         trial.open("xb").close()
         trial.unlink()
+        remove_leftovers(place)
     except (OSError, ValueError) as error:
         raise OutputError(
             f"{path}: cannot write there ({getattr(error, 'strerror', None) or error}); choose another place"
