@@ -27,30 +27,19 @@ RUNS, SLOPE = 100, 0.6
 
 
 def known() -> list[tuple[Case, dict[str, np.ndarray]]]:
-    """Cases, and the true radiosity by equation: two furnaces, and long runs of another seed for the room and an open scene."""
+    """Cases, and the true radiosity by equation: two furnaces, and long runs of another seed for the room and for open plates."""
     found = []
     for name in ("labyrinth-0.5", "labyrinth-0.9"):
         case = cases.maze(name)
         found.append((case, dict.fromkeys(("discrete", "continuous"), cases.ones(case))))
-    room = rd.load_scene("room")
-    for name, patches in (("room", rd.subdivide(room, cells=3)), ("open", rd.subdivide(open_scene(room), cells=4))):
+    for case in (cases.room(3), cases.plates()):
         truth = {}
         for equation in ("discrete", "continuous"):
-            long = rd.solve(patches, rd.Method(equation=equation), rays=REFERENCE, replicates=64, seed=987)
-            print(f"{name}, {equation}: {len(patches)} patches, the reference's error is {long.error:.3%}", flush=True)
+            long = rd.solve(case.patches, rd.Method(equation=equation), rays=REFERENCE, replicates=64, seed=987)
+            print(f"{case.name}, {equation}: {len(case.patches)} patches, the reference's error is {long.error:.3%}", flush=True)
             truth[equation] = long.radiosity[:, 0]
-        found.append((Case(name, patches, None), truth))
+        found.append((case, truth))
     return found
-
-
-def open_scene(room: rd.Scene) -> rd.Scene:
-    """No enclosure: a lit floor, a wall and a lamp, radiating on both sides, the backs duller."""
-    keep = np.isin(room.surface, [room.names.index(name) for name in ("floor", "west wall", "light")])
-    some = room.take(keep)
-    return rd.Scene.from_arrays(
-        some.vertices, some.faces, some.reflectance, some.emission, two_sided=True, back_reflectance=0.3,
-        back_emission=np.zeros((1, 1)), surface=some.surface, names=some.names,
-    )  # fmt: skip
 
 
 def named(name: str) -> rd.Method:

@@ -8,31 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from samples import MTL, OBJ, SQUARE, box_gltf, ply_bytes, ply_text, png, stl_bytes, stl_text
+from samples import MIXED, MTL, OBJ, SQUARE, TOML, TRIANGLES, box_gltf, ply_bytes, ply_text, png, stl_bytes, stl_text
 
 import radiosity as rd
 from radiosity.errors import RadiosityError, RadiosityWarning
-
-TRIANGLES = np.array(SQUARE)[[[0, 1, 2], [0, 2, 3]]]
-MIXED = ([0, 1, 2, 3], [0, 1, 4], [4, 3, 2, 1, 0])
-TOML = """
-geometry = ["lamp.stl", {file = "room.ply", unit = "mm", scale = 2.5, name = "room"}]
-unit = "cm"
-photometric = false
-[[surface]]
-name = "lamp*"
-reflectance = [0.1, 0.2, 0.3]
-power = 40
-sides = 1
-[[surface]]
-name = "room"
-reflectance = 0.5
-patch_size = 0.1
-[[camera]]
-origin = [0, 1, 2]
-target = [1, 1, 2]
-fov = 50
-"""
 
 
 def _gltf_text() -> bytes:

@@ -6,45 +6,11 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from samples import MGF, XML_BEGIN, XML_END
 
 import radiosity as rd
 
-XML = b"""<scene version="3.0.0"><default name="r" value="0.3"/>
-<sensor type="perspective"><float name="fov" value="45"/><film type="hdrfilm"><integer name="width" value="32"/></film>
-<transform name="to_world"><lookat origin="0,0,5" target="0,0,0" up="0,1,0"/></transform></sensor>
-<bsdf type="twosided" id="w"><bsdf type="diffuse"><rgb name="reflectance" value="$r,.2,.1"/></bsdf></bsdf>
-<shape type="rectangle" id="floor"><ref id="w"/></shape>
-<shape type="obj"><string name="filename" value="mesh.obj"/><ref id="w"/></shape>
-<shape type="cube"><bsdf type="plastic"><spectrum name="diffuse_reflectance" value="400:0.1, 700:0.9"/></bsdf>
-<transform name="to_world"><rotate x="1" angle="20"/><scale value="-2"/></transform></shape>
-<shape type="sphere"><float name="radius" value="2"/><emitter type="area"><rgb name="radiance" value="1,2,3"/></emitter></shape>
-<shape type="cylinder"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance"/></bsdf></shape>
-<emitter type="constant"/></scene>"""
-MGF = b"""# comment
-i part.mgf -a 3 -t 1 0 0
-c red =
-\tcxy 0.6 0.3
-m paint = wall
-\tc red
-\trd 0.4
-\ted 20
-v a =
-\tp 0 0 0
-\tn 0 0 1
-v b =
-\tp 1 0 0
-v c = b
-\tp 1 1 0
-o thing
-xf -rx 30 -s 2 -a 2 -t 0 0 1
-f a b c
-xf
-sph a .5
-ring a 0 1
-prism a b c 1
-cone a 1 b 0
-o
-"""
+XML = XML_BEGIN + XML_END
 PART = b"m wall =\n\tsides 1\n\trd .5\nv q =\n p 0 0 9\nf q q q\n"
 WORDS = [
     *b'nan 1e999 -1 99999999999999999999 < /> " $r $x &x; \xff \0 sphere obj ply serialized bitmap volume mask blendbsdf'.split(),

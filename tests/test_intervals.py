@@ -12,7 +12,7 @@ from scipy import stats
 import radiosity as rd
 from radiosity.lab import cases
 from radiosity.lab.calibration import LEVELS, coverage
-from radiosity.lab.study import Arm, Case
+from radiosity.lab.study import Arm
 from radiosity.solution import intervals
 from radiosity.solution.errors import SURE, inner_products, margin
 
@@ -47,30 +47,17 @@ def test_normal_quantiles_would_be_found_out(monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("lines", [16_000, 500_000])
-@pytest.mark.parametrize("name", ["labyrinth-0.5", "labyrinth-0.9", "room", "open"])
+@pytest.mark.parametrize("name", ["labyrinth-0.5", "labyrinth-0.9", "room", "plates"])
 def test_coverage_of_four_scenes(name, lines):
     if name.startswith("labyrinth"):
         case, truth = cases.maze(name), cases.ones(cases.maze(name))
     else:
-        patches = open_scene() if name == "open" else rd.subdivide(rd.load_scene("room"), cells=3)
-        case, truth = Case(name, patches, None), rd.solve(patches, rays=600_000_000, replicates=64, seed=987).radiosity[:, 0]
+        case = cases.plates() if name == "plates" else cases.room(3)
+        truth = rd.solve(case.patches, rays=600_000_000, replicates=64, seed=987).radiosity[:, 0]
     found = coverage(arm(rd.Method()), case, truth, 1, lines=lines, seeds=200, visited=VISITED)
     for level, (share, _) in zip(LEVELS, found.covered, strict=True):
         if level in NOMINAL:
             assert abs(share - level) < NOMINAL[level], (level, share)
-
-
-def open_scene() -> rd.Patches:
-    """A lit floor, a wall and a lamp that radiate on both sides; half of their patches see no light."""
-    room = rd.load_scene("room")
-    some = room.take(np.isin(room.surface, [room.names.index(name) for name in ("floor", "west wall", "light")]))
-    return rd.subdivide(
-        rd.Scene.from_arrays(
-            some.vertices, some.faces, some.reflectance, some.emission, two_sided=True, back_reflectance=0.3,
-            back_emission=np.zeros((1, 1)), surface=some.surface, names=some.names,
-        ),
-        cells=4,
-    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")

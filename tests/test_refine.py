@@ -5,6 +5,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli.app import run as command
+from radiosity.engine import run
 from radiosity.patches.nesting import halved, parents
 
 
@@ -59,6 +60,15 @@ def test_it_finds_the_known_error_of_a_mesh():
     assert 0.5 < stated / exact < 2
     within = np.sqrt(finest.area @ (truth[:, 0] - mean[of]) ** 2)
     assert 0.5 < np.sqrt(coarse.area @ np.maximum(found.square_within[:, 0], 0)) / within < 2
+
+
+def test_of_runs_whose_last_stage_was_left_unfinished(monkeypatch):
+    """Time is up within a second stage: what the first one left is read."""
+    monkeypatch.setattr(run, "PATIENCE", -1e9)
+    found = rd.refine_check(rd.subdivide(rd.load_scene("room"), cells=2), seconds=60)
+    assert found.coarse.status == "complete"
+    assert 0 < found.coarse.seconds < 30
+    assert np.isfinite(found.change_error).all()
 
 
 @pytest.mark.parametrize(("choices", "says"), [({"replicates": 1}, "2 or more"), ({"method": "full-matrix"}, "baselines")])

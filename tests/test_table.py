@@ -11,6 +11,7 @@ from methods import METHODS, critical
 from replicates import difference, powers
 
 import radiosity as rd
+from radiosity.lab import cases
 
 RAYS, REPLICATES = 1_500_000, 16
 START_UP = 1e-4  # of the light, that iterations may leave out as they begin (docs/iterations.md); some have no variance here
@@ -23,17 +24,7 @@ def room():
 
 @pytest.fixture(scope="module")
 def plates():
-    """No enclosure: a lit floor, a shelf and two crossing walls, radiating on both sides, the backs duller."""
-    scene = rd.load_scene("room")
-    keep = np.isin(scene.surface, [scene.names.index(name) for name in ("floor", "west wall", "light")])
-    lit = scene.take(keep)
-    return rd.subdivide(
-        rd.Scene.from_arrays(
-            lit.vertices, lit.faces, lit.reflectance, lit.emission, two_sided=True, back_reflectance=0.3,
-            back_emission=np.zeros((1, 1)), surface=lit.surface, names=lit.names,
-        ),
-        cells=4,
-    )  # fmt: skip
+    return cases.plates().patches
 
 
 REFERENCES = {"discrete": rd.Method(), "continuous": rd.Method(equation="continuous")}

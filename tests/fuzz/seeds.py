@@ -15,67 +15,29 @@ from random import Random
 
 import numpy as np
 from mutate import mutated
-from samples import MTL, OBJ, SQUARE, box_gltf, ply_bytes, ply_text, png, stl_bytes, stl_text
+from samples import (
+    MGF,
+    MIXED,
+    MTL,
+    OBJ,
+    SQUARE,
+    TOML,
+    TRIANGLES,
+    XML_BEGIN,
+    XML_END,
+    box_gltf,
+    ply_bytes,
+    ply_text,
+    png,
+    stl_bytes,
+    stl_text,
+)
 
-TRIANGLES = np.array(SQUARE)[[[0, 1, 2], [0, 2, 3]]]
-MIXED = ([0, 1, 2, 3], [0, 1, 4], [4, 3, 2, 1, 0])
 TEXTURED = OBJ.replace("usemtl white", "usemtl light").replace("f -4 -3 -2 -1", "f -4/1 -3/2 -2/3 -1/4")
-TOML = """geometry = ["lamp.stl", {file = "room.ply", unit = "mm", scale = 2.5, name = "room"}]
-unit = "cm"
-photometric = false
-[[surface]]
-name = "lamp*"
-reflectance = [0.1, 0.2, 0.3]
-power = 40
-sides = 1
-[[surface]]
-name = "room"
-reflectance = 0.5
-patch_size = 0.1
-[[camera]]
-origin = [0, 1, 2]
-target = [1, 1, 2]
-fov = 50
-"""
-XML = b"""<scene version="3.0.0"><default name="r" value="0.3"/>
-<sensor type="perspective"><float name="fov" value="45"/><film type="hdrfilm"><integer name="width" value="32"/></film>
-<transform name="to_world"><lookat origin="0,0,5" target="0,0,0" up="0,1,0"/></transform></sensor>
-<bsdf type="twosided" id="w"><bsdf type="diffuse"><rgb name="reflectance" value="$r,.2,.1"/></bsdf></bsdf>
-<shape type="rectangle" id="floor"><ref id="w"/></shape>
-<shape type="obj"><string name="filename" value="mesh.obj"/><ref id="w"/></shape>
-<shape type="cube"><bsdf type="plastic"><spectrum name="diffuse_reflectance" value="400:0.1, 700:0.9"/></bsdf>
-<transform name="to_world"><rotate x="1" angle="20"/><scale value="-2"/></transform></shape>
-<shape type="sphere"><float name="radius" value="2"/><emitter type="area"><rgb name="radiance" value="1,2,3"/></emitter></shape>
-<shape type="cylinder"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance"/></bsdf></shape>
-<shape type="shapegroup" id="g"><shape type="disk"/></shape><shape type="instance"><ref id="g"/></shape>
+XML = XML_BEGIN + b"""<shape type="shapegroup" id="g"><shape type="disk"/></shape><shape type="instance"><ref id="g"/></shape>
 <shape type="ply"><string name="filename" value="mesh.ply"/></shape>
 <shape type="rectangle"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="wall.png"/>
-</texture></bsdf></shape><emitter type="constant"/></scene>"""
-MGF = b"""# comment
-i part.mgf -a 3 -t 1 0 0
-c red =
-\tcxy 0.6 0.3
-m paint = wall
-\tc red
-\trd 0.4
-\ted 20
-v a =
-\tp 0 0 0
-\tn 0 0 1
-v b =
-\tp 1 0 0
-v c = b
-\tp 1 1 0
-o thing
-xf -rx 30 -s 2 -a 2 -t 0 0 1
-f a b c
-xf
-sph a .5
-ring a 0 1
-prism a b c 1
-cone a 1 b 0
-o
-"""
+</texture></bsdf></shape>""" + XML_END
 PART = b"m wall =\n\tsides 1\n\trd .5\nv q =\n p 0 0 9\nv r =\n p 1 0 9\nv s =\n p 0 1 9\nf q r s\n"
 
 

@@ -188,12 +188,13 @@ def solve(
     checked = None
     try:
         with bar() as progress:
-            options = {**asked, "error_of": error_of, "seed": seed, "device": device, "progress": progress, "memory": memory}
+            options = {**asked, "error_of": error_of, "seed": seed, "device": device, "progress": progress}
+            options |= {"replicates": replicates, "memory": memory}
             if refine_check:
-                checked = rd.refine_check(patches, chosen, replicates=8 if replicates is None else replicates, **options)
+                checked = rd.refine_check(patches, chosen, **options)
                 solution = checked.coarse
             else:
-                solution = rd.solve(patches, chosen, **options, replicates=replicates, resume=before, checkpoint=keeper)
+                solution = rd.solve(patches, chosen, **options, resume=before, checkpoint=keeper)
         print(solution.report())
         if checked is not None:
             print(f"\n{checked.report()}")

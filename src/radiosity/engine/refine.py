@@ -6,28 +6,34 @@ fall as patches shrink, and what replicates say of either's noise is taken out.
 """
 
 from dataclasses import replace
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from ..errors import MethodError
 from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..patches.nesting import halved, parents
 from ..scene.model import Scene
+from ..solution.errors import mean_and_error
+from ..solution.model import Solution
 from ..solution.refinement import RefineCheck
 from .baseline_budget import cut_for
 from .memory import limited
 
+if TYPE_CHECKING:
+    from .run import Run
+
+RUN = ("rays", "seconds", "error", "error_of", "quanta", "replicates", "seed", "device", "progress")
+APART = 1 << 20  # between the seeds of the two runs, so that their errors are independent
+
 
 def refine_check(
-    scene: Scene | Patches, method: str | Method | Baseline = "random-walk", *, replicates: int = 8,
-    memory: str | float | None = None, **choices,
-) -> RefineCheck:  # fmt: skip
+    scene: Scene | Patches, method: str | Method | Baseline = "random-walk", *, memory: str | float | None = None, **choices
+) -> RefineCheck:
     """Solve on the patches, and on four times as many with as many lines a patch.
 
     Args:
-        scene, method, replicates, memory, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first
-            run, and the second takes four times as many of the first two, as much time, or the same ``error``.
+        scene, method, memory, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first run, and the
+            second takes four times as many of the first two, as much time, or the same ``error``.
 
     Raises:
         MethodError: as of `solve`, or fewer than 2 replicates: then nothing tells noise from change. SceneError: patches too
@@ -38,24 +44,27 @@ def refine_check(
     chosen = resolve(method, **{k: v for k, v in choices.items() if k not in RUN})
     if isinstance(chosen, Baseline):
         raise MethodError("a refine check needs errors from replicates, which baselines have none of; cut the scene finer")
-    if replicates < 2:
-        raise MethodError(f"replicates is {replicates}; a refine check needs 2 or more, to tell noise from change")
+    options = {k: v for k, v in choices.items() if k in RUN}
+    if options.get("replicates") == 1:
+        raise MethodError("replicates is 1; a refine check needs 2 or more, to tell noise from change")
     coarse = subdivide(scene, **cut_for(chosen)) if isinstance(scene, Scene) else scene
     fine = halved(coarse)
-    options = {k: v for k, v in choices.items() if k in RUN} | {"replicates": replicates}
     more = {k: 4 * v for k, v in options.items() if k in ("rays", "quanta") and v is not None}
     seed = options.get("seed", 0)
     with limited(memory):
-        one = prepared(coarse, chosen, **options).solve()
+        one = _finished(prepared(coarse, chosen, **options))
         second = prepared(fine, chosen, **(options | more | {"seed": seed + APART}))
-        other = second.solve()
+        second.keeps_state = True
+        other = _finished(second)
+    assert second.snapshot is not None
     parent = parents(fine, coarse)
-    if second.snapshot is None or other.status == "interrupted" or one.status == "interrupted":
-        raise KeyboardInterrupt
     received = second.snapshot.sums(parent, len(coarse))[1] / coarse.area[:, None]  # (replicates, n_coarse, n_bands)
-    error = received.std(axis=0, ddof=1) / np.sqrt(replicates)
+    _, error = mean_and_error(received)
     return RefineCheck(replace(one, state={}), replace(other, state={}), parent, error)
 
 
-RUN = ("rays", "seconds", "error", "error_of", "quanta", "seed", "device", "progress")
-APART = 1 << 20  # between the seeds of the two runs, so that their errors are independent
+def _finished(run: "Run") -> Solution:
+    solution = run.solve()
+    if solution.status == "interrupted":
+        raise KeyboardInterrupt
+    return solution

@@ -42,6 +42,7 @@ class Run:
         self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
         self.replicates, self.resume, self.checkpoint = replicates, resume, checkpoint
         self.snapshot: Snapshot | None = None  # of the last complete stage
+        self.keeps_state = False  # the last complete stage is to be read in other ways when the run has ended
         self.seconds_before = 0.0 if resume is None else resume.seconds
         self.problem = Problem.of(patches)
         bands = self.problem.groups.n_groups
@@ -114,7 +115,7 @@ class Run:
                 continue
             target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
             steps = [target]
-            if target and self.replicates > 1:
+            if target and self.replicates > 1 and not self.keeps_state:
                 snapshot.settle()
         if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
             raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")

@@ -6,6 +6,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from ..errors import OutputError, RadiosityError
+from ..solution.whole import reason, refused, try_out
 
 
 def check_writable(path, suffixes) -> Path:
@@ -24,7 +25,7 @@ def check_writable(path, suffixes) -> Path:
     path = Path(path)
     if path.suffix.lower() not in suffixes:
         raise OutputError(f"{path}: unknown output format '{path.suffix}'; known are {', '.join(suffixes)}")
-    try:
+    with refused(path):
         if path.is_dir():
             raise OutputError(f"{path}: is a folder; name a file in it")
         if not path.parent.exists():
@@ -33,13 +34,7 @@ def check_writable(path, suffixes) -> Path:
             raise OutputError(f"{path}: '{path.parent}' is a file, not a folder; choose another place")
         if path.exists() and not os.access(path, os.W_OK):
             raise OutputError(f"{path}: the file is read-only; remove it or choose another name")
-        trial = _beside(path)
-        trial.open("xb").close()  # only trying tells, on network drives and full disks too
-        trial.unlink()
-    except OutputError:
-        raise
-    except (OSError, ValueError) as error:
-        raise OutputError(f"{path}: cannot write there ({_reason(error)}); choose another place") from None
+        try_out(_beside(path))
     return path
 
 
@@ -80,7 +75,7 @@ def replacing(path):
     except RadiosityError:
         raise
     except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({_reason(error)})") from error
+        raise OutputError(f"{path}: cannot be written ({reason(error)})") from error
     finally:
         with suppress(OSError):
             temporary.unlink()
@@ -88,7 +83,3 @@ def replacing(path):
 
 def _beside(path: Path) -> Path:
     return path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
-
-
-def _reason(error: Exception) -> str:
-    return getattr(error, "strerror", None) or str(error)

@@ -8,7 +8,7 @@ from ..engine.problem import Problem
 from ..engine.process import make
 from ..method import Method
 from ..patches import subdivide
-from ..scene import load_scene
+from ..scene import Scene, load_scene
 from .measure import radiosity
 from .study import Case, Protocol
 
@@ -31,6 +31,19 @@ def ones(case: Case) -> np.ndarray:
 def room(cells: int | None = None) -> Case:
     """A box with two boxes and a small light."""
     return Case("room", subdivide(load_scene("room"), cells=cells or CELLS["room"]), None)
+
+
+def plates(cells: int = 4) -> Case:
+    """No enclosure: the room's lit floor, one of its walls and the lamp, radiating on both sides, the backs duller. Half of the
+    patches see no light."""
+    scene = load_scene("room")
+    keep = np.isin(scene.surface, [scene.names.index(name) for name in ("floor", "west wall", "light")])
+    lit = scene.take(keep)
+    both = Scene.from_arrays(
+        lit.vertices, lit.faces, lit.reflectance, lit.emission, two_sided=True, back_reflectance=0.3,
+        back_emission=np.zeros((1, 1)), surface=lit.surface, names=lit.names,
+    )  # fmt: skip
+    return Case("plates", subdivide(both, cells=cells), None)
 
 
 def reference(case: Case, equation: str, protocol: Protocol) -> tuple[np.ndarray, float]:

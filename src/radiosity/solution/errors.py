@@ -2,6 +2,10 @@
 
 import numpy as np
 
+SURE = 0.95  # of runs are to reach the error that was asked for
+BLOCK = 1 << 16  # columns
+MANY = 1e5  # independent patches: more make no difference
+
 
 def mean_and_error(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Mean and standard error of the mean over axis 0 (replicates); the error of a single replicate is unknown: NaN."""
@@ -16,9 +20,6 @@ def mean_and_error(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     for row in values:
         squares += (row - mean) ** 2
     return mean, np.sqrt(squares / (count * (count - 1)))
-
-
-SURE = 0.95  # of runs are to reach the error that was asked for
 
 
 def margin(spread: np.ndarray, replicates: int) -> float:
@@ -53,10 +54,6 @@ def inner_products(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
         part -= part.mean(axis=0)
         total += part @ part.T
     return total
-
-
-BLOCK = 1 << 16
-MANY = 1e5  # independent patches: more make no difference
 
 
 def relative_error(value: np.ndarray, error: np.ndarray, area: np.ndarray, fallback: tuple[np.ndarray, np.ndarray]) -> float:

@@ -92,28 +92,40 @@ def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.nd
     return tuple(np.where(rho == 0, emission, emission + rho * end) for end in (low, high))
 
 
-def of_surfaces(solution, level: float, quantity: str, rows: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """(k, n_bands) each: intervals of area means over k sets of surfaces, given by their numbers; NaN where unknown.
+def of_surfaces(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """See `Solution.surface_interval`."""
+    return _of_means(solution, level, quantity, lambda power: power)
 
-    Each replicate has its own mean over the set, so what patches have in common does not narrow the interval.
+
+def of_scene(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """See `Solution.scene_interval`."""
+    low, high = _of_means(solution, level, quantity, lambda power: power.sum(axis=-2, keepdims=True))
+    return low[0], high[0]
+
+
+def _of_means(solution, level: float, quantity: str, together) -> tuple[np.ndarray, np.ndarray]:
+    """(k, n_bands) each: intervals of area means over k sets of surfaces, NaN where unknown.
+
+    Each replicate has its own mean over a set, so what patches have in common does not narrow the interval.
+
+    Args:
+        together: sums (..., n_surfaces, n_bands) over the surfaces of each set, to (..., k, n_bands).
     """
     _known(quantity)
     patches, n = solution.patches, len(solution.patches.scene.names)
-    area = np.bincount(patches.surface, patches.area, n)
-    shape = (len(rows), patches.emission.shape[1])
+    area = together(np.bincount(patches.surface, patches.area, n)[:, None])
+    area = np.where(area > 0, area, np.nan)  # no patches, no mean
     if solution.surface_power is None:
-        return np.full(shape, np.nan), np.full(shape, np.nan)
-    power = solution.surface_power[0 if quantity == "irradiance" else 1]  # received, or reflected
-    low, high = np.empty(shape), np.empty(shape)
-    for i, some in enumerate(rows):
-        each = power[:, some].sum(axis=1) / area[some].sum()  # (replicates, n_bands)
-        mean, error = mean_and_error(each)
-        half = student(level, len(each)) * error
-        low[i], high[i] = np.maximum(mean - half, 0), mean + half
-        if quantity == "radiosity":
-            here = np.isin(patches.surface, some)
-            emitted = (patches.area[here] @ patches.emission[here]) / area[some].sum()
-            low[i], high[i] = low[i] + emitted, high[i] + emitted
+        unknown = np.full((len(area), patches.emission.shape[1]), np.nan)
+        return unknown, unknown
+    received, reflected = together(solution.surface_power) / area  # (replicates, k, n_bands)
+    mean, error = mean_and_error(received if quantity == "irradiance" else reflected)
+    half = student(level, solution.replicates) * error
+    low, high = np.maximum(mean - half, 0), mean + half
+    if quantity == "radiosity":
+        emitted = [np.bincount(patches.surface, patches.area * band, n) for band in patches.emission.T]
+        emitted = together(np.stack(emitted, axis=1)) / area
+        low, high = low + emitted, high + emitted
     return low, high
 
 

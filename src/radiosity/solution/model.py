@@ -77,9 +77,12 @@ class Solution:
     def few(self) -> np.ndarray:
         """(n_patches,) bool: so few lines landed (fewer than `intervals.FEW`) that the standard error says little, and `interval`
         goes up to a bound from their number. Of baselines, which do not count lines, nowhere."""
-        if "scheme" in self.provenance.get("choices", {}):
-            return np.zeros(len(self.patches), bool)
-        return self.arrivals < intervals.FEW
+        return (self.arrivals < intervals.FEW) & (not self.by_baseline)
+
+    @property
+    def by_baseline(self) -> bool:
+        """It was solved by a method that forms the matrix."""
+        return "scheme" in self.provenance.get("choices", {})
 
     def interval(self, level: float = 0.95, quantity: str = "radiosity") -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper end, (n_patches, n_bands) each, in the solution's unit, of intervals that hold the true value of a
@@ -96,14 +99,11 @@ class Solution:
 
     def surface_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
         """As `interval`, of the area mean over each surface, (n_surfaces, n_bands) each."""
-        rows = [np.array([i]) for i in range(len(self.patches.scene.names))]
-        return intervals.of_surfaces(self, level, quantity, rows)
+        return intervals.of_surfaces(self, level, quantity)
 
     def scene_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
         """As `interval`, of the area mean over the whole scene, (n_bands,) each."""
-        rows = [np.arange(len(self.patches.scene.names))]
-        low, high = intervals.of_surfaces(self, level, quantity, rows)
-        return low[0], high[0]
+        return intervals.of_scene(self, level, quantity)
 
     @cached_property
     def error(self) -> float:

@@ -48,7 +48,7 @@ def _counted(solution) -> str:
 def _error(solution) -> str:
     if solution.quanta == 0:
         return "unknown (no stage is complete yet)"
-    if "scheme" in solution.provenance.get("choices", {}):
+    if solution.by_baseline:
         return "unknown: it is that of the form factors, which replicates do not show"
     if solution.replicates < 2:
         return "unknown (one replicate; from 2 on there are errors)"

@@ -36,7 +36,7 @@ def whole_file(path: Path):
     except OutputError:
         raise
     except (OSError, ValueError) as error:
-        raise OutputError(f"{path}: cannot be written ({getattr(error, 'strerror', None) or error})") from None
+        raise OutputError(f"{path}: cannot be written ({reason(error)})") from None
     finally:
         with suppress(OSError, ValueError):
             temporary.unlink()
@@ -48,18 +48,34 @@ def check_place(path: Path) -> None:
     Raises:
         OutputError: a folder of that name, or a folder that is not there or read-only.
     """
-    place = Path(os.path.realpath(path))
-    if place.is_dir():
-        raise OutputError(f"{path}: is a folder; name a file in it")
-    trial = place.with_name(f".{place.name[:LONGEST]}.{os.getpid()}.part")
-    try:
-        trial.open("xb").close()
-        trial.unlink()
+    with refused(path):
+        place = Path(os.path.realpath(path))
+        if place.is_dir():
+            raise OutputError(f"{path}: is a folder; name a file in it")
+        try_out(place.with_name(f".{place.name[:LONGEST]}.{os.getpid()}.part"))
         remove_leftovers(place)
+
+
+def try_out(trial: Path) -> None:
+    """Make an empty file and remove it: only trying tells, on network drives and full disks too."""
+    trial.open("xb").close()
+    trial.unlink()
+
+
+@contextmanager
+def refused(path):
+    """What the system says against writing ``path``, as an `OutputError`."""
+    try:
+        yield
+    except OutputError:  # an OSError itself, which says all already
+        raise
     except (OSError, ValueError) as error:
-        raise OutputError(
-            f"{path}: cannot write there ({getattr(error, 'strerror', None) or error}); choose another place"
-        ) from None
+        raise OutputError(f"{path}: cannot write there ({reason(error)}); choose another place") from None
+
+
+def reason(error: Exception) -> str:
+    """Without the file's name and the system's number."""
+    return getattr(error, "strerror", None) or str(error)
 
 
 def remove_leftovers(path: Path) -> None:

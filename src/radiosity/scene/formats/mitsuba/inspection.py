@@ -16,8 +16,7 @@ def check(path: Path, options: ReadOptions) -> None:
 
     Raises:
         SceneError: file, line and column of malformed XML, of elements nested so deep that Mitsuba's parser would end the
-        process, of
-            a document type, and of files outside the scene's folder that the parser itself would read.
+            process, of a document type, and of files outside the scene's folder that the parser itself would read.
     """
     _check_file(path, [path.parent.resolve(), Path()], {}, options, 0)
 
