@@ -69,10 +69,15 @@ class Snapshot:
             key: (n_patches,) int, 0 to count - 1.
         """
         groups, found = self.problem.groups, []
+        runs = np.flatnonzero(np.diff(key, prepend=-1))  # of an equal key: few, where patches follow their faces
+
+        def summed(row):
+            return np.bincount(key[runs], np.add.reduceat(row, runs, dtype=np.float64), count)
+
         for group in range(groups.n_groups):
             values, unit = self.tally.irradiance(self.problem, self.state, group)
             rho = groups.reflectance[:, group]
-            found.append([[np.bincount(key, row * weight, count) * unit for row in values] for weight in (1.0, rho)])
+            found.append([[summed(row) * unit for row in values], [summed(row * rho) * unit for row in values]])
         return np.stack([np.array(found[g]) * s for g, s in zip(groups.index, groups.scale, strict=True)], axis=-1)
 
     def _irradiance(self, group: int) -> tuple[np.ndarray, np.ndarray]:
