@@ -1,9 +1,12 @@
 """Checkpoints, SIGTERM and full disks on the command line."""
 
+import os
 import re
+import select
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -114,14 +117,13 @@ def test_a_bad_one_is_refused_before_the_run(capsys, tmp_path, monkeypatch, opti
 
 def heard_by_default():
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # `nohup` ignores it
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a test run in the background may have it ignored
 
 
-def started(*arguments) -> subprocess.Popen:
-    return subprocess.Popen(
-        [sys.executable, "-c", PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        preexec_fn=heard_by_default,
-    )  # fmt: skip
+def started(*arguments, stdout: int = subprocess.PIPE, stderr: int = subprocess.PIPE) -> subprocess.Popen:
+    program = [sys.executable, "-c", PROGRAM, *map(str, arguments)]
+    return subprocess.Popen(program, stdout=stdout, stderr=stderr, text=True, preexec_fn=heard_by_default)
 
 
 def appears(path: Path, process: subprocess.Popen) -> None:
@@ -151,6 +153,23 @@ def test_signals_leave_the_state(tmp_path, number, status):
     more = rd.solve(cut, quanta=max(int(found.state["quanta"]), 1 << 19), replicates=2, resume=found)
     assert more.rays >= lines > 0
     assert np.array_equal(more.irradiance, rd.solve(cut, quanta=more.quanta, replicates=2).irradiance)
+
+
+def test_a_terminal_that_goes_away(tmp_path):
+    """What there is is written, though nobody can be told."""
+    kept, output, (ours, terminal) = tmp_path / "room.checkpoint.npz", tmp_path / "room.csv", os.openpty()
+    arguments = ("solve", "room", "--cells", "2", "--rays", "1G", "-o", output)
+    process = started(*arguments, stdout=terminal, stderr=terminal)
+    os.close(terminal)
+    end = time.monotonic() + 120
+    while not (kept.exists() and rd.load_solution(kept).quanta) and time.monotonic() < end:
+        if select.select([ours], [], [], 0.1)[0]:
+            os.read(ours, 1 << 16)
+    os.close(ours)
+    process.send_signal(signal.SIGHUP)
+    assert process.wait(120) == 128 + signal.SIGHUP
+    assert output.exists()
+    assert rd.load_solution(kept).status == "interrupted"
 
 
 def test_sigterm_outside_of_a_run(tmp_path):

@@ -5,7 +5,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Run ``radiosity`` and return its exit status.
 
     0: done; 1: it could not be done, or `check` and `doctor` found something serious; 2: the input is wrong;
-    130: interrupted, with everything written that was there; 143: likewise by SIGTERM.
+    130: interrupted, with everything written that was there; 143 and 129: likewise by SIGTERM and SIGHUP.
 
     Without ``arguments`` it is the program itself: it takes those of the command line, and Ctrl-C is of no effect after it.
     """

@@ -1,22 +1,25 @@
-"""Ctrl-C at any moment ends the program with one line and status 130; SIGTERM likewise, with status 143.
+"""Ctrl-C at any moment ends the program with one line and status 130; SIGTERM and SIGHUP likewise, with status 143 and 129.
 
 An exception out of a signal handler that goes through a half-done import leaves libraries broken: some swallow it, some
 turn it into another error, and compiled ones may end the process. So an interruption waits until no import is under way.
 """
 
+import os
 import signal
 import threading
 from contextlib import contextmanager
 
 AGAIN = 0.02  # seconds until an interruption that fell into an import is tried again
-INTERRUPTED, TERMINATED = 130, 143
+ENDS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))  # asked to end, terminal gone
 
 
 class _Ears:
-    """The handler of SIGINT and SIGTERM: raises KeyboardInterrupt, but never through an import."""
+    """The handler of SIGINT and `ENDS`: raises KeyboardInterrupt, but never through an import."""
 
     def __init__(self):
-        self.raised = self.terminated = False
+        self.raised = False
+        self.number = int(signal.SIGINT)
+        self.terminals = [number for number in (1, 2) if os.isatty(number)]
         self.timer: threading.Timer | None = None
 
     def __call__(self, number, frame) -> None:
@@ -28,11 +31,19 @@ class _Ears:
         self.timer.daemon = True
         self.timer.start()
 
-    def terminate(self, number, frame) -> None:
-        """SIGTERM does what Ctrl-C does at this moment; where that is ignored, what it would do."""
-        self.terminated = True
+    def end(self, number, frame) -> None:
+        """Does what Ctrl-C does at this moment; where that is ignored, what it would do."""
+        self.number = number
+        if number != signal.SIGTERM:
+            self._speak_to_nobody()
         handler = signal.getsignal(signal.SIGINT)
         (handler if callable(handler) else self)(number, frame)
+
+    def _speak_to_nobody(self) -> None:
+        """The terminal has gone: what is written to it would fail, and nothing after it be done."""
+        with open(os.devnull, "w") as nothing:
+            for number in self.terminals:
+                os.dup2(nothing.fileno(), number)
 
     def cancel(self) -> None:
         if self.timer is not None:
@@ -43,8 +54,8 @@ _ears = _Ears()
 
 
 def status() -> int:
-    """The exit status of an interrupted program."""
-    return TERMINATED if _ears.terminated else INTERRUPTED
+    """The exit status of an interrupted program: 128 and the signal's number, as in shells."""
+    return 128 + _ears.number
 
 
 def answer() -> None:
@@ -54,7 +65,8 @@ def answer() -> None:
 
 @contextmanager
 def heard(*, last: bool):
-    """Take over SIGINT and SIGTERM in the main thread, each unless another handler is set (in the background SIGINT is ignored).
+    """Take over SIGINT and `ENDS` in the main thread, each unless another handler is set (in the background of a shell SIGINT is
+    ignored, by ``nohup`` SIGHUP).
 
     Args:
         last: nothing but the end of the process follows: SIGINT is then ignored, so that the exit status stays.
@@ -63,9 +75,9 @@ def heard(*, last: bool):
     _ears = _Ears()
     here = threading.current_thread() is threading.main_thread()
     interrupts = here and signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    ends = here and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-    if ends:
-        signal.signal(signal.SIGTERM, _ears.terminate)
+    ends = [number for number in ENDS if here and signal.getsignal(number) is signal.SIG_DFL]
+    for number in ends:
+        signal.signal(number, _ears.end)
     if interrupts:
         signal.signal(signal.SIGINT, _ears)
     try:
@@ -74,8 +86,8 @@ def heard(*, last: bool):
         if interrupts:
             signal.signal(signal.SIGINT, signal.SIG_IGN)
         _ears.cancel()
-        if ends:
-            signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        for number in ends:
+            signal.signal(number, signal.SIG_DFL)
         if interrupts and not last:
             signal.signal(signal.SIGINT, signal.default_int_handler)
 
