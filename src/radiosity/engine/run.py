@@ -13,7 +13,7 @@ from ..solution.model import Solution
 from ..solution.without_results import without_results
 from . import demand
 from .baseline_budget import warn_of_missing
-from .budget import FULL, LEAST_QUANTA, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
+from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .device import choose, give_back_memory
 from .geometry import Geometry
@@ -23,11 +23,10 @@ from .progress import Interrupted, Listener, Stop, Teller
 from .snapshot import Snapshot
 from .state import check_same
 from .target import rows_of
+from .trial import few_quanta
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
-ENOUGH = 20.0  # times sqrt(patches): quanta from which on a number of rays is met closely
-TRIAL = 1 << 15  # quanta of that measurement, or an eighth of a replicate's budget
 ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
 LARGE = 1 << 22  # counters: before results are read, memory that sweeps took is given back, which costs some milliseconds
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
@@ -194,24 +193,8 @@ class Run:
             return self.rung
         if self.budget.rays is None or self.budget.rays >= MANY * self.rung * self.replicates:
             return self.rung
-        return self._few_quanta(self.budget.rays / self.replicates)
-
-    def _few_quanta(self, rays: float) -> int:
-        """For a small number of rays a replicate: how many a quantum takes is measured in a run that is thrown away."""
         counted = self.problem.scalar if self.method.machine == "firing" else self.problem
-        process = self._process(counted, 1)
-        trial = max(min(math.ceil(rays), LEAST_QUANTA), min(int(rays) // 8, TRIAL))
-        process.advance(trial, self._tried)
-        lines = process.tally.lines(process.problem, process.capture())
-        found = max(1, round(trial * rays / max(lines, 1)))
-        enough = ENOUGH * math.sqrt(len(self.patches))
-        if found < enough:
-            warnings.warn(
-                f"{self.budget.rays:g} lines give each of {self.replicates} replicates {found} quanta for {len(self.patches)} "
-                f"patches; with fewer than {enough:.0f} their number is met only roughly, and errors are large",
-                RadiosityWarning,
-                stacklevel=6,
-            )
+        found = few_quanta(self.budget.rays, self.replicates, self._process(counted, 1), self._tried)
         return min(self.rung, found)
 
     def _tried(self, count: int) -> None:
