@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity.engine import firing, lanes
 from radiosity.engine.budget import first_stage
+from radiosity.engine.device import choose, upload
 from radiosity.engine.quanta import Source, owed, phases
 
 QUANTA = 40_000
@@ -73,8 +75,6 @@ def test_launches_may_end_anywhere(monkeypatch, colored):
     """A sweep's last launch may hold one line: nothing is counted twice, and nothing that was not fired."""
     from enclosures import cube
 
-    from radiosity.engine import lanes
-
     emission = np.zeros((6, 3 if colored else 1))
     emission[0] = 1.0
     reflectance = [[0.5, 0.4, 0.2]] * 3 + [[0.1, 0.3, 0.6]] * 3 if colored else 0.5
@@ -88,6 +88,37 @@ def test_launches_may_end_anywhere(monkeypatch, colored):
         assert all(book["closes"] for book in (*whole.books, *parts.books))
         assert all(np.array_equal(parts.state[key], whole.state[key]) for key in whole.state)
         assert parts.state["fired"].sum() == parts.state["arrivals"].sum() + parts.state["missed"].sum()
+
+
+@pytest.mark.parametrize("colored", [False, True])
+@pytest.mark.parametrize("each", [2, 8])
+def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, each, colored):
+    """Where lanes are full, where patches fire fewer lines than a lane holds, and where a launch ends in between."""
+    cut = rd.subdivide(rd.load_scene("cornell-box"), cells=2) if colored else patches
+    took, of = [], lanes.Batch.of
+
+    def batch(*arguments):
+        took.append(of(*arguments))
+        return took[-1]
+
+    monkeypatch.setattr(lanes.Batch, "of", batch)
+    monkeypatch.setattr(lanes, "CHUNK", 2**13 + 3)
+    monkeypatch.setattr(lanes, "CORE_CHUNK", 1)
+    one = rd.solve(cut, quanta=2**18, replicates=3)
+    assert {b.each for b in took} == {1}
+    monkeypatch.setattr(firing, "MUCH", 0)
+    monkeypatch.setattr(firing, "EACH", each)
+    monkeypatch.setattr(lanes, "lines_a_lane", lambda *_: each)
+    several = rd.solve(cut, quanta=2**18, replicates=3)
+    assert sum(b.each == each for b in took) > 5
+    assert equal(several.state.values(), one.state.values())
+
+
+def test_half_empty_lanes_are_none():
+    types = choose("cpu").types
+    for counts, each in (([8, 8, 16], 8), ([5, 6, 7], 8), ([1, 1, 1], 1), ([9, 9, 9], 1), ([100, 1, 1], 8), ([1, 0, 0], 1)):
+        numbers = upload(types.UInt32, np.array(counts, np.uint32))
+        assert lanes.lines_a_lane(types, numbers, 8) == each
 
 
 @pytest.mark.parametrize("two_sided", [False, True])

@@ -12,7 +12,8 @@ from radiosity.method.numbers import DIMENSIONS, NUMBERS, WORDS, make
 ALPHA = 1e-4  # of each test, divided by the number of its comparisons
 
 
-def points(name, index, *, patch=0, seed=0, bits=32, zero=False):
+def points(name, index, *, patch=0, seed=0, bits=32, zero=False, turns=None):
+    """Those of each index; or of ``turns`` from each index on, (turns, n, DIMENSIONS)."""
     import drjit as dr
 
     types = choose("cpu").types
@@ -21,8 +22,9 @@ def points(name, index, *, patch=0, seed=0, bits=32, zero=False):
     randomisation = [dr.opaque(types.UInt32, int(word)) for word in drawn]  # no literals: one kernel
     index = np.asarray(index, np.uint32)
     patches = upload(types.UInt32, np.full(len(index), patch, np.uint32))
-    columns = numbers.points(upload(types.UInt32, index), patches, randomisation, bits)
-    return np.stack([np.broadcast_to(np.array(c), len(index)) for c in columns], axis=1)
+    found = numbers.in_turn(upload(types.UInt32, index), patches, randomisation, bits, turns or 1)
+    found = np.stack([np.stack([np.broadcast_to(np.array(c), len(index)) for c in point], axis=1) for point in found])
+    return found[0] if turns is None else found
 
 
 @pytest.mark.parametrize("name", NUMBERS)
@@ -37,6 +39,18 @@ class TestContract:
         for bits in make(name).steps():
             index = np.unique(np.r_[1:200, np.linspace(1, 2**bits - 1, 5000).astype(np.int64)])
             assert np.array_equal(points(name, index, bits=bits), points(name, index, bits=32))
+
+    @pytest.mark.parametrize("turns", [2, 8, 9])
+    def test_points_in_turn_are_those_of_their_indices(self, name, turns):
+        """Also across the carries of every digit, and where an index needs a second pass."""
+        carries = np.unique([base**digits for base in (2, 3, 5, 7, 11) for digits in range(1, 32) if base**digits < 2**31])
+        for bits in make(name).steps():
+            first = np.r_[1:3000, carries, np.random.default_rng(bits).integers(1, 2**bits - turns, 3000)]
+            first = np.unique(np.r_[first, *(carries - back for back in range(1, turns))])
+            first = first[(first > 0) & (first < 2**bits - turns)]
+            found = points(name, first, bits=bits, turns=turns)
+            for turn in range(turns):
+                assert np.array_equal(found[turn], points(name, first + turn))
 
     def test_points_lie_in_the_half_open_cube(self, name):
         x = points(name, np.r_[1:100_000, 2**32 - 1])

@@ -22,6 +22,7 @@ from .lines import land, local_line, patch_of
 DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
 MANY = 2  # at least one in so many patches was landed on: all are looked through
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
+EACH, MUCH = 8, 4_000_000  # lines of a lane, in sweeps of so many lines after as many
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
 
 
@@ -163,21 +164,21 @@ class Engine:
         # a copy of the counters for each thread spares atomic additions, where there are many lines to a counter
         mode = dr.ReduceMode.Expand if dense else dr.ReduceMode.Direct
         landed = []
-        for batch in self.batches(sweep):
+        for batch in self.batches(sweep, 1 if few else self._each(sweep)):
             boxes = boxes_for(types, batch.counts) if self.method.coherent else None
             for chunk in batch.chunks(types):
                 places = self._fire(chunk, 32 if few else bits, boxes, few, dense, mode)
                 if few:
-                    landed.append(frozen(places)[: chunk.lines])
+                    landed.append(frozen(places)[: chunk.lanes])
             dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
             if self.bands is not None:
                 self.bands.count_fired(self, batch)
             dr.eval(self.fired)
         self.everywhere, self.landed = dense, np.concatenate(landed) if few else None
 
-    def batches(self, sweep: Sweep) -> Iterator[Batch]:
-        """Of a sweep."""
-        return sweep.batches(self.types, self._owing, self.record)
+    def batches(self, sweep: Sweep, each: int = 1) -> Iterator[Batch]:
+        """Of a sweep, of ``each`` lines a lane."""
+        return sweep.batches(self.types, self._owing, self.record, each)
 
     def _owing(self, numbers):
         """Lines that patch numbers owe and have fired, as they stood when the sweep was fixed."""
@@ -185,35 +186,52 @@ class Engine:
         arrivals = dr.gather(types.UInt32, self.arrivals_before, numbers)
         return self.owed(numbers, arrivals), dr.gather(types.UInt32, self.fired, numbers)
 
-    def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, dense: bool, mode):
-        number, index, record = chunk.read(self.types, boxes)
-        landed = self.trace(number, index, record, bits, coherent=boxes is not None)
-        real = chunk.real(self.types) if few or chunk.lines < chunk.width else True
-        dr.scatter_add(self.arrivals, self.types.UInt32(1), landed, active=real, mode=mode)
-        if few:
-            dr.schedule(landed)
-        elif not dense:
-            dr.scatter(self.touched, self.types.Bool(True), landed, active=real)
-        if self.bands is not None:
-            self.bands.deposit(self.types, chunk, landed, real, mode)
-        dr.eval(self.arrivals, self.touched)
-        return landed
+    def _each(self, sweep: Sweep) -> int:
+        """Lines of a lane: what those of a patch have in common is found once for all of them. Such kernels take longer to
+        compile, too long for short runs; and a GPU wants more lanes than that would leave."""
+        cpu = self.geometry.device.name == "cpu"
+        many = cpu and not self.method.coherent and sweep.total >= MUCH and self.lines >= MUCH
+        return EACH if many else 1
 
-    def trace(self, number, index, record, bits: int, *, coherent: bool = False):
+    def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, dense: bool, mode):
+        number, first, record = chunk.read(self.types, boxes)
+        replicate = self._replicate(number)
+        points = self.points_in_turn(number, first, replicate, bits, chunk.batch.each)
+        for numbers, real in zip(points, chunk.turns(self.types, first, always=few), strict=True):
+            landed = self._trace(record, numbers, replicate, boxes is not None, real)
+            dr.scatter_add(self.arrivals, self.types.UInt32(1), landed, active=real, mode=mode)
+            if few:
+                dr.schedule(landed)
+            elif not dense:
+                dr.scatter(self.touched, self.types.Bool(True), landed, active=real)
+            if self.bands is not None:
+                self.bands.deposit(self.types, chunk, landed, real, mode)
+        dr.eval(self.arrivals, self.touched)
+        return landed  # of the last turn; few lines have one
+
+    def trace(self, number, index, record, bits: int):
         """Fire the ``index``-th line (from 1) of each patch number: the slot of ``arrivals`` where it lands."""
-        types = self.types
-        replicate = types.UInt32(0) if self.replicates == 1 else self.replicate(number)
-        numbers = self.points(number, index, replicate, bits)
+        replicate = self._replicate(number)
+        return self._trace(record, self.points(number, index, replicate, bits), replicate, False, True)
+
+    def _trace(self, record, numbers, replicate, coherent: bool, active):
         origin, direction = local_line(self.geometry, record, numbers)
-        return self.slot(land(self.geometry, origin, direction, coherent=coherent), replicate)
+        return self.slot(land(self.geometry, origin, direction, coherent=coherent, active=active), replicate)
+
+    def _replicate(self, number):
+        return self.types.UInt32(0) if self.replicates == 1 else self.replicate(number)
 
     def points(self, number, index, replicate, bits: int):
         """The numbers of the ``index``-th line of each patch number."""
+        return self.points_in_turn(number, index, replicate, bits, 1)[0]
+
+    def points_in_turn(self, number, first, replicate, bits: int, turns: int):
+        """Those of so many lines from the ``first`` on."""
         types = self.types
         patch = number if self.replicates == 1 else number - replicate * self.n_opaque
         randomisation = [*dr.gather(types.Array4u, self.randomisation, replicate * 2),
                          *dr.gather(types.Array4u, self.randomisation, replicate * 2 + 1)]  # fmt: skip
-        return self.numbers.points(index, patch, randomisation, bits)
+        return self.numbers.in_turn(first, patch, randomisation, bits, turns)
 
     def slot(self, hit, replicate):
         """The slot of ``arrivals`` for lines of a replicate, from where they land."""

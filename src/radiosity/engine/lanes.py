@@ -1,4 +1,4 @@
-"""One lane a line: which patch fires in which lane, and which of its lines."""
+"""One lane a line, or a few lines: which patch fires in which lane, and which of its lines."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -30,19 +30,23 @@ class Sweep:
     size: int
     total: int
 
-    def batches(self, types, owing, records) -> "Iterator[Batch]":
-        """A piece at a time. For patch numbers ``owing`` gives what each owes in all and has fired, ``records`` two words; no
-        other lines than the batches' are fired until the last one is made."""
+    def batches(self, types, owing, records, each: int = 1) -> "Iterator[Batch]":
+        """A piece at a time, of ``each`` lines a lane where that leaves few lanes half empty. For patch numbers ``owing`` gives
+        what each owes in all and has fired, ``records`` two words; no other lines than the batches' are fired until the last
+        one is made."""
         low = dr.opaque(types.UInt32, self.low)
         for start in range(0, self.size, PIECE):
             width = min(PIECE, few_sizes(self.size - start))
             first = dr.opaque(types.UInt32, start)
-            here = dr.arange(types.UInt32, width) + first
-            inside = here < dr.opaque(types.UInt32, self.size)
-            at = dr.select(inside, here, 0)
+            place = dr.arange(types.UInt32, width) + first
+            inside = place < dr.opaque(types.UInt32, self.size)
+            at = dr.select(inside, place, 0)
             numbers = at + low if self.numbers is None else dr.gather(types.UInt32, self.numbers, at)
             owed, fired = owing(numbers)
-            batch = Batch.of(types, numbers, dr.select(inside, owed - fired, 0), fired, records, first)
+            counts = dr.select(inside, owed - fired, 0)
+            dr.eval(numbers, counts, fired)
+            lines = lines_a_lane(types, counts, each) if each > 1 else 1
+            batch = Batch.of(types, numbers, counts, fired, records, first, lines)
             if batch.total:
                 yield batch
 
@@ -54,37 +58,42 @@ class Batch:
     Attributes:
         numbers: UInt32, patch numbers.
         counts: UInt32, lines each of them fires now, or none.
-        begins: UInt64, lines of all before it.
+        lanes: UInt32, in so many lanes.
+        begins: UInt64, lanes of all before it.
         fired: UInt32, lines each has fired before.
-        entries: UInt32, in fours, all that a lane asks: the number; what turns the how-manieth lane of all into the
-            how-manieth line of the patch (fired + 1 - begins; 32-bit arithmetic goes round, and the sum is right); and the
-            patch's record, see `Geometry.patch_records`.
+        entries: UInt32, in fours, all that a lane asks: the number; what turns the how-manieth lane of all into the first of its
+            lines of the patch (fired + 1 - begins * each; 32-bit arithmetic goes round, and the sum is right); and the patch's
+            record, see `Geometry.patch_records`.
         start: where the piece begins in its sweep, on the device.
-        total: lines of all.
+        total: lanes of all.
+        each: lines of a lane, the last one of a patch excepted, which takes what is left.
     """
 
     numbers: Any
     counts: Any
+    lanes: Any
     begins: Any
     fired: Any
     entries: Any
     start: Any
     total: int
+    each: int
 
     @staticmethod
-    def of(types, numbers, counts, fired, records, start=0) -> "Batch":
+    def of(types, numbers, counts, fired, records, start=0, each: int = 1) -> "Batch":
         """From patches, one or more of them, how often they fire and did, and ``records`` that gives two words for numbers."""
         if dr.width(numbers) == 1:
             both = paired(types, dr.arange(types.UInt32, 1))
             numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
             counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
-        dr.eval(numbers, counts, fired)
-        begins = dr.prefix_sum(types.UInt64(counts))
+        lanes = _lanes(counts, each)
+        dr.eval(numbers, counts, lanes, fired)
+        begins = dr.prefix_sum(types.UInt64(lanes))
         face, place = records(numbers)
-        entries = dr.ravel(types.Array4u(numbers, fired + 1 - types.UInt32(begins), face, place))
+        entries = dr.ravel(types.Array4u(numbers, fired + 1 - types.UInt32(begins) * each, face, place))
         dr.eval(begins, entries)
         last = dr.width(numbers) - 1
-        return Batch(numbers, counts, begins, fired, entries, start, int(begins[last]) + int(counts[last]))
+        return Batch(numbers, counts, lanes, begins, fired, entries, start, int(begins[last]) + int(lanes[last]), each)
 
     def chunks(self, types) -> "Iterator[Chunk]":
         """Launches of a bounded number of lanes."""
@@ -93,15 +102,25 @@ class Batch:
         for start in range(0, self.total, most):
             width = min(most, self.total - start)
             first, end = dr.opaque(types.UInt64, start), dr.opaque(types.UInt64, start + width)  # no literals: one kernel for all
-            # each entry writes its rank where its lines begin; the running maximum carries it to all of them
+            # each entry writes its rank where its lanes begin; the running maximum carries it to all of them
             rank = dr.zeros(types.UInt32, few_sizes(width))
-            here = (self.counts > 0) & (self.begins < end) & (self.begins + types.UInt64(self.counts) > first)
+            here = (self.lanes > 0) & (self.begins < end) & (self.begins + types.UInt64(self.lanes) > first)
             at = types.UInt32(dr.maximum(self.begins, first) - first)
             dr.scatter(rank, dr.arange(types.UInt32, dr.width(self.numbers)), at, active=here)
             rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, dr.width(rank), exclusive=False)
             dr.eval(rank)
             rank = dr.reshape(types.UInt32, rank, max(width, 2), shrink=True)
             yield Chunk(self, rank, first, end, width, max(width, 2))
+
+
+def _lanes(counts, each: int):
+    """Of ``each`` lines, for so many."""
+    return counts if each == 1 else (counts + (each - 1)) // each
+
+
+def lines_a_lane(types, counts, each: int) -> int:
+    """``each``, if lines fill their lanes to two thirds then, or else 1."""
+    return each if 2 * each * lines_of(types, _lanes(counts, each)) <= 3 * lines_of(types, counts) else 1
 
 
 def paired(types, rows):
@@ -113,31 +132,41 @@ def paired(types, rows):
 
 @dataclass(frozen=True)
 class Chunk:
-    """Lanes of one launch: the rank of each lane's patch in its batch. A single line has a lane beside it that is not real:
-    ``lines`` is less than ``width`` then, and whatever counts must ask `real`."""
+    """Lanes of one launch: the rank of each lane's patch in its batch. A single lane has one beside it that is not real:
+    ``lanes`` is less than ``width`` then, and whatever counts must ask `real`."""
 
     batch: Batch
     rank: Any
     first: Any
     end: Any
-    lines: int
+    lanes: int
     width: int
 
     def real(self, types):
-        """Mask of the lanes that hold a line."""
+        """Mask of the lanes that hold lines."""
         return types.UInt64(dr.arange(types.UInt32, self.width)) + self.first < self.end
 
     def read(self, types, boxes: tuple[int, int] | None = None):
-        """In a kernel of this width: patch number, index (from 1) and patch record of each line; ``boxes`` as in
-        `method.numbers.strata`."""
+        """In a kernel of this width: patch number, index (from 1) of the first line, and patch record of each lane; ``boxes`` as
+        in `method.numbers.strata`, for lanes of one line."""
         batch = self.batch
         number, ahead, face, place = dr.gather(types.Array4u, batch.entries, self.rank)
-        index = dr.arange(types.UInt32, self.width) + types.UInt32(self.first) + ahead
+        index = (dr.arange(types.UInt32, self.width) + types.UInt32(self.first)) * batch.each + ahead
         if boxes is None:
             return number, index, (face, place)
         base = dr.gather(types.UInt32, batch.fired, self.rank) + 1
         count = dr.gather(types.UInt32, batch.counts, self.rank)
         return number, base + by_boxes(types, base, index - base, count, boxes), (face, place)
+
+
+    def turns(self, types, index, *, always: bool = False) -> list:
+        """In a kernel: masks of the first line of every lane, of the second, and so on, from the index of the first; a mask also
+        where all lanes are real, if ``always``."""
+        batch, real = self.batch, self.real(types) if always or self.lanes < self.width else True
+        if batch.each == 1:
+            return [real]
+        last = dr.gather(types.UInt32, batch.fired, self.rank) + dr.gather(types.UInt32, batch.counts, self.rank)
+        return [(index + turn <= last) & real for turn in range(batch.each)]
 
 
 def by_boxes(types, base, within, count, boxes: tuple[int, int]):

@@ -82,7 +82,7 @@ class Shooter:
         types, engine = self.types, self.engine
         number, index, record = chunk.read(types)
         landed = engine.trace(number, index, record, bits)
-        real = chunk.real(types) if chunk.lines < chunk.width else True
+        real = chunk.real(types) if chunk.lanes < chunk.width else True
         dr.scatter_add(engine.arrivals, types.UInt32(1), landed, active=real, mode=mode)
         for g in range(self.groups):
             here, there = number * self.groups + g, landed * self.groups + g
@@ -97,7 +97,7 @@ class Shooter:
             dr.schedule(number, landed)
         dr.eval(engine.arrivals, self.received)
         if pairs is not None:
-            pairs(frozen(number)[: chunk.lines], frozen(landed)[: chunk.lines])
+            pairs(frozen(number)[: chunk.lanes], frozen(landed)[: chunk.lanes])
 
     def _add(self, value, index, real, mode) -> None:
         dr.scatter_add(self.received, value, index, active=real, mode=mode)

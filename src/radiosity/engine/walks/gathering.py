@@ -77,7 +77,7 @@ class Gathering(AbstractLaunches):
             leg = dr.opaque(types.UInt32, len(visits), flock.size)
             flock, visit = self._land(flock, lane, left, self.legs.later(flock, leg), True)
         self._score(visits, chunk)
-        return chunk.lines + sum(dr.width(visit.lane) for visit in visits[1:])
+        return chunk.lanes + sum(dr.width(visit.lane) for visit in visits[1:])
 
     def _land(self, flock: Flock, lane, left, step, real) -> tuple[Flock, Visit]:
         engine, types = self.engine, self.types

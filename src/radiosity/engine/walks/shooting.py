@@ -44,12 +44,12 @@ class Walks(AbstractLaunches):
         return self.births.batch(self.engine, before, quanta)
 
     def _follow(self, chunk: Chunk, largest: int) -> int:
-        types, leg, lines, bits = self.types, 1, chunk.lines, self.engine.numbers.bits_for(largest)
+        types, leg, lines, bits = self.types, 1, chunk.lanes, self.engine.numbers.bits_for(largest)
         number, index, record = chunk.read(types)
         if self.fractions is not None:
             number, record = self.fractions.birthplace(number, index, bits)
         weights = self.scores.born(number)
-        self.scores.count_fired(weights, chunk.lines, chunk.real(types))
+        self.scores.count_fired(weights, chunk.lanes, chunk.real(types))
         step = self.legs.first(number, index, record, bits)
         flock, alive = self._settle(Flock(number, index, (), weights), step, chunk.real(types), 1, chunk.width)
         while True:

@@ -37,6 +37,10 @@ class AbstractNumbers(ABC):
             bits: a compile-time bound; a few steps only, so that few kernels are compiled.
         """
 
+    def in_turn(self, first: Any, patch: Any, randomisation: Any, bits: int, turns: int) -> list[list[Any]]:
+        """The `points` of ``turns`` indices from ``first`` on. Those that are 2**bits and beyond may be anything."""
+        return [self.points(first + turn, patch, randomisation, bits) for turn in range(turns)]
+
     @abstractmethod
     def steps(self) -> tuple[int, ...]:
         """The values that ``bits`` may take, increasing; the last is 32."""

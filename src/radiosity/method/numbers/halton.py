@@ -22,10 +22,15 @@ class Halton(AbstractNumbers):
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
 
     def points(self, index, patch, randomisation, bits):
-        Float = dr.float32_array_t(type(index))
-        values = [Float(dr.brev(index) >> 8) * 2.0**-24, *(radical_inverse(index, base, bits) for base in BASES[1:])]
-        moved = [value + Float(shift >> 8) * 2.0**-24 for value, shift in zip(values, randomisation, strict=False)]
-        return [value - dr.floor(value) for value in moved]
+        return self.in_turn(index, patch, randomisation, bits, 1)[0]
+
+    def in_turn(self, first, patch, randomisation, bits, turns):
+        Float = dr.float32_array_t(type(first))
+        columns = [[Float(dr.brev(first + turn) >> 8) * 2.0**-24 for turn in range(turns)]]
+        columns += [radical_inverses(first, base, bits, turns) for base in BASES[1:]]
+        shifts = [Float(shift >> 8) * 2.0**-24 for shift in randomisation[: len(BASES)]]
+        moved = ([value + shift for value, shift in zip(point, shifts, strict=True)] for point in zip(*columns, strict=True))
+        return [[value - dr.floor(value) for value in point] for point in moved]
 
     def steps(self):
         return STEPS
@@ -35,20 +40,52 @@ class Halton(AbstractNumbers):
 
 
 def radical_inverse(index, base: int, bits: int):
-    """Digits of ``index`` (UInt32, below 2**bits) in ``base``, mirrored at the point; Float32 in [0, 1].
+    """Digits of ``index`` (UInt32, below 2**bits) in ``base``, mirrored at the point; Float32 in [0, 1).
 
     Quotients are taken in single precision, which costs four instructions a digit; larger indices are split once. The
     value depends on the index alone: fewer digits are scaled by an exact power before anything is rounded.
     """
+    return _value(_mirrored(index, base, bits, 0), base)
+
+
+def radical_inverses(first, base: int, bits: int, turns: int) -> list:
+    """Those of ``turns`` indices from ``first`` on, to the same bits.
+
+    They differ in a few low digits and in one carry at most, so the others are mirrored twice for all of them: of the first
+    index, and as they are after a carry.
+    """
+    if turns == 1:
+        return [radical_inverse(first, base, bits)]
+    short = next(digits for digits in range(1, turns + 1) if base**digits >= turns)
+    period, unit = base**short, float(base ** (LOW_DIGITS[base] - short))
+    quotient = first // period
+    begin = dr.float32_array_t(type(first))(first - quotient * period)
+    before, after = (_mirrored(q, base, bits, short) for q in (quotient, quotient + 1))
+    values = []
+    for turn in range(turns):
+        digits = begin + turn
+        carried = digits >= period
+        whole, *rest = (dr.select(carried, b, a) for a, b in zip(before, after, strict=True))
+        low = _mirror_chains(dr.select(carried, digits - period, digits), base, short)
+        values.append(_value([dr.fma(low, unit, whole), *rest], base))
+    return values
+
+
+def _value(parts: list, base: int):
+    return sum(parts[1:], parts[0]) * (1.0 / base ** LOW_DIGITS[base])
+
+
+def _mirrored(index, base: int, bits: int, short: int) -> list:
+    """The mirrored digits of an index of 2**bits without its ``short`` lowest digits, which are the first ones then, in units of
+    base**-LOW_DIGITS: whole ones, and the rest where there are more digits."""
     Float = dr.float32_array_t(type(index))
-    low, high = LOW_DIGITS[base], HIGH_DIGITS[base]
-    if 2**bits <= base**low:
-        return _mirror(Float(index), base, digits_of(base, bits), low) * (1.0 / base**low)
+    low, high = LOW_DIGITS[base] - short, HIGH_DIGITS[base]
+    if 2**bits <= base ** LOW_DIGITS[base]:
+        return [_mirror(Float(index), base, digits_of(base, bits) - short, low)]
     quotient = index // base**low
     rest = index - quotient * base**low
-    digits = min(digits_of(base, bits) - low, high)
-    fraction = _mirror(Float(quotient), base, digits, high) * (1.0 / base**high)
-    return (_mirror(Float(rest), base, low, low) + fraction) * (1.0 / base**low)
+    digits = min(digits_of(base, bits) - LOW_DIGITS[base], high)
+    return [_mirror(Float(rest), base, low, low), _mirror(Float(quotient), base, digits, high) * (1.0 / base**high)]
 
 
 def digits_of(base: int, bits: int) -> int:
