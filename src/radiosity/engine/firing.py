@@ -16,7 +16,7 @@ from . import quanta as contract
 from .bands import BandGroups, BandTally
 from .device import frozen, upload
 from .geometry import Geometry
-from .lanes import PIECE, Batch, Chunk, Sweep, boxes_for, lines_of
+from .lanes import PIECE, Batch, Chunk, Sweep, boxes_for, sums
 from .lines import land, local_line, patch_of
 
 DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
@@ -50,6 +50,7 @@ class Engine:
         self.arrivals_before = dr.opaque(u32, 0, self.total)  # as they were when a patch was last asked what it owes
         self.quanta = 0
         self.everywhere, self.owes = True, False
+        self.swept = 0  # lines of the sweeps so far
         self.bands = BandTally(self, groups) if groups is not None and groups.n_groups > 1 else None
 
     def set_quanta(self, quanta: int) -> None:
@@ -69,7 +70,7 @@ class Engine:
     @property
     def lines(self) -> int:
         """Fired so far."""
-        return lines_of(self.types, self.fired)
+        return sums(self.types, self.fired)[0]
 
     # ---- what is owed ----------------------------------------------------------------------------------------------
 
@@ -83,7 +84,7 @@ class Engine:
         elif not self.everywhere:
             patches = dr.arange(types.UInt32, dr.width(self.touched)) < dr.opaque(types.UInt32, self.total)
             touched = self.touched & patches
-            if MANY * lines_of(types, dr.select(touched, types.UInt32(1), types.UInt32(0))) < self.total:
+            if MANY * sums(types, dr.select(touched, types.UInt32(1), types.UInt32(0)))[0] < self.total:
                 numbers = dr.compress(touched)
         if self.landed is None:
             self.touched = dr.opaque(types.Bool, False, self.total + 2 * self.replicates)
@@ -174,6 +175,7 @@ class Engine:
             if self.bands is not None:
                 self.bands.count_fired(self, batch)
             dr.eval(self.fired)
+        self.swept += sweep.total
         self.everywhere, self.landed = dense, np.concatenate(landed) if few else None
 
     def batches(self, sweep: Sweep, each: int = 1) -> Iterator[Batch]:
@@ -190,7 +192,7 @@ class Engine:
         """Lines of a lane: what those of a patch have in common is found once for all of them. Such kernels take longer to
         compile, too long for short runs; and a GPU wants more lanes than that would leave."""
         cpu = self.geometry.device.name == "cpu"
-        many = cpu and not self.method.coherent and sweep.total >= MUCH and self.lines >= MUCH
+        many = cpu and not self.method.coherent and min(sweep.total, self.swept) >= MUCH
         return EACH if many else 1
 
     def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, dense: bool, mode):

@@ -96,9 +96,12 @@ class Geometry:
 
     @cached_property
     def hit_records(self):
-        """(n_primitives * 4,) UInt32: the front's first patch, cell counts and flags, and the normal in two words."""
+        """(n * 4,) UInt32: the front's first patch, cell counts and flags, and the normal in two words; of n primitives, or of n
+        faces where all are quads, which have two each."""
         scene, patches = self.scene, self.patches
         _, face = primitives(scene)
+        if self.all_quads:
+            face = face[::2]
         _, first, second, _ = self.frames
         cross = np.cross(first, second)
         normal = cross / np.linalg.norm(cross, axis=1, keepdims=True)

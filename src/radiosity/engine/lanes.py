@@ -120,7 +120,8 @@ def _lanes(counts, each: int):
 
 def lines_a_lane(types, counts, each: int) -> int:
     """``each``, if lines fill their lanes to two thirds then, or else 1."""
-    return each if 2 * each * lines_of(types, _lanes(counts, each)) <= 3 * lines_of(types, counts) else 1
+    lanes, lines = sums(types, _lanes(counts, each), counts)
+    return each if 2 * each * lanes <= 3 * lines else 1
 
 
 def paired(types, rows):
@@ -198,11 +199,13 @@ def few_sizes(size: int) -> int:
     return -(-size // step) * step
 
 
-def lines_of(types, counts) -> int:
-    """Sum of 32-bit counts, which may take more. (``dr.sum`` would store them widened first.)"""
-    total = dr.opaque(types.UInt64, 0, 2)
-    dr.scatter_add(total, types.UInt64(counts), dr.zeros(types.UInt32, dr.width(counts)), mode=dr.ReduceMode.Expand)
-    return int(total[0])
+def sums(types, *columns) -> tuple[int, ...]:
+    """Of 32-bit numbers, which may take more, a column each. (``dr.sum`` would store them widened first.)"""
+    total = dr.opaque(types.UInt64, 0, max(len(columns), 2))
+    for i, column in enumerate(columns):
+        dr.scatter_add(total, types.UInt64(column), dr.full(types.UInt32, i, dr.width(column)), mode=dr.ReduceMode.Expand)
+    dr.eval(total)
+    return tuple(int(total[i]) for i in range(len(columns)))
 
 
 def boxes_for(types, counts) -> tuple[int, int] | None:

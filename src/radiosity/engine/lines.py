@@ -70,11 +70,12 @@ def _hit(geometry: Geometry, origin, direction, coherent: bool, active):
     ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
     found = caster.ray_intersect_preliminary(ray, coherent=coherent, active=active)
     valid = found.is_valid() & active
-    first, packed, low, high = dr.gather(types.Array4u, geometry.hit_records, found.prim_index, valid)
+    place = found.prim_index >> 1 if geometry.all_quads else found.prim_index
+    first, packed, low, high = dr.gather(types.Array4u, geometry.hit_records, place, valid)
     y = (low >> NORMAL_BITS) | (high << 32 - NORMAL_BITS)
     parts = (low, y, high >> 2 * NORMAL_BITS - 32)
     normal = types.Array3f(*(Float(Int32(part & NORMAL_MASK) - (NORMAL_ONE + 1)) for part in parts))
-    half = (packed & SECOND_HALF) != 0
+    half = ((found.prim_index & 1) if geometry.all_quads else (packed & SECOND_HALF)) != 0
     u, v = found.prim_uv.x, found.prim_uv.y
     u, v = dr.select(half, 1 - u, u), dr.select(half, 1 - v, v)
     return Landing(valid, found.prim_index, u, v, dr.dot(direction, normal) < 0, found.t, first, packed), normal
