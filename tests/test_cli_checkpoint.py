@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -155,19 +156,24 @@ def test_signals_leave_the_state(tmp_path, number, status):
     assert np.array_equal(more.irradiance, rd.solve(cut, quanta=more.quanta, replicates=2).irradiance)
 
 
-def test_a_terminal_that_goes_away(tmp_path):
-    """What there is is written, though nobody can be told."""
-    kept, output, (ours, terminal) = tmp_path / "room.checkpoint.npz", tmp_path / "room.csv", os.openpty()
-    arguments = ("solve", "room", "--cells", "2", "--rays", "1G", "-o", output)
-    process = started(*arguments, stdout=terminal, stderr=terminal)
-    os.close(terminal)
+@pytest.mark.parametrize("numbers", [(signal.SIGHUP,), (signal.SIGHUP, signal.SIGHUP), (signal.SIGTERM, signal.SIGHUP)], ids=str)
+@pytest.mark.parametrize("piped", [False, True])
+def test_a_terminal_that_goes_away(tmp_path, numbers, piped):
+    """What there is is written, though nobody can be told; and though sessions that end send more than one signal."""
+    kept, output, (ours, theirs) = tmp_path / "room.checkpoint.npz", tmp_path / "room.csv", os.pipe() if piped else os.openpty()
+    process = started("solve", "room", "--cells", "2", "--rays", "1G", "-o", output, stdout=theirs, stderr=theirs)
+    os.close(theirs)
     end = time.monotonic() + 120
     while not (kept.exists() and rd.load_solution(kept).quanta) and time.monotonic() < end:
         if select.select([ours], [], [], 0.1)[0]:
             os.read(ours, 1 << 16)
-    os.close(ours)
-    process.send_signal(signal.SIGHUP)
-    assert process.wait(120) == 128 + signal.SIGHUP
+    for number in numbers:
+        if number == signal.SIGHUP:
+            with suppress(OSError):
+                os.close(ours)
+        process.send_signal(number)
+        time.sleep(0.001)
+    assert process.wait(120) in {128 + number for number in numbers}
     assert output.exists()
     assert rd.load_solution(kept).status == "interrupted"
 

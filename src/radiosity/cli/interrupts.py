@@ -6,10 +6,13 @@ turn it into another error, and compiled ones may end the process. So an interru
 
 import os
 import signal
+import stat
 import threading
-from contextlib import contextmanager
+import time
+from contextlib import contextmanager, suppress
 
 AGAIN = 0.02  # seconds until an interruption that fell into an import is tried again
+TOGETHER = 2.0  # seconds: shells and sessions that end send several of `ENDS`, which mean one
 ENDS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))  # asked to end, terminal gone
 
 
@@ -19,7 +22,7 @@ class _Ears:
     def __init__(self):
         self.raised = False
         self.number = int(signal.SIGINT)
-        self.terminals = [number for number in (1, 2) if os.isatty(number)]
+        self.heard = -TOGETHER
         self.timer: threading.Timer | None = None
 
     def __call__(self, number, frame) -> None:
@@ -27,23 +30,20 @@ class _Ears:
             self.raised = True
             raise KeyboardInterrupt
         self.cancel()
+        self.heard = -TOGETHER  # not yet
         self.timer = threading.Timer(AGAIN, signal.raise_signal, [number])
         self.timer.daemon = True
         self.timer.start()
 
     def end(self, number, frame) -> None:
         """Does what Ctrl-C does at this moment; where that is ignored, what it would do."""
-        self.number = number
         if number != signal.SIGTERM:
-            self._speak_to_nobody()
+            _speak_to_nobody()
+        if time.monotonic() - self.heard < TOGETHER:
+            return
+        self.heard, self.number = time.monotonic(), number
         handler = signal.getsignal(signal.SIGINT)
         (handler if callable(handler) else self)(number, frame)
-
-    def _speak_to_nobody(self) -> None:
-        """The terminal has gone: what is written to it would fail, and nothing after it be done."""
-        with open(os.devnull, "w") as nothing:
-            for number in self.terminals:
-                os.dup2(nothing.fileno(), number)
 
     def cancel(self) -> None:
         if self.timer is not None:
@@ -103,6 +103,16 @@ def kept():
         raise
     if _ears.raised:
         raise KeyboardInterrupt
+
+
+def _speak_to_nobody() -> None:
+    """The terminal has gone, and with it programs at the end of pipes: what is written there would fail, and nothing after it be
+    done."""
+    with open(os.devnull, "w") as nothing:
+        for number in (1, 2):
+            with suppress(OSError):
+                if not stat.S_ISREG(os.fstat(number).st_mode):
+                    os.dup2(nothing.fileno(), number)
 
 
 def _importing(frame) -> bool:
