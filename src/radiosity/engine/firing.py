@@ -22,7 +22,7 @@ from .lines import land, local_line, patch_of
 DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
 MANY = 2  # at least one in so many patches was landed on: all are looked through
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
-EACH, MUCH = 8, 4_000_000  # lines of a lane, in sweeps of so many lines after as many
+EACH, MUCH = 8, 2_000_000  # lines of a lane, in sweeps of so many lines a thread after as many
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
 
 
@@ -190,9 +190,9 @@ class Engine:
 
     def _each(self, sweep: Sweep) -> int:
         """Lines of a lane: what those of a patch have in common is found once for all of them. Such kernels take longer to
-        compile, too long for short runs; and a GPU wants more lanes than that would leave."""
+        compile, too long for short runs; many threads, and a GPU more so, want more lanes than that would leave."""
         cpu = self.geometry.device.name == "cpu"
-        many = cpu and not self.method.coherent and min(sweep.total, self.swept) >= MUCH
+        many = cpu and not self.method.coherent and min(sweep.total, self.swept) >= MUCH * dr.thread_count()
         return EACH if many else 1
 
     def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, dense: bool, mode):

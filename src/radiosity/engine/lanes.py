@@ -115,7 +115,7 @@ class Batch:
 
 def _lanes(counts, each: int):
     """Of ``each`` lines, for so many."""
-    return counts if each == 1 else (counts + (each - 1)) // each
+    return counts if each == 1 else counts // each + dr.select(counts % each > 0, type(counts)(1), 0)
 
 
 def lines_a_lane(types, counts, each: int) -> int:
@@ -166,8 +166,9 @@ class Chunk:
         batch, real = self.batch, self.real(types) if always or self.lanes < self.width else True
         if batch.each == 1:
             return [real]
-        last = dr.gather(types.UInt32, batch.fired, self.rank) + dr.gather(types.UInt32, batch.counts, self.rank)
-        return [(index + turn <= last) & real for turn in range(batch.each)]
+        fired, count = (dr.gather(types.UInt32, column, self.rank) for column in (batch.fired, batch.counts))
+        left = fired + count + 1 - index
+        return [(left > turn) & real for turn in range(batch.each)]
 
 
 def by_boxes(types, base, within, count, boxes: tuple[int, int]):

@@ -49,16 +49,16 @@ def refine_check(
         raise MethodError("replicates is 1; a refine check needs 2 or more, to tell noise from change")
     coarse = subdivide(scene, **cut_for(chosen)) if isinstance(scene, Scene) else scene
     fine = halved(coarse)
+    parent = parents(fine, coarse)
     more = {k: 4 * v for k, v in options.items() if k in ("rays", "quanta") and v is not None}
     seed = options.get("seed", 0)
     with limited(memory):
         one = _finished(prepared(coarse, chosen, **options))
         second = prepared(fine, chosen, **(options | more | {"seed": seed + APART}))
-        second.keeps_state = True
+        second.also = lambda stage: stage.sums(parent, len(coarse))
         other = _finished(second)
     assert second.snapshot is not None
-    parent = parents(fine, coarse)
-    received = second.snapshot.sums(parent, len(coarse))[1] / coarse.area[:, None]  # (replicates, n_coarse, n_bands)
+    received = second.snapshot.asked[1] / coarse.area[:, None]  # (replicates, n_coarse, n_bands)
     _, error = mean_and_error(received)
     return RefineCheck(replace(one, state={}), replace(other, state={}), parent, error)
 

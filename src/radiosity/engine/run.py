@@ -3,8 +3,10 @@
 import math
 import time
 import warnings
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from importlib.metadata import version
+from typing import Any
 
 from ..errors import MethodError, RadiosityWarning
 from ..method import Baseline, Method
@@ -41,7 +43,7 @@ class Run:
         self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
         self.replicates, self.resume, self.checkpoint = replicates, resume, checkpoint
         self.snapshot: Snapshot | None = None  # of the last complete stage
-        self.keeps_state = False  # the last complete stage is to be read in other ways when the run has ended
+        self.also: Callable[[Snapshot], Any] | None = None  # what else is read of a stage
         self.seconds_before = 0.0 if resume is None else resume.seconds
         self.problem = Problem.of(patches)
         bands = self.problem.groups.n_groups
@@ -93,7 +95,7 @@ class Run:
                 break
             if self.replicates * len(self.patches) > LARGE:
                 give_back_memory()
-            snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture())
+            snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture(), self.also)
             known = self.replicates > 1 and self._error_matters
             error = snapshot.error(self.rows) if known else math.nan
             margin = snapshot.margin(self.rows) if known and self.budget.error is not None else 1.0
@@ -114,7 +116,7 @@ class Run:
                 continue
             target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
             steps = [target]
-            if target and self.replicates > 1 and not self.keeps_state:
+            if target and self.replicates > 1:
                 snapshot.settle()
         if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
             raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")

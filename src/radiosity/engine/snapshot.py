@@ -1,7 +1,9 @@
 """A complete stage: what its state means for the scene's bands."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -13,17 +15,18 @@ from .process import AbstractBiasedTally, AbstractTally, State
 
 @dataclass(eq=False)
 class Snapshot:
-    """The problem, the state of a process and how it is read."""
+    """The problem, the state of a process and how it is read; ``also`` reads what else is asked of it."""
 
     problem: Problem
     tally: AbstractTally
     state: State
+    also: Callable[["Snapshot"], Any] | None = None
 
     def settle(self) -> None:
         """Read all that is asked of it now, and let go of the state, where that is quick and takes less memory: what the process
         writes next goes to a copy of whatever is held."""
         if self.tally.settles:
-            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.books
+            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.books, self.asked
             self.state = {}
 
     @cached_property
@@ -61,6 +64,11 @@ class Snapshot:
         """See `Solution.surface_power`."""
         patches = self.problem.patches
         return self.sums(patches.surface, len(patches.scene.names))
+
+    @cached_property
+    def asked(self) -> Any:
+        """What ``also`` reads."""
+        return None if self.also is None else self.also(self)
 
     def sums(self, key: np.ndarray, count: int) -> np.ndarray:
         """(2, replicates, count, n_bands) W or lm: what patches of an equal key receive, and of it reflect, in each replicate.

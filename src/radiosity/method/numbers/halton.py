@@ -40,7 +40,7 @@ class Halton(AbstractNumbers):
 
 
 def radical_inverse(index, base: int, bits: int):
-    """Digits of ``index`` (UInt32, below 2**bits) in ``base``, mirrored at the point; Float32 in [0, 1).
+    """Digits of ``index`` (UInt32, below 2**bits) in ``base``, mirrored at the point; Float32 in [0, 1].
 
     Quotients are taken in single precision, which costs four instructions a digit; larger indices are split once. The
     value depends on the index alone: fewer digits are scaled by an exact power before anything is rounded.
