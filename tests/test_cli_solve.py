@@ -305,3 +305,25 @@ def test_no_progress_where_nobody_looks(capsys):
     with progress.bar() as advance:
         assert advance is None
     assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("full", [False, True])
+def test_outputs_are_written_where_nobody_reads_the_report(tmp_path, unbuffered, full):
+    """Of a pipe whose reader has gone, and of a full disk."""
+    if full and not Path("/dev/full").exists():
+        pytest.skip("no /dev/full on this system")
+    ours, theirs = os.pipe()
+    os.close(ours)
+    stdout = os.open("/dev/full", os.O_WRONLY) if full else os.dup(theirs)
+    done = subprocess.run(
+        [sys.executable, "-c", "import sys; from radiosity.cli import main; sys.exit(main())",
+         "solve", "room", "--cells", "1", "--quanta", "1k", "-o", "a.csv", "b.npz"],
+        cwd=tmp_path, env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+        stdout=stdout, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    os.close(theirs)
+    os.close(stdout)
+    assert done.returncode == 0
+    assert ("standard output cannot be written to" in done.stderr) == full
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.surfaces.csv", "b.npz"]

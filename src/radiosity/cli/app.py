@@ -1,6 +1,5 @@
 """The commands, and what an error, a warning or an interruption looks like to whoever typed one."""
 
-import os
 import sys
 import warnings
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ from .experiment import experiment
 from .methods import methods
 from .render import render
 from .solve import solve
+from .streams import complain, silence
 
 FAILED, WRONG_INPUT = 1, 2
 
@@ -65,8 +65,7 @@ def run(arguments: list[str]) -> int:
         say("interrupted", "stopped before the end; what was not written yet is lost")
         return interrupts.status()
     except BrokenPipeError:
-        # whoever read our output has gone; nothing more can be said there, not even by Python as it ends
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        silence(1)  # whoever read our output has gone; nothing more can be said there, not even by Python as it ends
         return FAILED
     except ModuleNotFoundError as error:
         if debug or error.name is None or error.name.startswith("radiosity"):
@@ -87,7 +86,7 @@ def run(arguments: list[str]) -> int:
 
 def say(kind: str, message) -> None:
     """One line on stderr: ``radiosity: error: ...``."""
-    print(f"radiosity: {kind}: {printable(' '.join(str(message).split()))}", file=sys.stderr, flush=True)
+    complain(f"radiosity: {kind}: {printable(' '.join(str(message).split()))}")
 
 
 @contextmanager

@@ -11,6 +11,8 @@ import threading
 import time
 from contextlib import contextmanager, suppress
 
+from .streams import silence
+
 AGAIN = 0.02  # seconds until an interruption that fell into an import is tried again
 TOGETHER = 2.0  # seconds: shells and sessions that end send several of `ENDS`, which mean one
 ENDS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))  # asked to end, terminal gone
@@ -108,11 +110,10 @@ def kept():
 def _speak_to_nobody() -> None:
     """The terminal has gone, and with it programs at the end of pipes: what is written there would fail, and nothing after it be
     done."""
-    with open(os.devnull, "w") as nothing:
-        for number in (1, 2):
-            with suppress(OSError):
-                if not stat.S_ISREG(os.fstat(number).st_mode):
-                    os.dup2(nothing.fileno(), number)
+    for number in (1, 2):
+        with suppress(OSError):
+            if not stat.S_ISREG(os.fstat(number).st_mode):
+                silence(number)
 
 
 def _importing(frame) -> bool:

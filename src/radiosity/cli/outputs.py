@@ -5,6 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from ..errors import OutputError, RadiosityError, printable
+from .streams import tell
 
 
 def check(paths) -> None:
@@ -41,7 +42,7 @@ def write(solution, paths, *, exposure: float | None = None, checkpoint: Path | 
             failures.append(f"{path}: {type(error).__name__}: {error}")
         else:
             saved |= Path(path).suffix.lower() == ".npz"
-            print(f"wrote {printable(path)}")
+            tell(f"wrote {printable(path)}")
     if failures:
         kept = "" if saved else f"; {_rescue(solution, checkpoint)}"
         raise OutputError("; ".join(failures) + kept)

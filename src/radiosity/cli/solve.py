@@ -5,6 +5,7 @@ from pathlib import Path
 from ..errors import MethodError
 from . import checkpoints, interrupts, outputs
 from .options import Chosen, Count, DeviceName, Flag, Length, Outputs, Seconds, Seed, Share, Stops
+from .streams import tell
 
 DEFAULT_RAYS = 10_000_000
 
@@ -195,9 +196,9 @@ def solve(
                 solution = checked.coarse
             else:
                 solution = rd.solve(patches, chosen, **options, resume=before, checkpoint=keeper)
-        print(solution.report())
+        tell(solution.report())
         if checked is not None:
-            print(f"\n{checked.report()}")
+            tell(f"\n{checked.report()}")
             for path in tables:
                 checked.export(path)
         outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path)
