@@ -7,7 +7,7 @@ from io import TextIOWrapper
 
 from cyclopts import App, CoercionError, CycloptsError
 
-from ..errors import DeviceError, RadiosityError, RadiosityWarning, printable
+from ..errors import DeviceError, RadiosityError, RadiosityWarning
 from . import interrupts
 from .check import check
 from .doctor import doctor
@@ -15,7 +15,7 @@ from .experiment import experiment
 from .methods import methods
 from .render import render
 from .solve import solve
-from .streams import complain, silence
+from .streams import say, silence
 
 FAILED, WRONG_INPUT = 1, 2
 
@@ -82,11 +82,6 @@ def run(arguments: list[str]) -> int:
             raise
         say("error", f"a fault of the program, not of your input: {type(error).__name__}: {error} (--debug shows where)")
         return FAILED
-
-
-def say(kind: str, message) -> None:
-    """One line on stderr: ``radiosity: error: ...``."""
-    complain(f"radiosity: {kind}: {printable(' '.join(str(message).split()))}")
 
 
 @contextmanager

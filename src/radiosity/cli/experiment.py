@@ -4,6 +4,7 @@ from pathlib import Path
 
 from . import interrupts
 from .options import Flag, Folder
+from .streams import say
 
 
 def experiment(which: str, /, *, quick: Flag = False, image: Flag = False, output: Folder = Path("out/experiments")) -> int:
@@ -30,7 +31,6 @@ def experiment(which: str, /, *, quick: Flag = False, image: Flag = False, outpu
     numbers = list(EXPERIMENTS) if which == "all" else [names[which]]
     from ..lab.make import make
     from ..lab.study import FULL, QUICK
-    from .app import say
     from .progress import steps
 
     command = f"radiosity experiment {which}{' --quick' if quick else ''}{' --image' if image else ''}"

@@ -8,6 +8,7 @@ from cyclopts import Parameter
 from ..errors import OutputError, SceneError, printable
 from . import amounts, outputs
 from .options import Flag, Outputs, Pair, Point, Stops
+from .streams import tell
 
 
 def render(
@@ -94,7 +95,7 @@ def render(
             loaded, path, camera=view, width=width, height=height, exposure=exposure, smooth=smooth, quantity=quantity,
             band=band, false_color=false_color, range=interval, log=log, color_map=color_map or "viridis",
         )  # fmt: skip
-        print(f"wrote {printable(path)}")
+        tell(f"wrote {printable(path)}")
 
 
 def _view(scene, number: int | None, origin: str | None, target: str | None, up: str | None, fov: float | None):

@@ -5,7 +5,7 @@ from pathlib import Path
 from ..errors import MethodError
 from . import checkpoints, interrupts, outputs
 from .options import Chosen, Count, DeviceName, Flag, Length, Outputs, Seconds, Seed, Share, Stops
-from .streams import tell
+from .streams import say, tell
 
 DEFAULT_RAYS = 10_000_000
 
@@ -184,7 +184,6 @@ def solve(
         patches = rd.subdivide(loaded, size=patch_size, cells=cells, powers_of_two=chosen.needs_powers_of_two)
     elif before is not None and before.patches.scene.hash == loaded.hash:
         patches = before.patches
-    from .app import say
 
     checked = None
     try:

@@ -4,6 +4,8 @@ import errno
 import os
 import sys
 
+from ..errors import printable
+
 GONE = (errno.EPIPE, errno.EIO)  # of a pipe's reader, of a terminal
 
 
@@ -14,13 +16,13 @@ def tell(text: str) -> None:
     except OSError as error:
         silence(1)
         if error.errno not in GONE:
-            complain(f"radiosity: warning: standard output cannot be written to ({error.strerror})")
+            say("warning", f"standard output cannot be written to ({error.strerror})")
 
 
-def complain(text: str) -> None:
-    """A line on stderr, at once; none any more where it cannot be written."""
+def say(kind: str, message) -> None:
+    """One line on stderr, at once: ``radiosity: error: ...``; none any more where it cannot be written."""
     try:
-        print(text, file=sys.stderr, flush=True)
+        print(f"radiosity: {kind}: {printable(' '.join(str(message).split()))}", file=sys.stderr, flush=True)
     except OSError:
         silence(2)
 
