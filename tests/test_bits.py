@@ -108,7 +108,7 @@ def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, each
     assert {b.each for b in took} == {1}
     monkeypatch.setattr(firing, "MUCH", 0)
     monkeypatch.setattr(firing, "EACH", each)
-    monkeypatch.setattr(lanes, "lines_a_lane", lambda *_: each)
+    monkeypatch.setattr(lanes, "lines_a_lane", lambda lines, taken, most: most)
     several = rd.solve(cut, quanta=2**18, replicates=3)
     assert sum(b.each == each for b in took) > 5
     assert equal(several.state.values(), one.state.values())
@@ -117,8 +117,8 @@ def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, each
 def test_half_empty_lanes_are_none():
     types = choose("cpu").types
     for counts, each in (([8, 8, 16], 8), ([5, 6, 7], 8), ([1, 1, 1], 1), ([9, 9, 9], 1), ([100, 1, 1], 8), ([1, 0, 0], 1)):
-        numbers = upload(types.UInt32, np.array(counts, np.uint32))
-        assert lanes.lines_a_lane(types, numbers, 8) == each
+        taken = lanes.lanes_of(upload(types.UInt32, np.array(counts, np.uint32)), 8)
+        assert lanes.lines_a_lane(sum(counts), int(np.array(taken).sum()), 8) == each
 
 
 @pytest.mark.parametrize("two_sided", [False, True])

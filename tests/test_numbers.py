@@ -22,8 +22,13 @@ def points(name, index, *, patch=0, seed=0, bits=32, zero=False, turns=None):
     randomisation = [dr.opaque(types.UInt32, int(word)) for word in drawn]  # no literals: one kernel
     index = np.asarray(index, np.uint32)
     patches = upload(types.UInt32, np.full(len(index), patch, np.uint32))
-    found = numbers.in_turn(upload(types.UInt32, index), patches, randomisation, bits, turns or 1)
-    found = np.stack([np.stack([np.broadcast_to(np.array(c), len(index)) for c in point], axis=1) for point in found])
+    index = upload(types.UInt32, index)
+    if turns is None:
+        found = [numbers.points(index, patches, randomisation, bits)]
+    else:
+        in_turn = numbers.in_turn(index, patches, randomisation, bits, turns)
+        found = [in_turn(types.UInt32(turn)) for turn in range(turns)]
+    found = np.stack([np.stack([np.broadcast_to(np.array(c), len(patches)) for c in point], axis=1) for point in found])
     return found[0] if turns is None else found
 
 

@@ -66,7 +66,7 @@ class BandTally:
 
     Attributes:
         received: UInt64, group g of slot s (see `firing`) at s * n_groups + g.
-        before: the same of patch numbers, as it was at the last sweep.
+        before, arrivals_before: the same of patch numbers, and their arrivals, as they were at the last sweep.
         fired: UInt64, power that left replicate r along lines, at g * replicates + r.
         weights: UInt32, of group g, what each line of the i-th patch of a sweep carries, at i * n_groups + g.
     """
@@ -78,22 +78,24 @@ class BandTally:
         self.rhos = [upload(types.UInt32, Source.fixed(groups.reflectance[:, g])) for g in range(self.n)]
         self.received = dr.opaque(types.UInt64, 0, (engine.total + 2 * engine.replicates) * self.n)
         self.before = dr.opaque(types.UInt64, 0, engine.total * self.n)
+        self.arrivals_before = dr.opaque(types.UInt32, 0, engine.total)
         self.fired = dr.opaque(types.UInt64, 0, self.n * engine.replicates)
         self.weights = dr.opaque(types.UInt32, 0, engine.total * self.n)
         self.quanta_before = 0
 
-    def weigh(self, engine, numbers, places) -> None:
+    def weigh(self, engine, numbers, places, arrivals) -> None:
         """Before a sweep: what each line of the patches ``numbers`` carries, of each group, to ``places`` in ``weights``; in the
-        end of all that received since the last one. No expression may still wait to read the arrays that are written here, or
+        end of all that received since the last one, and their arrivals now. No expression may still wait to read the arrays that are written here, or
         Dr.Jit copies them whole."""
         types = engine.types
-        self._weigh(engine, numbers, places)
+        self._weigh(engine, numbers, places, arrivals)
         dr.eval(self.weights)
+        dr.scatter(self.arrivals_before, arrivals, numbers)
         for g in range(self.n):
             dr.scatter(self.before, dr.gather(types.UInt64, self.received, numbers * self.n + g), numbers * self.n + g)
-        dr.eval(self.before)
+        dr.eval(self.arrivals_before, self.before)
 
-    def _weigh(self, engine, numbers, places) -> None:
+    def _weigh(self, engine, numbers, places, arrivals) -> None:
         types = engine.types
         wide = types.Float64
 
@@ -102,8 +104,7 @@ class BandTally:
 
         patch = numbers - engine.replicate(numbers) * engine.n_opaque
         new = dr.opaque(wide, float(engine.quanta - self.quanta_before))
-        arrivals = dr.gather(types.UInt32, engine.arrivals, numbers)
-        since = arrivals - dr.gather(types.UInt32, engine.arrivals_before, numbers)
+        since = arrivals - dr.gather(types.UInt32, self.arrivals_before, numbers)
         emitted = [dr.gather(wide, share, patch) for share in self.shares]
         owed = dr.fma(functools.reduce(dr.maximum, emitted), new, fraction(engine.rho) * wide(since))
         for g, (share, rho) in enumerate(zip(emitted, self.rhos, strict=True)):
@@ -113,13 +114,15 @@ class BandTally:
             carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
             dr.scatter(self.weights, types.UInt32(dr.floor(carried + 0.5)), places * self.n + g)
 
-    def deposit(self, types, chunk, landed, active, mode) -> None:
-        """In a kernel: lines land in slots."""
+    def carried(self, types, chunk) -> list:
+        """In a kernel: the power of each group that a line of each lane carries."""
         place = (chunk.rank + chunk.batch.start) * self.n
-        for g in range(self.n):
-            power = types.UInt64(dr.gather(types.UInt32, self.weights, place + g))
+        return [types.UInt64(dr.gather(types.UInt32, self.weights, place + g)) for g in range(self.n)]
+
+    def deposit(self, powers: list, landed, active, mode) -> None:
+        """In a kernel: lines land in slots."""
+        for g, power in enumerate(powers):
             dr.scatter_add(self.received, power, landed * self.n + g, active=active, mode=mode)
-        dr.schedule(self.received)
 
     def count_fired(self, engine, batch) -> None:
         """After a batch: the power that left, summed from the lines' side."""

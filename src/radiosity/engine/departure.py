@@ -1,5 +1,8 @@
 """In a kernel: how lines leave patches and faces."""
 
+from dataclasses import dataclass
+from typing import Any
+
 import drjit as dr
 
 from ..method.lines.local import hemisphere, triangle
@@ -12,8 +15,14 @@ BACK = 1 << 31  # of a face number: its back
 def local_line(geometry: Geometry, record, numbers):
     """Origin and direction (three floats each, the caster's coordinates) of a local line, from its patch's record and four
     numbers: two of direction, two of position."""
+    return local_lines(geometry, record)(numbers)
+
+
+def local_lines(geometry: Geometry, record):
+    """As `local_line`, for lines of one patch that are fired in a loop: made before it, and called in it with the numbers."""
     face, place = record
-    return leave(geometry, face, *position(geometry, place, numbers[2], numbers[3]), numbers)
+    frame = Frame.of(geometry, face)
+    return lambda numbers: frame.leave(*position(geometry, place, numbers[2], numbers[3]), numbers)
 
 
 def position(geometry: Geometry, place, x, y):
@@ -32,17 +41,32 @@ def position(geometry: Geometry, place, x, y):
     return s, t
 
 
-def leave(geometry: Geometry, face, s, t, numbers):
-    """Origin and cosine distributed direction of a line from a point of a face (top bit: its back), coordinates in cells."""
-    types = geometry.device.types
-    Float = types.Float
-    front = face < BACK
-    block = dr.gather(types.Array44f, geometry.face_records, face & (BACK - 1))  # one read of 16 words, not four of four
-    words = [block[i // 4][i % 4] for i in range(16)]
-    origin, first, second, normal, tangent = (types.Array3f(*words[at : at + 3]) for at in range(0, 15, 3))
-    side = dr.select(front, Float(1), Float(-1))
-    dx, dy, dz = hemisphere(numbers[0], numbers[1])
-    bitangent = dr.cross(normal, tangent)
-    direction = tangent * dx + bitangent * dy + normal * (dz * side)
-    point = origin + first * s + second * t + normal * (words[15] * side)
-    return point, direction
+@dataclass(frozen=True)
+class Frame:
+    """Of a face on the side that lines leave from, see `Geometry.face_records`: origin, edges of a cell, tangents, normal, which
+    points away from the side where ``side`` is -1, and what lies between the face and the lines' origins."""
+
+    origin: Any
+    first: Any
+    second: Any
+    tangent: Any
+    bitangent: Any
+    normal: Any
+    side: Any
+    offset: Any
+
+    @staticmethod
+    def of(geometry: Geometry, face) -> "Frame":
+        """Of a face number, its top bit the back."""
+        types = geometry.device.types
+        side = dr.select(face < BACK, types.Float(1), types.Float(-1))
+        block = dr.gather(types.Array44f, geometry.face_records, face & (BACK - 1))  # one read of 16 words, not four of four
+        words = [block[i // 4][i % 4] for i in range(16)]
+        origin, first, second, normal, tangent = (types.Array3f(*words[at : at + 3]) for at in range(0, 15, 3))
+        return Frame(origin, first, second, tangent, dr.cross(normal, tangent), normal, side, normal * (words[15] * side))
+
+    def leave(self, s, t, numbers):
+        """Origin and cosine distributed direction of a line from a point of the face, coordinates in cells."""
+        dx, dy, dz = hemisphere(numbers[0], numbers[1])
+        direction = self.tangent * dx + self.bitangent * dy + self.normal * (dz * self.side)
+        return self.origin + self.first * s + self.second * t + self.offset, direction

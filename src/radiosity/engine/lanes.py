@@ -23,17 +23,19 @@ class Sweep:
         numbers: UInt32, patch numbers; None where they are those from ``low`` on.
         low, size: the first of them, and how many they are.
         total: lines of all.
+        counts: UInt32, those of each, where they fit a piece.
     """
 
     numbers: Any
     low: int
     size: int
     total: int
+    counts: Any = None
 
-    def batches(self, types, owing, records, each: int = 1) -> "Iterator[Batch]":
-        """A piece at a time, of ``each`` lines a lane where that leaves few lanes half empty. For patch numbers ``owing`` gives
-        what each owes in all and has fired, ``records`` two words; no other lines than the batches' are fired until the last
-        one is made."""
+    def batches(self, types, owed, fired, records, each: int = 1) -> "Iterator[Batch]":
+        """A piece at a time, of ``each`` lines a lane where that leaves few lanes half empty. For patch numbers ``owed`` gives
+        what each owes in all, ``records`` two words, and the array ``fired`` what was fired before; no other lines than the
+        batches' are fired until the last one is made."""
         low = dr.opaque(types.UInt32, self.low)
         for start in range(0, self.size, PIECE):
             width = min(PIECE, few_sizes(self.size - start))
@@ -42,13 +44,15 @@ class Sweep:
             inside = place < dr.opaque(types.UInt32, self.size)
             at = dr.select(inside, place, 0)
             numbers = at + low if self.numbers is None else dr.gather(types.UInt32, self.numbers, at)
-            owed, fired = owing(numbers)
-            counts = dr.select(inside, owed - fired, 0)
-            dr.eval(numbers, counts, fired)
-            lines = lines_a_lane(types, counts, each) if each > 1 else 1
-            batch = Batch.of(types, numbers, counts, fired, records, first, lines)
-            if batch.total:
-                yield batch
+            before = dr.gather(types.UInt32, fired, numbers)
+            counts = owed(numbers) - before if self.counts is None else dr.gather(types.UInt32, self.counts, at)
+            counts = dr.select(inside, counts, 0)
+            dr.schedule(counts, before)
+            lines, lanes = sums(types, counts, lanes_of(counts, each))
+            if not lines:
+                continue
+            of_lane = lines_a_lane(lines, lanes, each)
+            yield Batch.of(types, numbers, counts, before, records, first, of_lane, lines if of_lane == 1 else lanes)
 
 
 @dataclass(frozen=True)
@@ -80,20 +84,22 @@ class Batch:
     each: int
 
     @staticmethod
-    def of(types, numbers, counts, fired, records, start=0, each: int = 1) -> "Batch":
-        """From patches, one or more of them, how often they fire and did, and ``records`` that gives two words for numbers."""
+    def of(types, numbers, counts, fired, records, start=0, each: int = 1, total: int | None = None) -> "Batch":
+        """From patches, one or more of them, how often they fire and did, and ``records`` that gives two words for numbers; the
+        ``total`` of lanes where it is known."""
         if dr.width(numbers) == 1:
             both = paired(types, dr.arange(types.UInt32, 1))
             numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
             counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
-        lanes = _lanes(counts, each)
-        dr.eval(numbers, counts, lanes, fired)
+        lanes = lanes_of(counts, each)
+        dr.eval(counts, lanes, fired)
         begins = dr.prefix_sum(types.UInt64(lanes))
         face, place = records(numbers)
         entries = dr.ravel(types.Array4u(numbers, fired + 1 - types.UInt32(begins) * each, face, place))
         dr.eval(begins, entries)
-        last = dr.width(numbers) - 1
-        return Batch(numbers, counts, lanes, begins, fired, entries, start, int(begins[last]) + int(lanes[last]), each)
+        last = dr.width(counts) - 1
+        total = int(begins[last]) + int(lanes[last]) if total is None else total
+        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each)
 
     def chunks(self, types) -> "Iterator[Chunk]":
         """Launches of a bounded number of lanes."""
@@ -113,14 +119,13 @@ class Batch:
             yield Chunk(self, rank, first, end, width, max(width, 2))
 
 
-def _lanes(counts, each: int):
+def lanes_of(counts, each: int):
     """Of ``each`` lines, for so many."""
     return counts if each == 1 else counts // each + dr.select(counts % each > 0, type(counts)(1), 0)
 
 
-def lines_a_lane(types, counts, each: int) -> int:
-    """``each``, if lines fill their lanes to two thirds then, or else 1."""
-    lanes, lines = sums(types, _lanes(counts, each), counts)
+def lines_a_lane(lines: int, lanes: int, each: int) -> int:
+    """``each``, if so many lines fill the lanes that they would take to two thirds, or else 1."""
     return each if 2 * each * lanes <= 3 * lines else 1
 
 
@@ -159,16 +164,15 @@ class Chunk:
         count = dr.gather(types.UInt32, batch.counts, self.rank)
         return number, base + by_boxes(types, base, index - base, count, boxes), (face, place)
 
+    def mask(self, types, *, always: bool = False):
+        """In a kernel: which lanes are real; True where all are, unless ``always``."""
+        return self.real(types) if always or self.lanes < self.width else True
 
-    def turns(self, types, index, *, always: bool = False) -> list:
-        """In a kernel: masks of the first line of every lane, of the second, and so on, from the index of the first; a mask also
-        where all lanes are real, if ``always``."""
-        batch, real = self.batch, self.real(types) if always or self.lanes < self.width else True
-        if batch.each == 1:
-            return [real]
-        fired, count = (dr.gather(types.UInt32, column, self.rank) for column in (batch.fired, batch.counts))
-        left = fired + count + 1 - index
-        return [(left > turn) & real for turn in range(batch.each)]
+    def lines(self, types, first):
+        """In a kernel: how many each lane fires, from the index of the first."""
+        fired, count = (dr.gather(types.UInt32, column, self.rank) for column in (self.batch.fired, self.batch.counts))
+        lines = dr.minimum(fired + count + 1 - first, self.batch.each)
+        return dr.select(self.mask(types), lines, 0)
 
 
 def by_boxes(types, base, within, count, boxes: tuple[int, int]):

@@ -6,13 +6,13 @@ from typing import Any
 import drjit as dr
 
 from ..scene.model import Back
-from .departure import BACK, MASK, local_line
+from .departure import BACK, MASK, local_line, local_lines
 from .device import classes
 from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, Geometry
 
 NORMAL_MASK = (1 << NORMAL_BITS) - 1
 
-__all__ = ["Landing", "land", "local_line", "patch_of", "place_of"]
+__all__ = ["Landing", "land", "local_line", "local_lines", "patch_of", "place_of"]
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def _side(geometry: Geometry, hit: Landing, patch, cells, absorbed: int, escaped
 
 
 def place_of(geometry: Geometry, hit: Landing):
-    """Where on its face a line landed: the face (top bit: its back), and face coordinates in cells, as `departure.leave` takes
+    """Where on its face a line landed: the face (top bit: its back), and face coordinates in cells, as `departure.Frame` takes
     them."""
     types = geometry.device.types
     Float, UInt32 = types.Float, types.UInt32

@@ -27,7 +27,7 @@ def capture(engine) -> dict[str, np.ndarray]:
     state["fired_power"] = frozen(bands.fired).reshape(bands.n, engine.replicates)
     if engine.owes:
         state["before"] = frozen(bands.before).reshape(*shape, bands.n)
-        state["arrivals_before"] = frozen(engine.arrivals_before).reshape(shape)
+        state["arrivals_before"] = frozen(bands.arrivals_before).reshape(shape)
         state["quanta_before"] = np.array(bands.quanta_before)
     return state
 
@@ -49,11 +49,11 @@ def restore(engine, state: dict[str, np.ndarray]) -> None:
     types = engine.types
     engine.arrivals = upload(types.UInt32, np.concatenate([state["arrivals"].ravel(), state["missed"].ravel()]))
     engine.fired = upload(types.UInt32, state["fired"])
-    engine.arrivals_before = upload(types.UInt32, state.get("arrivals_before", state["arrivals"]))
     bands = engine.bands
     if bands is not None:
         bands.received = upload(types.UInt64, np.concatenate([state["received"].ravel(), state["received_missed"].ravel()]))
         bands.before = upload(types.UInt64, state.get("before", state["received"]))
+        bands.arrivals_before = upload(types.UInt32, state.get("arrivals_before", state["arrivals"]))
         bands.quanta_before = int(state.get("quanta_before", state["quanta"]))
         bands.fired = upload(types.UInt64, state["fired_power"])
     engine.set_quanta(int(state["quanta"]))

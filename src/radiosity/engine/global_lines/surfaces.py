@@ -12,7 +12,7 @@ import numpy as np
 
 from ...method.lines.local import triangle
 from ...scene.model import Back
-from ..departure import BACK, MASK, leave
+from ..departure import BACK, MASK, Frame
 from ..device import frozen, upload
 from ..geometry import COLUMN_BITS, QUAD, Geometry
 from ..lines import Landing, land, patch_of
@@ -102,7 +102,7 @@ class Surfaces:
         none = dr.zeros(Float, dr.width(face))
         patch = patch_of(geometry, Landing(yes, face, s, t, face < BACK, none, first, packed), LOST, ESCAPED)
         columns, rows = Float(packed & MASK), Float((packed >> COLUMN_BITS) & MASK)
-        return patch, *leave(geometry, face, s * columns, t * rows, numbers)
+        return patch, *Frame.of(geometry, face).leave(s * columns, t * rows, numbers)
 
     def spans(self, crossings: Crossings, points, lane, count: int):
         """Number of the line, one end and the other; ``points`` gives the numbers of lanes, ``lane`` is a permutation of them.

@@ -82,7 +82,7 @@ class Shooter:
         types, engine = self.types, self.engine
         number, index, record = chunk.read(types)
         landed = engine.trace(number, index, record, bits)
-        (real,) = chunk.turns(types, index)
+        real = chunk.mask(types)
         dr.scatter_add(engine.arrivals, types.UInt32(1), landed, active=real, mode=mode)
         for g in range(self.groups):
             here, there = number * self.groups + g, landed * self.groups + g

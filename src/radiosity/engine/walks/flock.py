@@ -13,7 +13,7 @@ import numpy as np
 
 from ...method.numbers.shuffle import key, mix, shuffled
 from .. import quanta as contract
-from ..departure import leave
+from ..departure import Frame
 from ..device import upload
 from ..firing import Engine
 from ..lines import land, local_line, place_of
@@ -31,7 +31,7 @@ class Flock:
     Attributes:
         walk: UInt32, replicate * n_patches + the patch where the walk began.
         index: UInt32, from 1: which walk of that patch.
-        place: on a face (face, s, t; see `departure.leave`) or, of the discrete equation, (patch number,).
+        place: on a face (face, s, t; see `departure.Frame`) or, of the discrete equation, (patch number,).
         weights: Floats, power carried of each group of bands, in quanta; none where all carry one.
     """
 
@@ -99,7 +99,8 @@ class Legs:
         numbers = engine.numbers.points(index, patch + leg * engine.n_opaque, randomisation, INDEX_BITS)
         numbers = self._moved(numbers, patch + leg * engine.n_opaque)
         if self.continuous:
-            line = leave(engine.geometry, *flock.place, numbers)
+            face, s, t = flock.place
+            line = Frame.of(engine.geometry, face).leave(s, t, numbers)
         else:
             line = local_line(engine.geometry, engine.record(flock.place[0]), numbers)
         return self._land(line, replicate, numbers)

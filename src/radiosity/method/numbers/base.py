@@ -1,6 +1,7 @@
 """What a number sequence must offer."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,9 +38,10 @@ class AbstractNumbers(ABC):
             bits: a compile-time bound; a few steps only, so that few kernels are compiled.
         """
 
-    def in_turn(self, first: Any, patch: Any, randomisation: Any, bits: int, turns: int) -> list[list[Any]]:
-        """The `points` of ``turns`` indices from ``first`` on. Those that are 2**bits and beyond may be anything."""
-        return [self.points(first + turn, patch, randomisation, bits) for turn in range(turns)]
+    def in_turn(self, first: Any, patch: Any, randomisation: Any, bits: int, turns: int) -> Callable[[Any], list[Any]]:
+        """For a loop over the `points` of ``turns`` indices from ``first`` on: made before the loop, and called in it with the
+        turn, UInt32 from 0 on. Those of indices that are 2**bits and beyond may be anything."""
+        return lambda turn: self.points(first + turn, patch, randomisation, bits)
 
     @abstractmethod
     def steps(self) -> tuple[int, ...]:

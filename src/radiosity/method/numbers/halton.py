@@ -1,6 +1,7 @@
 """The Halton sequence (J. H. Halton, Numerische Mathematik 2, 1960) in bases 2, 3, 5, 7, 11."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -22,21 +23,36 @@ class Halton(AbstractNumbers):
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
 
     def points(self, index, patch, randomisation, bits):
-        return self.in_turn(index, patch, randomisation, bits, 1)[0]
+        inverses = [radical_inverse(index, base, bits) for base in BASES[1:]]
+        return _moved([_binary(index), *inverses], _shifts(randomisation))
 
     def in_turn(self, first, patch, randomisation, bits, turns):
-        Float = dr.float32_array_t(type(first))
-        columns = [[Float(dr.brev(first + turn) >> 8) * 2.0**-24 for turn in range(turns)]]
-        columns += [radical_inverses(first, base, bits, turns) for base in BASES[1:]]
-        shifts = [Float(shift >> 8) * 2.0**-24 for shift in randomisation[: len(BASES)]]
-        moved = ([value + shift for value, shift in zip(point, shifts, strict=True)] for point in zip(*columns, strict=True))
-        return [[value - dr.floor(value) for value in point] for point in moved]
+        neighbours = [Neighbours.of(first, base, bits, turns) for base in BASES[1:]]
+        shifts = _shifts(randomisation)
+
+        def points(turn):
+            return _moved([_binary(first + turn), *(inverse.at(turn) for inverse in neighbours)], shifts)
+
+        return points
 
     def steps(self):
         return STEPS
 
     def largest(self):
         return LARGEST
+
+
+def _shifts(randomisation) -> list:
+    return [dr.float32_array_t(type(shift))(shift >> 8) * 2.0**-24 for shift in randomisation[: len(BASES)]]
+
+
+def _moved(point: list, shifts: list) -> list:
+    moved = [value + shift for value, shift in zip(point, shifts, strict=True)]
+    return [value - dr.floor(value) for value in moved]
+
+
+def _binary(index):
+    return dr.float32_array_t(type(index))(dr.brev(index) >> 8) * 2.0**-24
 
 
 def radical_inverse(index, base: int, bits: int):
@@ -48,27 +64,41 @@ def radical_inverse(index, base: int, bits: int):
     return _value(_mirrored(index, base, bits, 0), base)
 
 
-def radical_inverses(first, base: int, bits: int, turns: int) -> list:
-    """Those of ``turns`` indices from ``first`` on, to the same bits.
+@dataclass(frozen=True)
+class Neighbours:
+    """The radical inverses of consecutive indices, to the same bits.
 
-    They differ in a few low digits and in one carry at most, so the others are mirrored twice for all of them: of the first
-    index, and as they are after a carry.
+    They differ in a few low digits and in one carry at most, so the others are mirrored twice for all of them.
+
+    Attributes:
+        base: of the digits.
+        short: how many low digits differ.
+        begin: those of the first index, as a number.
+        before, after: the others mirrored, see `_mirrored`: of the first index, and as they are after a carry.
     """
-    if turns == 1:
-        return [radical_inverse(first, base, bits)]
-    short = next(digits for digits in range(1, turns + 1) if base**digits >= turns)
-    period, unit = base**short, float(base ** (LOW_DIGITS[base] - short))
-    quotient = first // period
-    begin = dr.float32_array_t(type(first))(first - quotient * period)
-    before, after = (_mirrored(q, base, bits, short) for q in (quotient, quotient + 1))
-    values = []
-    for turn in range(turns):
-        digits = begin + turn
+
+    base: int
+    short: int
+    begin: Any
+    before: list[Any]
+    after: list[Any]
+
+    @staticmethod
+    def of(first, base: int, bits: int, turns: int) -> "Neighbours":
+        """Of so many indices from ``first`` (UInt32) on."""
+        short = next(digits for digits in range(1, turns + 1) if base**digits >= turns)
+        quotient = first // base**short
+        begin = dr.float32_array_t(type(first))(first - quotient * base**short)
+        return Neighbours(base, short, begin, *(_mirrored(q, base, bits, short) for q in (quotient, quotient + 1)))
+
+    def at(self, turn):
+        """That of the index ``turn`` (UInt32) after the first."""
+        period, unit = self.base**self.short, float(self.base ** (LOW_DIGITS[self.base] - self.short))
+        digits = self.begin + type(self.begin)(turn)
         carried = digits >= period
-        whole, *rest = (dr.select(carried, b, a) for a, b in zip(before, after, strict=True))
-        low = _mirror_chains(dr.select(carried, digits - period, digits), base, short)
-        values.append(_value([dr.fma(low, unit, whole), *rest], base))
-    return values
+        whole, *rest = (dr.select(carried, b, a) for a, b in zip(self.before, self.after, strict=True))
+        low = _mirror_chains(dr.select(carried, digits - period, digits), self.base, self.short)
+        return _value([dr.fma(low, unit, whole), *rest], self.base)
 
 
 def _value(parts: list, base: int):
