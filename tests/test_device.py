@@ -4,11 +4,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import drjit as dr
 import numpy as np
 import pytest
 
 import radiosity as rd
 from radiosity import llvm
+from radiosity.engine import blocks
 from radiosity.engine.device import PACKET, choose, upload
 
 
@@ -151,3 +153,35 @@ def test_kernels_stay_within_their_arrays(order):
     assert done.stdout.split() == ["done"], done.stderr
     assert "out-of-bounds" not in done.stderr
     assert "out of bounds" not in done.stderr
+
+
+def test_blocks_of_a_launch_are_what_dr_jit_takes():
+    """Powers of two above a packet: for anything else it ends the process."""
+    for threads in (1, 2, 3, 16, 128):
+        for lanes in (1, 2, 1000, 2**17 + 5, 2**20, 2**28):
+            size = blocks.block(lanes, threads, 2**14)
+            assert size & (size - 1) == 0
+            assert blocks.LEAST <= size <= 2**14
+    assert blocks.block(2**20, 2, 32) == 32
+    assert blocks.block(136_000, 2, 2**14) == 1024
+
+
+def test_blocks_are_set_for_a_launch_and_set_back():
+    choose("cpu")
+    functions = blocks._functions()
+    assert functions is not None
+    before = functions[0]()
+    with blocks.shared(2**17):
+        assert functions[0]() == blocks.block(2**17, dr.thread_count(), before) < before
+    assert functions[0]() == before
+    with pytest.raises(KeyError), blocks.shared(2**17):
+        raise KeyError
+    assert functions[0]() == before
+
+
+def test_results_do_not_need_a_size_of_blocks(monkeypatch):
+    patches = rd.subdivide(rd.load_scene("room"), cells=2)
+    with_blocks = rd.solve(patches, quanta=2**17, replicates=2).state
+    monkeypatch.setattr(blocks, "_functions", lambda: None)
+    without = rd.solve(patches, quanta=2**17, replicates=2).state
+    assert all(np.array_equal(with_blocks[key], without[key]) for key in with_blocks)

@@ -85,8 +85,8 @@ class BandTally:
 
     def weigh(self, engine, numbers, places, arrivals) -> None:
         """Before a sweep: what each line of the patches ``numbers`` carries, of each group, to ``places`` in ``weights``; in the
-        end of all that received since the last one, and their arrivals now. No expression may still wait to read the arrays that are written here, or
-        Dr.Jit copies them whole."""
+        end of all that received since the last one, and their ``arrivals`` now. No expression may still wait to read the arrays
+        that are written here, or Dr.Jit copies them whole."""
         types = engine.types
         self._weigh(engine, numbers, places, arrivals)
         dr.eval(self.weights)

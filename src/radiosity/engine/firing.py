@@ -196,8 +196,8 @@ class Engine:
         return self.owed(numbers, dr.gather(self.types.UInt32, self.bands.arrivals_before, numbers))
 
     def _each(self, sweep: Sweep) -> int:
-        """Lines of a lane: what those of a patch have in common is found once for all of them. Such kernels take longer to
-        compile, too long for short runs; many threads, and a GPU more so, want more lanes than that would leave."""
+        """Lines of a lane: what those of a patch have in common is found once for all of them. It takes a kernel more to compile,
+        which short runs do without; many threads, and a GPU more so, want more lanes than that would leave."""
         cpu = self.geometry.device.name == "cpu"
         many = cpu and not self.method.coherent and min(sweep.total, self.swept) >= MUCH * dr.thread_count()
         return EACH if many else 1
