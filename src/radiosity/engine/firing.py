@@ -227,7 +227,8 @@ class Engine:
         if each == 1:
             landed = fire(self.points(number, first, replicate, bits), chunk.mask(types, always=few))
         else:
-            points, count = self.points_in_turn(number, first, replicate, bits, each), chunk.lines(types, first)
+            points = self.numbers.in_turn(first, *self._stream(number, replicate), bits, each)
+            count = chunk.lines(types, first)
             dr.while_loop((types.UInt32(0),), lambda turn: turn < count, turn_by_turn, mode="symbolic")
         if few:
             dr.schedule(landed)
@@ -249,10 +250,6 @@ class Engine:
     def points(self, number, index, replicate, bits: int):
         """The numbers of the ``index``-th line of each patch number."""
         return self.numbers.points(index, *self._stream(number, replicate), bits)
-
-    def points_in_turn(self, number, first, replicate, bits: int, turns: int):
-        """Those of so many lines from the ``first`` on, see `AbstractNumbers.in_turn`."""
-        return self.numbers.in_turn(first, *self._stream(number, replicate), bits, turns)
 
     def _stream(self, number, replicate):
         """Patch and randomisation."""

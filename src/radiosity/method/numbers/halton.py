@@ -24,14 +24,14 @@ class Halton(AbstractNumbers):
 
     def points(self, index, patch, randomisation, bits):
         inverses = [radical_inverse(index, base, bits) for base in BASES[1:]]
-        return _moved([_binary(index), *inverses], _shifts(randomisation))
+        return moved([binary(index), *inverses], shifts(randomisation))
 
     def in_turn(self, first, patch, randomisation, bits, turns):
         neighbours = [Neighbours.of(first, base, bits, turns) for base in BASES[1:]]
-        shifts = _shifts(randomisation)
+        by = shifts(randomisation)
 
         def points(turn):
-            return _moved([_binary(first + turn), *(inverse.at(turn) for inverse in neighbours)], shifts)
+            return moved([binary(first + turn), *(inverse.at(turn) for inverse in neighbours)], by)
 
         return points
 
@@ -42,16 +42,19 @@ class Halton(AbstractNumbers):
         return LARGEST
 
 
-def _shifts(randomisation) -> list:
+def shifts(randomisation) -> list:
+    """Of each dimension, in [0, 1)."""
     return [dr.float32_array_t(type(shift))(shift >> 8) * 2.0**-24 for shift in randomisation[: len(BASES)]]
 
 
-def _moved(point: list, shifts: list) -> list:
-    moved = [value + shift for value, shift in zip(point, shifts, strict=True)]
-    return [value - dr.floor(value) for value in moved]
+def moved(point: list, by: list) -> list:
+    """Modulo 1."""
+    sums = [value + shift for value, shift in zip(point, by, strict=True)]
+    return [value - dr.floor(value) for value in sums]
 
 
-def _binary(index):
+def binary(index):
+    """The radical inverse in base 2, to 24 bits."""
     return dr.float32_array_t(type(index))(dr.brev(index) >> 8) * 2.0**-24
 
 

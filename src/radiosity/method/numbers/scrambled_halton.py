@@ -15,8 +15,8 @@ import drjit as dr
 import numpy as np
 
 from ...engine.device import upload
-from .base import DIMENSIONS, LARGEST, WORDS, AbstractNumbers
-from .halton import BASES, radical_inverse
+from .base import LARGEST, WORDS, AbstractNumbers
+from .halton import BASES, binary, moved, radical_inverse, shifts
 
 BLOCKS = {5: (5, 5, 4), 7: (4, 4, 4), 11: (4, 3, 3)}  # digits of the index that are looked up together
 STEPS = (14, 16, 19, 22, 32)  # 2^22 < 7^8: up to here two blocks are enough
@@ -30,14 +30,8 @@ class ScrambledHalton(AbstractNumbers):
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
 
     def points(self, index, patch, randomisation, bits):
-        Float = dr.float32_array_t(type(index))
-        values = [
-            Float(dr.brev(index) >> 8) * 2.0**-24,
-            radical_inverse(index, 3, bits),
-            *(scrambled(index, base, bits) for base in BASES[2:]),
-        ]
-        moved = [value + Float(shift >> 8) * 2.0**-24 for value, shift in zip(values, randomisation[:DIMENSIONS], strict=True)]
-        return [value - dr.floor(value) for value in moved]
+        inverses = [radical_inverse(index, 3, bits), *(scrambled(index, base, bits) for base in BASES[2:])]
+        return moved([binary(index), *inverses], shifts(randomisation))
 
     def steps(self):
         return STEPS
