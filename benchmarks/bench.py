@@ -61,7 +61,7 @@ def finer_patches() -> None:
 
 def coherent() -> None:
     """Packets of like directions, where patches fire many lines: some faces of a room emit all of them."""
-    for tiles, faces in ((24, 40), (24, 4), (96, 4), (1, 17)):
+    for tiles, faces in ((24, 40), (24, 20), (24, 4), (96, 40), (96, 4), (1, 17)):
         scene = room(tiles)
         some = np.zeros((scene.n_faces, 1))
         some[:: max(scene.n_faces // faces, 1)] = 1.0

@@ -140,7 +140,8 @@ def solve(
     memory
         That the run may take, such as 8G or none; more is refused before it begins. Default: 70 % of what is free.
     coherent
-        Trace packets of like lines: faster, but not equal bit for bit where a line meets two faces in one point.
+        Trace packets of like lines: faster where a patch fires 50 000 and more in a sweep, but not equal bit for bit where a
+        line meets two faces in one point.
     max_reflectance
         Bring larger reflectances in the scene down to this.
     strict

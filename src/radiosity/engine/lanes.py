@@ -152,9 +152,9 @@ class Chunk:
         """Mask of the lanes that hold lines."""
         return types.UInt64(dr.arange(types.UInt32, self.width)) + self.first < self.end
 
-    def read(self, types, boxes: tuple[int, int] | None = None):
-        """In a kernel of this width: patch number, index (from 1) of the first line, and patch record of each lane; ``boxes`` as
-        in `method.numbers.strata`, for lanes of one line."""
+    def read(self, types, boxes: "Boxes | None" = None):
+        """In a kernel of this width: patch number, index (from 1) of the first line, and patch record of each lane; ``boxes`` for
+        lanes of one line."""
         batch = self.batch
         number, ahead, face, place = dr.gather(types.Array4u, batch.entries, self.rank)
         index = (dr.arange(types.UInt32, self.width) + types.UInt32(self.first)) * batch.each + ahead
@@ -175,17 +175,24 @@ class Chunk:
         return dr.select(self.mask(types), lines, 0)
 
 
-def by_boxes(types, base, within, count, boxes: tuple[int, int]):
+@dataclass(frozen=True)
+class Boxes:
+    """Of like directions, see `method.numbers.strata`: how many, and UInt32, how they are walked."""
+
+    count: int
+    walk: Any
+
+
+def by_boxes(types, base, within, count, boxes: Boxes):
     """Which of a patch's ``count`` lines from ``base`` on is fired as the ``within``-th, when they go box by box.
 
     As many whole cycles of the boxes as fit are permuted; the rest, less than a cycle, keeps its order.
     """
-    n = strata.boxes(*boxes)
-    walk = upload(types.UInt32, strata.walk(*boxes))
+    n = boxes.count
     cycles = count // n
     box = _quotient(types, within, cycles)
     whole = within < cycles * n
-    offset = dr.gather(types.UInt32, walk, box, whole) + n - base % n
+    offset = dr.gather(types.UInt32, boxes.walk, box, whole) + n - base % n
     offset = dr.select(offset >= n, offset - n, offset)
     return dr.select(whole, offset + (within - box * cycles) * n, within)
 
@@ -213,9 +220,10 @@ def sums(types, *columns) -> tuple[int, ...]:
     return tuple(int(total[i]) for i in range(len(columns)))
 
 
-def boxes_for(types, counts) -> tuple[int, int] | None:
+def boxes_for(types, counts) -> Boxes | None:
     """For coherent firing: the boxes that suit the patch of a typical line; None where none would pay."""
     wide = types.Float64(counts)
     squares, total = dr.sum(wide * wide), dr.sum(wide)
     dr.eval(squares, total)
-    return strata.largest(float(squares[0]) / float(total[0]))
+    size = strata.largest(float(squares[0]) / float(total[0]))
+    return None if size is None else Boxes(strata.boxes(*size), upload(types.UInt32, strata.walk(*size)))
