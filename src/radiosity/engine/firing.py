@@ -21,7 +21,7 @@ from .lanes import PIECE, Batch, Chunk, Sweep, boxes_for, sums
 from .lines import land, local_line, local_lines, patch_of
 
 DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
-MANY = 2  # at least one in so many patches was landed on: all are looked through
+MANY = 4  # at least one in so many patches was landed on: all are looked through
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
 EACH, MUCH = 8, 250_000  # lines of a lane, in sweeps of so many lines a thread after as many
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
@@ -82,8 +82,7 @@ class Engine:
             numbers = np.unique(self.landed)
             numbers = upload(types.UInt32, _not_alone(numbers[numbers < self.total], self.total))
         elif not self.everywhere:
-            patches = dr.arange(types.UInt32, dr.width(self.touched)) < dr.opaque(types.UInt32, self.total)
-            touched = self.touched & patches
+            touched = dr.reshape(types.Bool, self.touched, self.total, shrink=True)  # as they lie: no copy
             if MANY * sums(types, dr.select(touched, types.UInt32(1), types.UInt32(0)))[0] < self.total:
                 numbers = dr.compress(touched)
         if self.landed is None:

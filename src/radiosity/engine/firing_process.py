@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..method.order import run as fire_all
-from ..solution.books import Books, exact_columns, exact_dot, exact_sum
+from ..solution.books import Books, exact_sum, exact_totals
 from . import state as counters
 from .bands import QUANTUM
 from .firing import Engine
@@ -68,17 +68,15 @@ class Arrivals(AbstractTally):
         replicates = len(state["arrivals"])
         if "received" not in state:
             counts, missed, fired, unit = state["arrivals"], state["missed"], exact_sum(state["fired"]), 1
-            whole, fraction = source.emitted(quanta)
-            emitted = ((exact_sum(whole) << 32) + exact_sum(fraction)) * replicates
+            emitted = source.emitted_in_all(quanta) * replicates
         else:
             counts, missed, unit = state["received"][..., group], state["received_missed"][..., group], QUANTUM
             fired = exact_sum(state["fired_power"][group])
             share = groups.emission[:, group] * problem.patches.area / source.power
             emitted = round(float(share.sum()) * quanta * QUANTUM) * replicates << 32
         rho = Source.fixed(groups.reflectance[:, group])
-        low, high = exact_columns(counts)
-        reflected = exact_dot(low, rho) + (exact_dot(high, rho) << 32)
-        arrived = exact_sum(low) + (exact_sum(high) << 32) << 32
+        arrived, reflected = exact_totals(counts, rho)
+        arrived <<= 32
         watts = source.power / quanta / unit / 2**32 / replicates
         return Books(
             emitted, fired << 32, reflected, arrived - reflected, exact_sum(missed[0]) << 32, exact_sum(missed[1]) << 32, watts

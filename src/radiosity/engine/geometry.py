@@ -10,6 +10,7 @@ import numpy as np
 
 from ..patches import cells
 from ..patches.model import Patches
+from ..pieces import pieces
 from ..scene.model import Back, Scene
 from .device import Device, upload
 from .tree import Tree, primitives, tree
@@ -129,12 +130,13 @@ class Geometry:
     def patch_records(self):
         """(n_patches * 2,) UInt32: face (top bit: its back), and column, row and flags of the cell."""
         patches = self.patches
-        column, row, inverted = patches.place
         record = np.empty((len(patches), 2), np.uint32)
-        record[:, 0] = patches.face + np.where(patches.is_back, 1 << 31, 0)
-        record[:, 1] = (
-            column | (row << COLUMN_BITS) | np.where(inverted, INVERTED, 0) | np.where(self.scene.is_quad[patches.face], QUAD, 0)
-        )
+        for part in pieces(len(patches)):
+            face = patches.face[part]
+            column, row, inverted = patches.places(part)
+            flags = np.where(inverted, INVERTED, 0) | np.where(self.scene.is_quad[face], QUAD, 0)
+            record[part, 0] = face + np.where(patches.is_back[part], 1 << 31, 0)
+            record[part, 1] = column | (row << COLUMN_BITS) | flags
         return upload(self.device.types.UInt32, record)
 
 

@@ -5,12 +5,14 @@ terms are fixed point numbers with a 32-bit fraction, so the sum is exact and th
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import SceneError
 from ..patches.model import Patches
+from ..pieces import pieces
 
 ONE = 2.0**32
 LIMIT = 2**32 - 1  # of every counter
@@ -54,13 +56,27 @@ class Source:
     @staticmethod
     def fixed(reflectance: np.ndarray) -> np.ndarray:
         """Reflectance in [0, 1) times 2^32, uint32."""
-        return np.floor(reflectance * ONE).astype(np.uint32)
+        fixed = np.empty(reflectance.shape, np.uint32)
+        for part in pieces(len(fixed)):
+            fixed[part] = np.floor(reflectance[part] * ONE)
+        return fixed
 
     def emitted(self, quanta: int) -> tuple[np.ndarray, np.ndarray]:
         """E_i A_i / delta at N quanta: whole lines and 2^-32ths, uint32 each. Never falls when N grows."""
-        lines = self.share * quanta
-        whole = np.floor(lines)
-        return whole.astype(np.uint32), np.floor((lines - whole) * ONE).astype(np.uint32)
+        whole, fraction = (np.empty(len(self.share), np.uint32) for _ in range(2))
+        for part, *both in self._emitted(quanta):
+            whole[part], fraction[part] = both
+        return whole, fraction
+
+    def emitted_in_all(self, quanta: int) -> int:
+        """Their sum, in 2^-32ths."""
+        return sum((int(whole.sum()) << 32) + int(fraction.sum()) for _, whole, fraction in self._emitted(quanta))
+
+    def _emitted(self, quanta: int) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
+        for part in pieces(len(self.share)):
+            lines = self.share[part] * quanta
+            whole = np.floor(lines)
+            yield part, whole.astype(np.uint64), np.floor((lines - whole) * ONE).astype(np.uint64)
 
 
 def stream(seed: int, replicate: int, purpose: int) -> np.random.SeedSequence:

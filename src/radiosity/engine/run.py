@@ -30,7 +30,7 @@ from .trial import few_quanta
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
 ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
-LARGE = 1 << 22  # counters: before results are read, memory that sweeps took is given back, which costs some milliseconds
+LARGE = 1 << 19  # counters: before results are read, memory that sweeps took is given back, which costs some milliseconds
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
 
 

@@ -1,12 +1,13 @@
 """A complete stage: what its state means for the scene's bands."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from ..pieces import pieces
 from ..solution.errors import inner_products, margin, mean_and_error, relative_error
 from ..solution.intervals import least_error
 from .problem import Problem
@@ -52,9 +53,9 @@ class Snapshot:
         groups = self.problem.groups
         mean, error = (np.empty((len(self.problem.patches), len(groups.index))) for _ in range(2))
         for group in range(groups.n_groups):
-            one, its_error = self._irradiance(group)
-            for band in np.flatnonzero(groups.index == group):
-                mean[:, band], error[:, band] = one * groups.scale[band], its_error * groups.scale[band]
+            bands = np.flatnonzero(groups.index == group)
+            for part, one, its_error in self._irradiance(group):
+                mean[part, bands], error[part, bands] = (x[:, None] * groups.scale[bands] for x in (one, its_error))
         if self.tally.counts_landings:
             error = least_error(mean, error, self.arrivals, self.problem.patches.area)
         return mean, error
@@ -77,7 +78,7 @@ class Snapshot:
             key: (n_patches,) int, 0 to count - 1.
         """
         groups, found = self.problem.groups, []
-        runs = np.flatnonzero(np.diff(key, prepend=-1))  # of an equal key: few, where patches follow their faces
+        runs = np.concatenate([[0], np.flatnonzero(key[1:] != key[:-1]) + 1])  # of an equal key: few, since patches follow faces
 
         def summed(row):
             return np.bincount(key[runs], np.add.reduceat(row, runs, dtype=np.float64), count)
@@ -88,21 +89,22 @@ class Snapshot:
             found.append([[summed(row) * unit for row in values], [summed(row * rho) * unit for row in values]])
         return np.stack([np.array(found[g]) * s for g, s in zip(groups.index, groups.scale, strict=True)], axis=-1)
 
-    def _irradiance(self, group: int) -> tuple[np.ndarray, np.ndarray]:
+    def _irradiance(self, group: int) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
+        """Mean and standard error of a group, a piece of the patches at a time."""
         values, unit = self.tally.irradiance(self.problem, self.state, group)
-        mean, error = mean_and_error(values)
-        if isinstance(self.tally, AbstractBiasedTally):
-            error = np.hypot(error, self.tally.bias(self.problem, self.state, group))
-        factor = unit / self.problem.patches.area
-        mean *= factor
-        error *= factor
-        return mean, error
+        biased = isinstance(self.tally, AbstractBiasedTally)
+        bias = self.tally.bias(self.problem, self.state, group) if biased else None
+        for part in pieces(len(self.problem.patches)):
+            mean, error = mean_and_error(values[:, part])
+            if bias is not None:
+                error = np.hypot(error, bias[part])
+            factor = unit / self.problem.patches.area[part]
+            yield part, mean * factor, error * factor
 
     def error(self, rows: np.ndarray | slice = slice(None)) -> float:
         """See `Solution.error`; of some patches."""
-        irradiance, error = (values[rows] for values in self.irradiance)
-        rho, area = self.problem.patches.reflectance[rows], self.problem.patches.area[rows]
-        return relative_error(rho * irradiance, rho * error, area, (irradiance, error))
+        patches = self.problem.patches
+        return relative_error(*(value[rows] for value in (patches.reflectance, *self.irradiance, patches.area)))
 
     def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
         """How many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""

@@ -52,13 +52,19 @@ class Patches:
     @cached_property
     def is_back(self) -> np.ndarray:
         """(n_patches,) bool."""
-        return np.arange(len(self)) - self.first[self.face] >= self.cells_per_face[self.face]
+        fronts = np.stack([self.cells_per_face, np.diff(self.first) - self.cells_per_face], axis=1)
+        return np.repeat(np.tile([False, True], len(fronts)), fronts.ravel())
 
     @property
     def place(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Column, row and inverted flag of each patch's cell, (n_patches,) each."""
-        cell = np.arange(len(self)) - self.first[self.face] - np.where(self.is_back, self.cells_per_face[self.face], 0)
-        return cells.place(cell, self.columns[self.face], self.scene.is_quad[self.face])
+        return self.places(slice(0, len(self)))
+
+    def places(self, part: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """`place` of patches from one to another."""
+        face = self.face[part]
+        cell = np.arange(part.start, part.stop) - self.first[face] - np.where(self.is_back[part], self.cells_per_face[face], 0)
+        return cells.place(cell, self.columns[face], self.scene.is_quad[face])
 
     @property
     def corners(self) -> np.ndarray:

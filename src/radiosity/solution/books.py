@@ -5,6 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from ..pieces import pieces
+
 
 @dataclass(frozen=True)
 class Books:
@@ -46,6 +48,16 @@ def by_difference(emitted: float, absorbed: float, escaped: float, lost: float) 
     statistical), shown as rounding, and ``closes`` is None."""
     rounding = absorbed + escaped + lost - emitted
     return {"emitted": emitted, "rounding": rounding, "absorbed": absorbed, "escaped": escaped, "lost": lost, "closes": None}
+
+
+def exact_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
+    """Sum of (k, n) unsigned integers, and that of their products with (n,) uint32, without overflow."""
+    total = weighted = 0
+    for part in pieces(rows.shape[1]):
+        low, high = exact_columns(rows[:, part])
+        total += exact_sum(low) + (exact_sum(high) << 32)
+        weighted += exact_dot(low, weight[part]) + (exact_dot(high, weight[part]) << 32)
+    return total, weighted
 
 
 def exact_dot(long: np.ndarray, short: np.ndarray) -> int:

@@ -2,21 +2,28 @@
 
 import numpy as np
 
+from ..pieces import pieces
+
 SURE = 0.95  # of runs are to reach the error that was asked for
-BLOCK = 1 << 16  # columns
 MANY = 1e5  # independent patches: more make no difference
 
 
 def mean_and_error(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Mean and standard error of the mean over axis 0 (replicates); the error of a single replicate is unknown: NaN."""
+    mean, error = (np.empty(values.shape[1:]) for _ in range(2))
+    for part in pieces(len(mean)):
+        mean[part], error[part] = _mean_and_error(values[:, part])
+    return mean, error
+
+
+def _mean_and_error(values: np.ndarray) -> tuple[np.ndarray, np.ndarray | float]:
     count = len(values)
-    mean = np.zeros(values.shape[1:])
+    mean, squares = (np.zeros(values.shape[1:]) for _ in range(2))
     for row in values:  # row by row: no copy of all replicates in double precision
         mean += row
     mean /= count
     if count < 2:
-        return mean, np.full(mean.shape, np.nan)
-    squares = np.zeros(mean.shape)
+        return mean, np.nan
     for row in values:
         squares += (row - mean) ** 2
     return mean, np.sqrt(squares / (count * (count - 1)))
@@ -49,24 +56,28 @@ def inner_products(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """(replicates, replicates) of the weighted deviations of (replicates, n) values from their mean, block by block of
     columns."""
     total = np.zeros((len(values), len(values)))
-    for at in range(0, values.shape[1], BLOCK):
-        part = values[:, at : at + BLOCK].astype(np.float64) * weight[at : at + BLOCK]
-        part -= part.mean(axis=0)
-        total += part @ part.T
+    for part in pieces(values.shape[1]):
+        weighted = values[:, part].astype(np.float64) * weight[part]
+        weighted -= weighted.mean(axis=0)
+        total += weighted @ weighted.T
     return total
 
 
-def relative_error(value: np.ndarray, error: np.ndarray, area: np.ndarray, fallback: tuple[np.ndarray, np.ndarray]) -> float:
-    """Area-weighted RMS of the error over area-weighted RMS of the value, the largest of the bands; NaN where unknown.
+def relative_error(reflectance: np.ndarray, irradiance: np.ndarray, error: np.ndarray, area: np.ndarray) -> float:
+    """Area-weighted RMS of the error of B - E over that of B - E, the largest of the bands, of the irradiance where nothing
+    reflects; NaN where unknown.
 
     Args:
-        value, error: (n_patches, n_bands) of B - E, its standard error.
+        reflectance, irradiance, error: (n_patches, n_bands), the last one of the irradiance.
         area: (n_patches,).
-        fallback: irradiance and its error, used where B - E is zero in every patch and band.
     """
-    if not value.any():
-        value, error = fallback
-    top = np.sqrt(area @ error**2)
-    bottom = np.sqrt(area @ value**2)
-    lit = bottom > 0
-    return float((top[lit] / bottom[lit]).max()) if lit.any() else float("nan")
+    for weight in (reflectance, np.broadcast_to(1.0, reflectance.shape)):
+        top, bottom = np.zeros((2, reflectance.shape[1]))
+        for part in pieces(len(area)):
+            rho = weight[part]
+            bottom += area[part] @ (rho * irradiance[part]) ** 2
+            top += area[part] @ np.where(rho == 0, 0.0, rho * error[part]) ** 2
+        lit = bottom > 0
+        if lit.any():
+            return float((np.sqrt(top[lit]) / np.sqrt(bottom[lit])).max())
+    return float("nan")

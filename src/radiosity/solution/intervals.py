@@ -10,6 +10,7 @@ limits for the Poisson distribution", Biometrika 28, 1936).
 import numpy as np
 
 from ..errors import MethodError
+from ..pieces import pieces
 from .errors import mean_and_error
 
 FEW = 30  # arrivals, all replicates together: Student's intervals of patches with fewer are too narrow (docs/errors.md)
@@ -31,17 +32,26 @@ def student(level: float, replicates: int) -> float:
     return float(t.ppf(0.5 + level / 2, replicates - 1))
 
 
-def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
+def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, usual=None) -> np.ndarray:
     """(n_patches, n_bands) W or lm that a line brings to a patch, in the mean of replicates: of its own lines, or of the scene's
     where none landed.
 
     Args:
         irradiance: (n_patches, n_bands). arrivals: (n_patches,), replicates together. area: (n_patches,) m².
+        usual: `usual_power` of the scene that the patches are some of. Default: they are all.
     """
+    usual = usual_power(irradiance, arrivals, area) if usual is None else usual
     power, count = irradiance * area[:, None], arrivals[:, None]
     own = np.divide(power, count, out=np.zeros_like(power), where=count > 0)
-    usual = power.sum(axis=0) / max(int(arrivals.sum()), 1)
     return np.where(own > 0, own, usual)
+
+
+def usual_power(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """(n_bands,) W or lm that a line brings to any patch."""
+    total = np.zeros(irradiance.shape[1])
+    for part in pieces(len(area)):
+        total += (irradiance[part] * area[part, None]).sum(axis=0)
+    return total / max(int(arrivals.sum()), 1)
 
 
 def cluster(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
@@ -50,7 +60,8 @@ def cluster(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, are
     here = (arrivals > 0) & (arrivals < FEW)
     if not here.any():
         return np.ones(irradiance.shape[1])
-    one = power_of_an_arrival(irradiance, arrivals, area)[here]
+    usual = usual_power(irradiance, arrivals, area)
+    one = power_of_an_arrival(irradiance[here], arrivals[here], area[here], usual)
     relative = np.divide(error[here] * area[here, None], one, out=np.zeros_like(one), where=one > 0)
     return np.maximum((relative**2).sum(axis=0) / arrivals[here].sum(), 1)
 
@@ -68,12 +79,14 @@ def irradiance_bound(
 
 def least_error(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
     """(n_patches, n_bands) standard error, where it is zero since few lines landed and all replicates agree by chance: that of
-    Poisson's arrivals, and of one arrival where there was none."""
-    lucky = (error == 0) & (arrivals < FEW)[:, None]
-    if not lucky.any():
-        return error
-    spread = power_of_an_arrival(irradiance, arrivals, area) * np.sqrt(np.maximum(arrivals, 1) / area**2)[:, None]
-    return np.where(lucky, spread, error)
+    Poisson's arrivals, and of one arrival where there was none. It is written over."""
+    usual = usual_power(irradiance, arrivals, area)
+    for part in pieces(len(area)):
+        count, lucky = arrivals[part], (error[part] == 0) & (arrivals[part] < FEW)[:, None]
+        spread = power_of_an_arrival(irradiance[part], count, area[part], usual)
+        spread *= (np.sqrt(np.maximum(count, 1)) / area[part])[:, None]
+        np.copyto(error[part], spread, where=lucky)
+    return error
 
 
 def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:

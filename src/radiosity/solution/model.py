@@ -109,12 +109,11 @@ class Solution:
     def error(self) -> float:
         """Relative error of the scene: area-weighted RMS of the standard error of B - E over that of B - E, the largest
         of the bands (of the irradiance, where nothing reflects); NaN without replicates."""
-        return self._relative(np.ones(len(self.patches), bool))
+        return self._relative(slice(None))
 
-    def _relative(self, rows: np.ndarray) -> float:
-        reflected = self.patches.reflectance[rows] * self.irradiance[rows]
-        fallback = (self.irradiance[rows], self.irradiance_standard_error[rows])
-        return relative_error(reflected, self.standard_error[rows], self.patches.area[rows], fallback)
+    def _relative(self, rows: np.ndarray | slice) -> float:
+        values = (self.patches.reflectance, self.irradiance, self.irradiance_standard_error, self.patches.area)
+        return relative_error(*(value[rows] for value in values))
 
     @property
     def history(self) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...solution.books import Books, by_difference, exact_dot, exact_sum
+from ...solution.books import Books, by_difference, exact_sum, exact_totals
 from ..problem import Problem
 from ..process import AbstractTally, State
 from ..quanta import Source
@@ -53,9 +53,8 @@ def _exact(problem: Problem, state: State, group: int) -> dict:
     received = state["received"].reshape(replicates * (n + 2), -1)[:, group].astype(np.uint64)
     counts, missed = received[: replicates * n].reshape(replicates, n), received[replicates * n :].reshape(2, replicates)
     rho = Source.fixed(problem.groups.reflectance[:, group])
-    reflected = sum(exact_dot(row, rho) for row in counts)
-    arrived = exact_sum(counts) << 32
+    arrived, reflected = exact_totals(counts, rho)
     emitted, fired = (exact_sum(state[key][:, group].astype(np.uint64)) << 32 for key in ("emitted", "left"))
     watts = problem.source.power / int(state["quanta"]) / LINE / 2**32 / replicates
     escaped, lost = (exact_sum(row) << 32 for row in missed)
-    return Books(emitted, fired, reflected, arrived - reflected, escaped, lost, watts).powers()
+    return Books(emitted, fired, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()

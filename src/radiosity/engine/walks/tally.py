@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...solution.books import Books, by_difference, exact_dot, exact_sum
+from ...solution.books import Books, by_difference, exact_sum, exact_totals
 from ..problem import Problem
 from ..process import AbstractTally, State
 from ..quanta import Source
@@ -49,14 +49,13 @@ class WalkTally(AbstractTally):
             escaped, lost = (float(exact_sum(x)) * 2**32 * watts for x in missed)
             return by_difference(emission, float(received @ (1 - reflectance)) * 2**32 * watts, escaped, lost)
         rho = Source.fixed(reflectance)
-        reflected = sum(exact_dot(row, rho) for row in counts)
+        arrived, reflected = exact_totals(counts, rho)
         emitted = self._emitted(problem, quanta, unit, emission) * replicates
-        arrived, fired = exact_sum(counts) << 32, int(state["fired_power"][group]) << 32
+        arrived, fired = arrived << 32, int(state["fired_power"][group]) << 32
         escaped, lost = (exact_sum(x) << 32 for x in missed)
         return Books(emitted, fired, reflected, arrived - reflected, escaped, lost, watts).powers()
 
     def _emitted(self, problem: Problem, quanta: int, unit: int, emission: float) -> int:
         if unit == 1 and not self.chosen:
-            whole, fraction = problem.source.emitted(quanta)
-            return (exact_sum(whole) << 32) + exact_sum(fraction)
+            return problem.source.emitted_in_all(quanta)
         return round(emission / problem.source.power * quanta * unit) << 32
