@@ -163,7 +163,7 @@ def test_blocks_of_a_launch_are_what_dr_jit_takes():
             assert size & (size - 1) == 0
             assert blocks.LEAST <= size <= 2**14
     assert blocks.block(2**20, 2, 32) == 32
-    assert blocks.block(136_000, 2, 2**14) == 1024
+    assert blocks.block(136_000, 2, 2**14) == 4096
 
 
 def test_blocks_are_set_for_a_launch_and_set_back():

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import drjit as dr
 
-BLOCKS = 64  # for each thread
+BLOCKS = 16  # for each thread; smaller ones cost 5 % where faces are many and lines go to all of them
 LEAST = 256  # lanes of a block; a thread takes some 20 microseconds for as many lines
 
 
