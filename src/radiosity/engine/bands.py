@@ -119,11 +119,6 @@ class BandTally:
         place = (chunk.rank + chunk.batch.start) * self.n
         return [types.UInt64(dr.gather(types.UInt32, self.weights, place + g)) for g in range(self.n)]
 
-    def deposit(self, powers: list, landed, active, mode) -> None:
-        """In a kernel: lines land in slots."""
-        for g, power in enumerate(powers):
-            dr.scatter_add(self.received, power, landed * self.n + g, active=active, mode=mode)
-
     def count_fired(self, engine, batch) -> None:
         """After a batch: the power that left, summed from the lines' side."""
         types, replicate = engine.types, engine.replicate(batch.numbers)

@@ -17,6 +17,7 @@ from .bands import BandGroups, BandTally
 from .blocks import shared
 from .device import frozen, upload
 from .geometry import Geometry
+from .landings import AbstractLandings, landings
 from .lanes import PIECE, Batch, Chunk, Sweep, boxes_for, sums
 from .lines import land, local_line, local_lines, patch_of
 
@@ -168,22 +169,21 @@ class Engine:
         """Trace all lines of a sweep and count where they land."""
         types = self.types
         bits = self.numbers.bits_for(largest)
-        few, dense = sweep.total <= FEW, sweep.total > DENSE * self.total
-        # a copy of the counters for each thread spares atomic additions, where there are many lines to a counter
-        mode = dr.ReduceMode.Expand if dense else dr.ReduceMode.Direct
-        landed = []
+        few, everywhere = sweep.total <= FEW, sweep.total > DENSE * self.total
+        tally, landed = landings(self, sweep.total, flags=not few and not everywhere), []
         for batch in self.batches(sweep, 1 if few else self._each(sweep)):
             boxes = boxes_for(types, batch.counts) if self.method.coherent else None
             for chunk in batch.chunks(types):
-                places = self._fire(chunk, 32 if few else bits, boxes, few, dense, mode)
+                places = self._fire(chunk, 32 if few else bits, boxes, few, tally)
                 if few:
                     landed.append(frozen(places)[: chunk.lanes])
             dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
             if self.bands is not None:
                 self.bands.count_fired(self, batch)
             dr.eval(self.fired)
+        tally.settle()
         self.swept += sweep.total
-        self.everywhere, self.landed = dense, np.concatenate(landed) if few else None
+        self.everywhere, self.landed = everywhere, np.concatenate(landed) if few else None
 
     def batches(self, sweep: Sweep, each: int = 1) -> Iterator[Batch]:
         """Of a sweep, of ``each`` lines a lane."""
@@ -201,7 +201,7 @@ class Engine:
         many = cpu and not self.method.coherent and min(sweep.total, self.swept) >= MUCH * dr.thread_count()
         return EACH if many else 1
 
-    def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, dense: bool, mode):
+    def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, tally: AbstractLandings):
         """One launch. Of few lines, the slots they land in."""
         types, each = self.types, chunk.batch.each
         number, first, record = chunk.read(types, boxes)
@@ -211,11 +211,7 @@ class Engine:
 
         def fire(numbers, active):
             landed = self._land(*lines(numbers), replicate, boxes is not None, active)
-            dr.scatter_add(self.arrivals, types.UInt32(1), landed, active=active, mode=mode)
-            if not few and not dense:
-                dr.scatter(self.touched, types.Bool(True), landed, active=active)
-            if self.bands is not None:
-                self.bands.deposit(powers, landed, active, mode)
+            tally.add(landed, powers, active)
             return landed
 
         def turn_by_turn(turn):
@@ -232,7 +228,7 @@ class Engine:
         if few:
             dr.schedule(landed)
         with shared(chunk.lanes):
-            dr.eval(self.arrivals, self.touched, *([] if self.bands is None else [self.bands.received]))
+            dr.eval(*tally.arrays())
         return landed
 
     def trace(self, number, index, record, bits: int):

@@ -1,0 +1,103 @@
+"""Where lines land: a count, and the power of bands where these differ, are added to the slot of a patch.
+
+Lines of many threads land in one slot. Either all additions are atomic, or each thread adds to copies of its own, which are
+summed in the end: that pays where many lines come to a slot, and takes memory for the copies.
+"""
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+import drjit as dr
+
+DENSE = 2  # more lines a counter than this: copies pay
+MOST = 6 << 20  # bytes of a copy: larger ones gain little
+WORDS = 4  # of a packet of counts and powers
+
+
+class AbstractLandings(ABC):
+    """Of the lines of a sweep, which may take several launches."""
+
+    @abstractmethod
+    def add(self, slot, powers: list, active) -> None:
+        """In a kernel: lines land in slots, with a power of each group of bands (none where there is one)."""
+
+    @abstractmethod
+    def arrays(self) -> list:
+        """What a launch evaluates."""
+
+    @abstractmethod
+    def settle(self) -> None:
+        """After the last launch: all is in the engine's counters."""
+
+
+class Atomic(AbstractLandings):
+    """Added to the engine's counters at once. With ``flags`` it is remembered where lines landed."""
+
+    def __init__(self, engine, flags: bool, mode: dr.ReduceMode = dr.ReduceMode.Direct):
+        self.engine, self.flags, self.mode = engine, flags, mode
+
+    def add(self, slot, powers, active):
+        engine, types = self.engine, self.engine.types
+        dr.scatter_add(engine.arrivals, types.UInt32(1), slot, active=active, mode=self.mode)
+        if self.flags:
+            dr.scatter(engine.touched, types.Bool(True), slot, active=active)
+        for g, power in enumerate(powers):
+            dr.scatter_add(engine.bands.received, power, slot * len(powers) + g, active=active, mode=self.mode)
+
+    def arrays(self):
+        return [self.engine.arrivals, self.engine.touched, *([] if self.engine.bands is None else [self.engine.bands.received])]
+
+    def settle(self):
+        pass
+
+
+class Copied(AbstractLandings):
+    """Added to a copy of each thread, on a CPU.
+
+    Dr.Jit adds packets of two or four words one lane after the other. Single words it compares with those of all other lanes
+    first, to add equal places once, which takes two to eight times as long. So a count goes with a second word that stays
+    zero, or with the powers of three groups of bands.
+    """
+
+    def __init__(self, engine, flags: bool):
+        self.engine, self.flags, types = engine, flags, engine.types
+        self.n = 0 if engine.bands is None else engine.bands.n
+        self.packet: Any = types.Array2u if self.n == 0 else types.Array4u64
+        self.rows = packets(self.n)
+        width = dr.width(engine.arrivals) * self.rows * dr.size_v(self.packet)
+        self.sums = dr.opaque(dr.value_t(self.packet), 0, width)
+
+    def add(self, slot, powers, active):
+        words = [1, *powers, *[0] * (self.rows * dr.size_v(self.packet) - 1 - len(powers))]
+        for row in range(self.rows):
+            value = self.packet(*words[row * WORDS : (row + 1) * WORDS]) if powers else self.packet(*words)
+            dr.scatter_add(self.sums, value, slot * self.rows + row, active=active, mode=dr.ReduceMode.Expand)
+
+    def arrays(self):
+        return [self.sums]
+
+    def settle(self):
+        engine, types = self.engine, self.engine.types
+        slot = dr.arange(types.UInt32, dr.width(engine.arrivals))
+        words = [w for row in range(self.rows) for w in dr.gather(self.packet, self.sums, slot * self.rows + row)]
+        engine.arrivals = engine.arrivals + types.UInt32(words[0])
+        if self.flags:
+            engine.touched = engine.touched | (words[0] != 0)
+        for g, power in enumerate(words[1 : 1 + self.n]):
+            dr.scatter_add(engine.bands.received, power, slot * self.n + g, mode=dr.ReduceMode.NoConflicts)
+        dr.eval(*Atomic(engine, False).arrays())
+
+
+def packets(groups: int) -> int:
+    """Of a slot: of a count and the powers of so many groups."""
+    return -(-(1 + groups) // WORDS)
+
+
+def landings(engine, lines: int, flags: bool) -> AbstractLandings:
+    """For a sweep of so many lines."""
+    dense = lines > DENSE * engine.total
+    if not dense or engine.geometry.device.name != "cpu":
+        return Atomic(engine, flags, dr.ReduceMode.Expand if dense else dr.ReduceMode.Direct)
+    bands = 0 if engine.bands is None else engine.bands.n
+    each = 8 if bands == 0 else 8 * WORDS * packets(bands)
+    return Copied(engine, flags) if each * engine.total <= MOST else Atomic(engine, flags)
