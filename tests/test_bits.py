@@ -91,8 +91,8 @@ def test_launches_may_end_anywhere(monkeypatch, colored):
 
 
 @pytest.mark.parametrize("colored", [False, True])
-@pytest.mark.parametrize("each", [2, 8])
-def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, each, colored):
+@pytest.mark.parametrize("shift", [1, 2, 3])
+def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, shift, colored):
     """Where lanes are full, where patches fire fewer lines than a lane holds, and where a launch ends in between."""
     cut = rd.subdivide(rd.load_scene("cornell-box"), cells=2) if colored else patches
     took, of = [], lanes.Batch.of
@@ -105,20 +105,25 @@ def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, each
     monkeypatch.setattr(lanes, "CHUNK", 2**13 + 3)
     monkeypatch.setattr(lanes, "CORE_CHUNK", 1)
     one = rd.solve(cut, quanta=2**18, replicates=3)
-    assert {b.each for b in took} == {1}
+    assert not any(b.several for b in took)
     monkeypatch.setattr(firing, "MUCH", 0)
-    monkeypatch.setattr(firing, "EACH", each)
-    monkeypatch.setattr(lanes, "lines_a_lane", lambda lines, taken, most: most)
+    monkeypatch.setattr(firing, "SHIFTS", (shift,))
+    monkeypatch.setattr(lanes, "fullest", lambda lines, taken: max(taken.items()))
     several = rd.solve(cut, quanta=2**18, replicates=3)
-    assert sum(b.each == each for b in took) > 5
+    assert sum(b.several and int(b.each[0]) == 2**shift for b in took) > 5
     assert equal(several.state.values(), one.state.values())
 
 
 def test_half_empty_lanes_are_none():
     types = choose("cpu").types
-    for counts, each in (([8, 8, 16], 8), ([5, 6, 7], 8), ([1, 1, 1], 1), ([9, 9, 9], 1), ([100, 1, 1], 8), ([1, 0, 0], 1)):
-        taken = lanes.lanes_of(upload(types.UInt32, np.array(counts, np.uint32)), 8)
-        assert lanes.lines_a_lane(sum(counts), int(np.array(taken).sum()), 8) == each
+    for counts, each in (
+        ([8, 8, 16], 8), ([5, 6, 7], 8), ([1, 1, 1], 1), ([9, 9, 9], 4), ([100, 1, 1], 8), ([1, 0, 0], 1), ([3, 4, 3], 4),
+        ([2, 2, 1], 2), ([1, 2, 1], 2), ([2**32 - 1], 8),
+    ):  # fmt: skip
+        column = upload(types.UInt32, np.array(counts, np.uint32))
+        taken = {shift: int(np.array(lanes.lanes_of(column, shift)).sum(dtype=np.int64)) for shift in range(4)}
+        assert taken == {shift: sum(-(-count // 2**shift) for count in counts) for shift in range(4)}
+        assert lanes.fullest(sum(counts), taken) == (each.bit_length() - 1, taken[each.bit_length() - 1])
 
 
 @pytest.mark.parametrize("two_sided", [False, True])

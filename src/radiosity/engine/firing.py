@@ -24,7 +24,7 @@ from .lines import land, local_line, local_lines, patch_of
 DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
 MANY = 4  # at least one in so many patches was landed on: all are looked through
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
-EACH, MUCH = 8, 250_000  # lines of a lane, in sweeps of so many lines a thread after as many
+SHIFTS, MUCH = (3, 2, 1), 250_000  # 8, 4 or 2 lines of a lane, in sweeps of so many lines a thread after as many
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
 
 
@@ -171,7 +171,7 @@ class Engine:
         bits = self.numbers.bits_for(largest)
         few, everywhere = sweep.total <= FEW, sweep.total > DENSE * self.total
         tally, landed = landings(self, sweep.total, flags=not few and not everywhere), []
-        for batch in self.batches(sweep, 1 if few else self._each(sweep)):
+        for batch in self.batches(sweep, () if few else self._shifts(sweep)):
             boxes = boxes_for(types, batch.counts) if self.method.coherent else None
             for chunk in batch.chunks(types):
                 places = self._fire(chunk, 32 if few else bits, boxes, few, tally)
@@ -185,25 +185,25 @@ class Engine:
         self.swept += sweep.total
         self.everywhere, self.landed = everywhere, np.concatenate(landed) if few else None
 
-    def batches(self, sweep: Sweep, each: int = 1) -> Iterator[Batch]:
-        """Of a sweep, of ``each`` lines a lane."""
-        return sweep.batches(self.types, self._owed_before, self.fired, self.record, each)
+    def batches(self, sweep: Sweep, shifts: tuple[int, ...] = ()) -> Iterator[Batch]:
+        """Of a sweep, of 2^shift lines a lane."""
+        return sweep.batches(self.types, self._owed_before, self.fired, self.record, shifts)
 
     def _owed_before(self, numbers):
         """Lines that patch numbers owed in all when the sweep was fixed, where it keeps no counts: bands know."""
         assert self.bands is not None
         return self.owed(numbers, dr.gather(self.types.UInt32, self.bands.arrivals_before, numbers))
 
-    def _each(self, sweep: Sweep) -> int:
+    def _shifts(self, sweep: Sweep) -> tuple[int, ...]:
         """Lines of a lane: what those of a patch have in common is found once for all of them. It takes a kernel more to compile,
         which short runs do without; many threads, and a GPU more so, want more lanes than that would leave."""
         cpu = self.geometry.device.name == "cpu"
         many = cpu and not self.method.coherent and min(sweep.total, self.swept) >= MUCH * dr.thread_count()
-        return EACH if many else 1
+        return SHIFTS if many else ()
 
     def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, tally: AbstractLandings):
         """One launch. Of few lines, the slots they land in."""
-        types, each = self.types, chunk.batch.each
+        types = self.types
         number, first, record = chunk.read(types, boxes)
         replicate = self._replicate(number)
         lines = local_lines(self.geometry, record)
@@ -219,10 +219,10 @@ class Engine:
             return (turn + 1,)
 
         landed = None
-        if each == 1:
+        if not chunk.batch.several:
             landed = fire(self.points(number, first, replicate, bits), chunk.mask(types, always=few))
         else:
-            points = self.numbers.in_turn(first, *self._stream(number, replicate), bits, each)
+            points = self.numbers.in_turn(first, *self._stream(number, replicate), bits, 1 << max(SHIFTS))
             count = chunk.lines(types, first)
             dr.while_loop((types.UInt32(0),), lambda turn: turn < count, turn_by_turn, mode="symbolic")
         if few:

@@ -32,10 +32,10 @@ class Sweep:
     total: int
     counts: Any = None
 
-    def batches(self, types, owed, fired, records, each: int = 1) -> "Iterator[Batch]":
-        """A piece at a time, of ``each`` lines a lane where that leaves few lanes half empty. For patch numbers ``owed`` gives
-        what each owes in all, ``records`` two words, and the array ``fired`` what was fired before; no other lines than the
-        batches' are fired until the last one is made."""
+    def batches(self, types, owed, fired, records, shifts: tuple[int, ...] = ()) -> "Iterator[Batch]":
+        """A piece at a time, of 2^shift lines a lane: the largest of ``shifts`` that leaves few lanes half empty, or else one.
+        For patch numbers ``owed`` gives what each owes in all, ``records`` two words, and the array ``fired`` what was fired
+        before; no other lines than the batches' are fired until the last one is made."""
         low = dr.opaque(types.UInt32, self.low)
         for start in range(0, self.size, PIECE):
             width = min(PIECE, few_sizes(self.size - start))
@@ -48,11 +48,11 @@ class Sweep:
             counts = owed(numbers) - before if self.counts is None else dr.gather(types.UInt32, self.counts, at)
             counts = dr.select(inside, counts, 0)
             dr.schedule(counts, before)
-            lines, lanes = sums(types, counts, lanes_of(counts, each))
+            lines, *lanes = sums(types, counts, *(lanes_of(counts, shift) for shift in shifts))
             if not lines:
                 continue
-            of_lane = lines_a_lane(lines, lanes, each)
-            yield Batch.of(types, numbers, counts, before, records, first, of_lane, lines if of_lane == 1 else lanes)
+            shift, total = fullest(lines, {0: lines, **dict(zip(shifts, lanes, strict=True))})
+            yield Batch.of(types, numbers, counts, before, records, first, shift, total)
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,8 @@ class Batch:
             record, see `Geometry.patch_records`.
         start: where the piece begins in its sweep, on the device.
         total: lanes of all.
-        each: lines of a lane, the last one of a patch excepted, which takes what is left.
+        each: lines of a lane, the last one of a patch excepted, which takes what is left: 1, or UInt32, one kernel for all.
+        several: they are more than one.
     """
 
     numbers: Any
@@ -81,17 +82,20 @@ class Batch:
     entries: Any
     start: Any
     total: int
-    each: int
+    each: Any
+    several: bool
 
     @staticmethod
-    def of(types, numbers, counts, fired, records, start=0, each: int = 1, total: int | None = None) -> "Batch":
-        """From patches, one or more of them, how often they fire and did, and ``records`` that gives two words for numbers; the
-        ``total`` of lanes where it is known."""
+    def of(types, numbers, counts, fired, records, start=0, shift: int = 0, total: int | None = None) -> "Batch":
+        """From patches, one or more of them, how often they fire and did, and ``records`` that gives two words for numbers; of
+        2^shift lines a lane, the ``total`` of lanes where it is known."""
         if dr.width(numbers) == 1:
             both = paired(types, dr.arange(types.UInt32, 1))
             numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
             counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
-        lanes = lanes_of(counts, each)
+        several = shift > 0
+        lanes = lanes_of(counts, dr.opaque(types.UInt32, shift)) if several else counts
+        each = dr.opaque(types.UInt32, 1 << shift) if several else 1
         dr.eval(counts, lanes, fired)
         begins = dr.prefix_sum(types.UInt64(lanes))
         face, place = records(numbers)
@@ -99,7 +103,7 @@ class Batch:
         dr.eval(begins, entries)
         last = dr.width(counts) - 1
         total = int(begins[last]) + int(lanes[last]) if total is None else total
-        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each)
+        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each, several)
 
     def chunks(self, types) -> "Iterator[Chunk]":
         """Launches of a bounded number of lanes."""
@@ -119,14 +123,15 @@ class Batch:
             yield Chunk(self, rank, first, end, width, max(width, 2))
 
 
-def lanes_of(counts, each: int):
-    """Of ``each`` lines, for so many."""
-    return counts if each == 1 else counts // each + dr.select(counts % each > 0, type(counts)(1), 0)
+def lanes_of(counts, shift):
+    """Of 2^shift lines, for so many."""
+    whole = counts >> shift
+    return whole + dr.select(whole << shift == counts, type(counts)(0), 1)
 
 
-def lines_a_lane(lines: int, lanes: int, each: int) -> int:
-    """``each``, if so many lines fill the lanes that they would take to two thirds, or else 1."""
-    return each if 2 * each * lanes <= 3 * lines else 1
+def fullest(lines: int, lanes: dict[int, int]) -> tuple[int, int]:
+    """The largest of the powers of two whose lanes, this many, so many lines fill to two thirds; and its lanes."""
+    return max((shift, count) for shift, count in lanes.items() if 2 * count << shift <= 3 * lines)
 
 
 def paired(types, rows):
