@@ -55,10 +55,10 @@ def targets() -> None:
         if not name.startswith("labyrinth"):
             truth = rd.solve(patches, rays=REFERENCE, replicates=32, seed=987).irradiance
         rows = slice(None) if of is None else patches.surface == patches.scene.names.index(of.removeprefix("surface:"))
-        rho, area, errors, lines = patches.reflectance[rows], patches.area[rows], [], []
+        true, errors, lines = (patches.reflectance[rows], truth[rows]), [], []
         for seed in range(RUNS):
             solution = rd.solve(patches, error=target, error_of=of, seed=seed)
-            errors.append(relative_error(rho * truth[rows], rho * (solution.irradiance - truth)[rows], area, (truth, truth)))
+            errors.append(relative_error(*true, (solution.irradiance - truth)[rows], patches.area[rows]))
             lines.append(solution.rays)
         # a run of as many lines as all these would have its error below this in 95 % of cases: so many lines were needed
         usual = float(np.quantile(errors, 0.95))

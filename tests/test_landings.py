@@ -55,8 +55,8 @@ def test_sums_are_those_of_whole_numbers(kind, groups, lines, random):
 def test_copies_end_in_equal_integers(name, monkeypatch):
     """All sweeps in copies, none, and some; also where flags tell which patches go on."""
     patches, took = rd.subdivide(rd.load_scene(name), cells=20), []
-    for dense, most in ((0, landings.MOST), (np.inf, landings.MOST), (0, 0), (landings.DENSE, landings.MOST)):
-        monkeypatch.setattr(landings, "DENSE", dense)
+    for dense, most in ((0, landings.MOST), (np.inf, landings.MOST), (0, 0), (landings.SHARED, landings.MOST)):
+        monkeypatch.setattr(landings, "SHARED", dense)
         monkeypatch.setattr(landings, "MOST", most)
         kinds = []
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import drjit as dr
 
-DENSE = 2  # more lines a counter than this: copies pay
+SHARED = 2  # more lines a counter than this: copies pay
 MOST = 6 << 20  # bytes of a copy: larger ones gain little
 WORDS = 4  # of a packet of counts and powers
 
@@ -95,7 +95,7 @@ def packets(groups: int) -> int:
 
 def landings(engine, lines: int, flags: bool) -> AbstractLandings:
     """For a sweep of so many lines."""
-    dense = lines > DENSE * engine.total
+    dense = lines > SHARED * engine.total
     if not dense or engine.geometry.device.name != "cpu":
         return Atomic(engine, flags, dr.ReduceMode.Expand if dense else dr.ReduceMode.Direct)
     bands = 0 if engine.bands is None else engine.bands.n
