@@ -17,11 +17,10 @@ from .bands import BandGroups, BandTally
 from .blocks import shared
 from .device import frozen, upload
 from .geometry import Geometry
-from .landings import AbstractLandings, landings
+from .landings import DENSE, AbstractLandings, landings
 from .lanes import PIECE, Batch, Chunk, Sweep, boxes_for, sums
 from .lines import land, local_line, local_lines, patch_of
 
-DENSE = 4  # more lines a counter than this: nearly all patches are landed on, and flags are not worth while
 MANY = 4  # at least one in so many patches was landed on: all are looked through
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
 SHIFTS, MUCH = (3, 2, 1), 250_000  # 8, 4 or 2 lines of a lane, in sweeps of so many lines a thread after as many

@@ -10,6 +10,7 @@ from typing import Any
 import drjit as dr
 
 SHARED = 2  # more lines a counter than this: copies pay
+DENSE = 4  # and than this: nearly all patches are landed on, and flags are not worth while
 MOST = 6 << 20  # bytes of a copy: larger ones gain little
 WORDS = 4  # of a packet of counts and powers
 
@@ -95,10 +96,10 @@ def packets(groups: int) -> int:
 
 def landings(engine, lines: int, flags: bool) -> AbstractLandings:
     """For a sweep of so many lines."""
-    dense = lines > SHARED * engine.total
-    checked = dr.flag(dr.JitFlag.Debug)  # it takes packets in the second thread's copy for out of bounds, and leaves them out
-    if not dense or checked or engine.geometry.device.name != "cpu":
-        return Atomic(engine, flags, dr.ReduceMode.Expand if dense else dr.ReduceMode.Direct)
     bands = 0 if engine.bands is None else engine.bands.n
     each = 8 if bands == 0 else 8 * WORDS * packets(bands)
-    return Copied(engine, flags) if each * engine.total <= MOST else Atomic(engine, flags)
+    checked = dr.flag(dr.JitFlag.Debug)  # it takes packets in the second thread's copy for out of bounds, and leaves them out
+    if engine.geometry.device.name != "cpu" or checked:
+        return Atomic(engine, flags, dr.ReduceMode.Expand if lines > DENSE * engine.total else dr.ReduceMode.Direct)
+    copies = lines > SHARED * engine.total and each * engine.total <= MOST
+    return Copied(engine, flags) if copies else Atomic(engine, flags)

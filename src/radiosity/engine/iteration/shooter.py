@@ -14,8 +14,9 @@ import numpy as np
 
 from ...method import Method
 from ..device import frozen, upload
-from ..firing import DENSE, FEW, Engine
+from ..firing import FEW, Engine
 from ..geometry import Geometry
+from ..landings import DENSE
 from ..lanes import Batch, Chunk
 from ..quanta import Source
 

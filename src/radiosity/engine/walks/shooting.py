@@ -9,7 +9,8 @@ import numpy as np
 
 from ...errors import MethodError
 from ..device import upload
-from ..firing import DENSE, Engine
+from ..firing import Engine
+from ..landings import DENSE
 from ..lanes import Batch, Chunk
 from ..process import AbstractTally, State
 from .births import Births
