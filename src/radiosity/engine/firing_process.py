@@ -76,8 +76,6 @@ class Arrivals(AbstractTally):
             emitted = round(float(share.sum()) * quanta * QUANTUM) * replicates << 32
         rho = Source.fixed(groups.reflectance[:, group])
         arrived, reflected = exact_totals(counts, rho)
-        arrived <<= 32
         watts = source.power / quanta / unit / 2**32 / replicates
-        return Books(
-            emitted, fired << 32, reflected, arrived - reflected, exact_sum(missed[0]) << 32, exact_sum(missed[1]) << 32, watts
-        ).powers()
+        escaped, lost = (exact_sum(x) << 32 for x in missed)
+        return Books(emitted, fired << 32, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()

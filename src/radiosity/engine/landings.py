@@ -46,7 +46,7 @@ class Atomic(AbstractLandings):
             dr.scatter_add(engine.bands.received, power, slot * len(powers) + g, active=active, mode=self.mode)
 
     def arrays(self):
-        return [self.engine.arrivals, self.engine.touched, *([] if self.engine.bands is None else [self.engine.bands.received])]
+        return counters(self.engine)
 
     def settle(self):
         pass
@@ -62,17 +62,16 @@ class Copied(AbstractLandings):
 
     def __init__(self, engine, flags: bool):
         self.engine, self.flags, types = engine, flags, engine.types
-        self.n = 0 if engine.bands is None else engine.bands.n
+        self.n = groups_of(engine)
         self.packet: Any = types.Array2u if self.n == 0 else types.Array4u64
-        self.rows = packets(self.n)
-        width = dr.width(engine.arrivals) * self.rows * dr.size_v(self.packet)
-        self.sums = dr.opaque(dr.value_t(self.packet), 0, width)
+        self.size, self.rows = dr.size_v(self.packet), packets(self.n)
+        self.sums = dr.opaque(dr.value_t(self.packet), 0, dr.width(engine.arrivals) * self.rows * self.size)
 
     def add(self, slot, powers, active):
-        words = [1, *powers, *[0] * (self.rows * dr.size_v(self.packet) - 1 - len(powers))]
+        words = [1, *powers, *[0] * (self.rows * self.size - 1 - len(powers))]
         for row in range(self.rows):
-            value = self.packet(*words[row * WORDS : (row + 1) * WORDS]) if powers else self.packet(*words)
-            dr.scatter_add(self.sums, value, slot * self.rows + row, active=active, mode=dr.ReduceMode.Expand)
+            packet = self.packet(*words[row * self.size : (row + 1) * self.size])
+            dr.scatter_add(self.sums, packet, slot * self.rows + row, active=active, mode=dr.ReduceMode.Expand)
 
     def arrays(self):
         return [self.sums]
@@ -86,7 +85,17 @@ class Copied(AbstractLandings):
             engine.touched = engine.touched | (words[0] != 0)
         for g, power in enumerate(words[1 : 1 + self.n]):
             dr.scatter_add(engine.bands.received, power, slot * self.n + g, mode=dr.ReduceMode.NoConflicts)
-        dr.eval(*Atomic(engine, False).arrays())
+        dr.eval(*counters(engine))
+
+
+def counters(engine) -> list:
+    """The engine's, that lines land in."""
+    return [engine.arrivals, engine.touched, *([] if engine.bands is None else [engine.bands.received])]
+
+
+def groups_of(engine) -> int:
+    """Groups of bands whose power lines carry; none where there is one."""
+    return 0 if engine.bands is None else engine.bands.n
 
 
 def packets(groups: int) -> int:
@@ -96,8 +105,8 @@ def packets(groups: int) -> int:
 
 def landings(engine, lines: int, flags: bool) -> AbstractLandings:
     """For a sweep of so many lines."""
-    bands = 0 if engine.bands is None else engine.bands.n
-    each = 8 if bands == 0 else 8 * WORDS * packets(bands)
+    groups = groups_of(engine)
+    each = 2 * 4 if groups == 0 else packets(groups) * WORDS * 8  # bytes
     checked = dr.flag(dr.JitFlag.Debug)  # it takes packets in the second thread's copy for out of bounds, and leaves them out
     if engine.geometry.device.name != "cpu" or checked:
         return Atomic(engine, flags, dr.ReduceMode.Expand if lines > DENSE * engine.total else dr.ReduceMode.Direct)

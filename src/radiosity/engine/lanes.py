@@ -71,7 +71,6 @@ class Batch:
         start: where the piece begins in its sweep, on the device.
         total: lanes of all.
         each: lines of a lane, the last one of a patch excepted, which takes what is left: 1, or UInt32, one kernel for all.
-        several: they are more than one.
     """
 
     numbers: Any
@@ -83,7 +82,6 @@ class Batch:
     start: Any
     total: int
     each: Any
-    several: bool
 
     @staticmethod
     def of(types, numbers, counts, fired, records, start=0, shift: int = 0, total: int | None = None) -> "Batch":
@@ -93,9 +91,8 @@ class Batch:
             both = paired(types, dr.arange(types.UInt32, 1))
             numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
             counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
-        several = shift > 0
-        lanes = lanes_of(counts, dr.opaque(types.UInt32, shift)) if several else counts
-        each = dr.opaque(types.UInt32, 1 << shift) if several else 1
+        lanes = lanes_of(counts, dr.opaque(types.UInt32, shift)) if shift else counts
+        each = dr.opaque(types.UInt32, 1 << shift) if shift else 1
         dr.eval(counts, lanes, fired)
         begins = dr.prefix_sum(types.UInt64(lanes))
         face, place = records(numbers)
@@ -103,7 +100,12 @@ class Batch:
         dr.eval(begins, entries)
         last = dr.width(counts) - 1
         total = int(begins[last]) + int(lanes[last]) if total is None else total
-        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each, several)
+        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each)
+
+    @property
+    def several(self) -> bool:
+        """A lane has more than one line."""
+        return not isinstance(self.each, int)
 
     def chunks(self, types) -> "Iterator[Chunk]":
         """Launches of a bounded number of lanes."""

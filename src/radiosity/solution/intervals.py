@@ -83,6 +83,8 @@ def least_error(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray,
     usual = usual_power(irradiance, arrivals, area)
     for part in pieces(len(area)):
         count, lucky = arrivals[part], (error[part] == 0) & (arrivals[part] < FEW)[:, None]
+        if not lucky.any():
+            continue
         spread = power_of_an_arrival(irradiance[part], count, area[part], usual)
         spread *= (np.sqrt(np.maximum(count, 1)) / area[part])[:, None]
         np.copyto(error[part], spread, where=lucky)

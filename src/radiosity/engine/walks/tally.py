@@ -51,9 +51,9 @@ class WalkTally(AbstractTally):
         rho = Source.fixed(reflectance)
         arrived, reflected = exact_totals(counts, rho)
         emitted = self._emitted(problem, quanta, unit, emission) * replicates
-        arrived, fired = arrived << 32, int(state["fired_power"][group]) << 32
+        fired = int(state["fired_power"][group]) << 32
         escaped, lost = (exact_sum(x) << 32 for x in missed)
-        return Books(emitted, fired, reflected, arrived - reflected, escaped, lost, watts).powers()
+        return Books(emitted, fired, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()
 
     def _emitted(self, problem: Problem, quanta: int, unit: int, emission: float) -> int:
         if unit == 1 and not self.chosen:
