@@ -3,8 +3,8 @@
     python tests/fuzz/commands.py --seed 0 --first 0 --count 100 --keep out/fuzz
 
 A job is a check, or a solve with some choices and perhaps a resume and a picture after it (`jobs`). Right are exit status 0, 2
-with a line of ``error:``, and of ``check`` 1. Anything else is told with the job's number, and its folder is kept; job k of a seed
-is always the same, so ``--first k --count 1`` runs it again.
+with a line of ``error:``, and of ``check`` 1. Anything else is told with the job's number, and its folder is kept; job k of a
+seed is always the same, so ``--first k --count 1`` runs it again.
 """
 
 import argparse
