@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import MethodError
 from ..method.lines.local import triangle
-from ..method.numbers import make
+from ..method.numbers import ready
 from ..method.numbers.random import philox
 from ..patches.model import Patches
 from .device import upload
@@ -96,7 +96,7 @@ def _chunk(geometry: Geometry, one: Polygons, other: Polygons, keys: np.ndarray,
     index = lane - pair * dr.opaque(UInt32, rays) + 1
     shift = philox([*(dr.gather(UInt32, word, pair) for word in words), UInt32(0), UInt32(0)],
                    [dr.opaque(UInt32, seed >> part & 0xFFFFFFFF) for part in (0, 32)])  # fmt: skip
-    numbers = make("sobol").points(index, pair, [*shift, UInt32(0)], 16)
+    numbers = ready("sobol", types).points(index, pair, [*shift, UInt32(0)], 16)
     kinds = dr.gather(UInt32, triangles, pair)
     start, normal, above = _point(types, records[0], pair, (kinds & 1) != 0, *numbers[:2])
     end, facing, beyond = _point(types, records[1], pair, (kinds & 2) != 0, *numbers[2:4])

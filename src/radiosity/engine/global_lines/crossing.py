@@ -47,6 +47,11 @@ class Crossings:
 
     geometry: Geometry
 
+    def prepare(self) -> None:
+        """Make what `next` reads, before any loop is recorded (`recorded.not_recorded`)."""
+        self.geometry.prepare_hits()
+        _ = self.records
+
     @cached_property
     def records(self):
         """(n_faces * 16,) Float: origin, edges, the step from the plane to the point where lines go on in front of it, and

@@ -14,7 +14,7 @@ from ...errors import MethodError
 from ...method.lines import LINES
 from ...method.lines.global_lines import by_disc, by_two_points, of_bundle
 from ...method.model import Method
-from ...method.numbers import make
+from ...method.numbers import ready
 from .. import quanta as contract
 from ..device import upload
 from ..geometry import EPSILON, Geometry
@@ -125,7 +125,7 @@ class Spans:
 
     @cached_property
     def _numbers(self):
-        return make(self.method.numbers)
+        return ready(self.method.numbers, self.geometry.device.types)
 
     @cached_property
     def _randomisation(self):

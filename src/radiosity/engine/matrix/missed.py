@@ -3,7 +3,7 @@
 import drjit as dr
 import numpy as np
 
-from ...method.numbers import make
+from ...method.numbers import ready
 from ..device import upload
 from ..geometry import Geometry
 from ..lanes import CHUNK
@@ -21,7 +21,7 @@ def missed(geometry: Geometry, lines: int = 1024, seed: int = 0) -> tuple[np.nda
     """
     types, n = geometry.device.types, len(geometry.patches)
     UInt32, size = types.UInt32, max(CHUNK // lines, 1)
-    numbers = make("sobol")
+    numbers = ready("sobol", types)
     shift = upload(UInt32, numbers.randomisation(stream(seed, 0, PURPOSE)))
     geometry.prepare()
     counts = np.zeros((2, n))
