@@ -67,10 +67,8 @@ def test_equal_bands_are_computed_once_and_are_the_integers():
 )
 def test_bands_are_one_group_where_one_is_a_multiple_of_the_other(emission, reflectance, groups):
     """Two lamps in bands, (n_bands, 2) here: what the groups say of each band is the band."""
-    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
-    scene = rd.Scene.from_arrays(
-        np.concatenate([square, square + [0, 0, 1]]), [[0, 1, 2, 3], [7, 6, 5, 4]], np.transpose(reflectance), np.transpose(emission)
-    )
+    corners = [[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    scene = rd.Scene.from_arrays(corners, [[0, 1, 2, 3], [7, 6, 5, 4]], np.transpose(reflectance), np.transpose(emission))
     found = BandGroups.of(rd.subdivide(scene, cells=1))
     assert found.n_groups == groups
     np.testing.assert_allclose(found.emission[:, found.index] * found.scale, scene.emission, rtol=1e-14, atol=0)

@@ -81,8 +81,8 @@ def reference():
 def test_both_ways_is_reciprocal_and_better():
     """Of the room, with random numbers: factors between patches, and the error of the solution.
 
-    By Poisson's distribution a row alone finds A_i F_ij with the variance A_i F_ij / w_i, where w_i are its lines over its area, and
-    both rows together with A_i F_ij / (w_i + w_j): so many times smaller is the spread over replicates, pair by pair.
+    By Poisson's distribution a row alone finds A_i F_ij with the variance A_i F_ij / w_i, where w_i are its lines over its area,
+    and both rows together with A_i F_ij / (w_i + w_j): so much smaller is the spread over replicates, pair by pair.
     """
     patches = rd.subdivide(rd.load_scene("room"), cells=1)
     problem, n, area = Problem.of(patches), len(patches), patches.area

@@ -1,4 +1,4 @@
-"""Points on the rims of faces, u or v exactly 0 or 1, and on the lines between cells: met on purpose, since lines meet them by chance.
+"""Points on the rims of faces, u or v exactly 0 or 1, and between cells: met on purpose, since lines meet them by chance.
 
 Whatever kernels say of a hit there is compared with `patches.cells`, and that with the cell's own corners.
 """
@@ -51,6 +51,14 @@ def holds(patches: rd.Patches, patch: np.ndarray, points: np.ndarray) -> np.ndar
     return (inward >= -1e-6).all(axis=1)
 
 
+def straight(geometry: Geometry, points: np.ndarray, up: float):
+    """Where lines straight up or down from points, metres, land."""
+    types, tree = geometry.device.types, geometry.tree
+    origin = ((points - tree.centre) * tree.scale).astype(np.float32)
+    zero = dr.zeros(types.Float, len(points))
+    return land(geometry, types.Array3f(*(upload(types.Float, x) for x in origin.T)), types.Array3f(zero, zero, zero + up))
+
+
 @pytest.mark.parametrize("k", [1, 2, 3, 7])
 @pytest.mark.parametrize("quad", [True, False])
 def test_cells_on_rims_hold_the_point(quad, k):
@@ -78,18 +86,16 @@ def test_kernels_find_the_cell_of_a_hit_on_a_rim(kind, k, back):
         if not front and back == rd.Back.PASSES:
             continue
         u, v = rims(bool(quads[face]), k).T
-        middle, up = [face * 4 + 0.2, 0.3, 1.0 if front else -1.0], -1.0 if front else 1.0
-        tree = geometry.tree
-        origin = [upload(types.Float, np.full(len(u), (x - c) * tree.scale, np.float32)) for x, c in zip(middle, tree.centre, strict=True)]
-        hit = land(geometry, types.Array3f(*origin), types.Array3f(dr.zeros(types.Float, len(u)), 0, up))
+        height = 1.0 if front else -1.0
+        hit = straight(geometry, np.tile([face * 4 + 0.2, 0.3, height], (len(u), 1)), -height)
         hit = replace(hit, u=upload(types.Float, u), v=upload(types.Float, v))
         found = np.array(patch_of(geometry, hit, ABSORBED, ESCAPED))
         on_face, s, t = (np.array(x) for x in place_of(geometry, hit))
         number = cells.number(u, v, *(np.full(len(u), value) for value in (k, k, quads[face])))
         radiates = not front and back == rd.Back.RADIATES
         if front or radiates:
-            expected, points = patches.first[face] + number + (k * k if radiates else 0), np.column_stack([u + 4 * face, v, 0 * u])
-            assert holds(patches, found, points).all()
+            expected = patches.first[face] + number + (k * k if radiates else 0)
+            assert holds(patches, found, np.column_stack([u + 4 * face, v, 0 * u])).all()
             assert (patches.is_back[found] == radiates).all()
             assert k == 3 or found.tolist() == expected.tolist()  # thirds are rounded: to which cell is open
         else:
@@ -111,22 +117,20 @@ def test_lines_that_meet_rims_land_in_a_cell_that_holds_the_point(kind, k):
     """Straight down onto points of the rims and of the lines between cells, whose numbers single precision holds."""
     patches = rd.subdivide(scene(kind), cells=k)
     geometry = Geometry(patches, choose("cpu"))
-    types, tree = geometry.device.types, geometry.tree
     points = []
     for face in (0, 1):
         u, v = rims(bool(patches.scene.is_quad[face]), k).T
         points.append(np.column_stack([u + 4 * face, v, 0 * u]))
     points = np.concatenate(points)
-    above = ((points + [0, 0, 1] - tree.centre) * tree.scale).astype(np.float32)
-    hit = land(geometry, types.Array3f(*(upload(types.Float, x) for x in above.T)), types.Array3f(dr.zeros(types.Float, len(above)), 0, -1.0))
-    landed = np.array(patch_of(geometry, hit, ABSORBED, ESCAPED))
+    above = points + np.array([0, 0, 1])
+    landed = np.array(patch_of(geometry, straight(geometry, above, -1.0), ABSORBED, ESCAPED))
     met = landed != ESCAPED
     assert met.mean() > 0.5  # a line on the rim itself may miss
     assert (landed[met] < len(patches)).all()
     assert holds(patches, landed[met], points[met]).all()
     inside = (np.abs(points % 4 - 0.5) < 0.5)[:, :2].all(axis=1) & ((points % 4)[:, :2].sum(axis=1) < 1)
     assert met[inside].all()
-    hosts = first_hits(patches.scene, points + [0, 0, 1], np.tile([0.0, 0, -1], (len(points), 1)))
+    hosts = first_hits(patches.scene, above, np.tile([0.0, 0, -1], (len(points), 1)))
     seen = Lookup(patches, np.arange(len(patches))[:, None], smooth=False)(hosts)[1]
     assert holds(patches, seen[seen >= 0], points[seen >= 0]).all()
 

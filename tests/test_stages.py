@@ -89,11 +89,13 @@ def test_a_coloured_run_goes_on_to_the_same_bits_or_is_refused(name):
     rung = budget.first_rung(method.order, 2, np.ones(len(patches)) / len(patches))
     whole = rd.solve(patches, method, quanta=4 * rung, **options)
     for begun in (1, 512, rung // 2, rung, rung + 1, 3 * rung // 2, 2 * rung):
-        before, after = rd.solve(patches, method, quanta=begun, **options), None
+        before = rd.solve(patches, method, quanta=begun, **options)
         try:
             after = rd.solve(patches, method, quanta=4 * rung, resume=before, **options)
         except rd.MethodError as error:
-            assert f"no power of two from {rung} on" in str(error)
-            assert begun not in (rung, 2 * rung)
-        if after is not None:
+            refused = str(error)
+        else:
             assert_equal(after, whole)
+            continue
+        assert f"no power of two from {rung} on" in refused
+        assert begun not in (rung, 2 * rung)

@@ -1,4 +1,4 @@
-"""Are small mistakes noticed? Each of `table.MISTAKES` is put into a copy of this checkout, one at a time, and tests are run on it.
+"""Are small mistakes noticed? Each of `table.MISTAKES` is put into a copy of this checkout, one at a time, and its tests are run.
 
     python tests/mutations/run.py              all of them, an hour or so
     python tests/mutations/run.py tone vtp     those whose file or reason holds one of the words

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Mistake(NamedTuple):
-    """``old`` stands exactly once in ``file``, below src/radiosity, and becomes ``new``; ``tests`` lie in this folder's parent."""
+    """``old`` stands exactly once in ``file``, below src/radiosity, and becomes ``new``; ``tests`` are files of tests/."""
 
     file: str
     old: str
