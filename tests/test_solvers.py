@@ -114,8 +114,8 @@ def shots_of(problem: System) -> list[int]:
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_southwell_shoots_from_the_patch_with_the_most_unshot_power(seed):
-    """Power, not radiosity: the first shot is that of the largest A E, not of the largest E or A; then likewise with what arrived,
-    all bands together."""
+    """Power, not radiosity: the first shot is that of the largest A E, not of the largest E or A; then likewise with what
+    arrived, all bands together."""
     problem, n = system(seed, 20, bands=2), 20
     area = problem.area * np.where(np.arange(n) == 5, 8.0, 1.0)
     emission = problem.emission.copy()
