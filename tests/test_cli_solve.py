@@ -216,7 +216,8 @@ def test_one_file_under_two_names_is_refused_before_the_run(capsys, monkeypatch,
     for more in ((), ("c.ply",)):
         status, out, err = run(capsys, "solve", "cornell-box", *SMALL, "-o", one, *more, "-o", second)
         assert (status, out) == (2, "")
-        assert re.match(rf"radiosity: error: {re.escape(str(Path(second)))} is named twice.*; give each output its own name\n", err)
+        named = re.escape(str(Path(second)))
+        assert re.match(rf"radiosity: error: {named} is named twice.*; give each output its own name\n", err)
     assert sorted(places.rglob("*")) == before
 
 
