@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from .budget import DONE, Budget
+from .turn import aside
 
 SLOPE = 0.6  # of the error against lines, as measured with low discrepancy numbers
 LAST = 4  # stages that a run's own slope is taken from
@@ -90,17 +91,17 @@ class Teller:
         else:
             fraction = self.lines / whole if whole else None
             left = (whole - self.lines) / rate if whole and rate else None
-        self.listener(
-            Progress(
-                self.stage,
-                self.lines,
-                rate,
-                self.error,
-                None if fraction is None else min(max(fraction, 0.0), 1.0),
-                None if left is None else max(left, 0.0),
-                message,
-            )
+        moment = Progress(
+            self.stage,
+            self.lines,
+            rate,
+            self.error,
+            None if fraction is None else min(max(fraction, 0.0), 1.0),
+            None if left is None else max(left, 0.0),
+            message,
         )
+        with aside():
+            self.listener(moment)
 
     def _expected_lines(self) -> float | None:
         if self.budget.rays is not None:

@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
-from ..errors import MethodError, RadiosityWarning
+from ..errors import DeviceError, MethodError, RadiosityWarning
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import Solution
@@ -26,9 +26,15 @@ from .snapshot import Snapshot
 from .state import check_same
 from .target import rows_of
 from .trial import few_quanta
+from .turn import turn
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
+LOST_HITS = (
+    "the energy balance does not close: hits were lost while another thread of this process ran kernels of Dr.Jit or Mitsuba "
+    "(runs of radiosity wait for each other). Solve again while nothing else uses them, or in a process of its own; a checkpoint "
+    "of this run is of no use"
+)
 ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
 LARGE = 1 << 19  # counters: before results are read, memory that sweeps took is given back, which costs some milliseconds
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
@@ -65,7 +71,7 @@ class Run:
 
     def solve(self) -> Solution:
         """Stage after stage until the budget is used up, or Ctrl-C."""
-        with self.stop.listening():
+        with turn(), self.stop.listening():
             return self._stages()
 
     def _stages(self) -> Solution:
@@ -219,6 +225,8 @@ class Run:
         return self._read(snapshot, status, pending or snapshot.state)
 
     def _read(self, snapshot: Snapshot, status: str, state: State) -> Solution:
+        if any(book["closes"] is False for book in snapshot.books):
+            raise DeviceError(LOST_HITS)
         mean, error = snapshot.irradiance
         return Solution(
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,

@@ -20,6 +20,7 @@ from .device import upload
 from .geometry import INSET, OFFSET, Geometry
 from .lanes import CHUNK
 from .lines import land
+from .turn import turn
 
 MOST = (1 << 16) - 1  # rays of a pair
 WORDS = 10  # of a polygon on the device: origin, two edges, offset
@@ -50,6 +51,7 @@ class Polygons:
         return Polygons(self.corners[rows], self.face[rows])
 
 
+@turn()
 def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int = 16, seed: int = 0) -> np.ndarray:
     """(m,) float64 in [0, 1]: share of what goes from ``one`` to ``other`` that meets nothing on its way, for m pairs.
 

@@ -19,6 +19,7 @@ from .. import quanta as contract
 from ..device import upload
 from ..geometry import EPSILON, Geometry
 from ..tree import REACH
+from ..turn import turn
 from .chords import MARGIN, crossing_box, walk
 from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 from .entrance import Entrance
@@ -70,6 +71,7 @@ class Spans:
         if self.method.lines not in LINES or self.method.lines == "local":
             raise MethodError(f"lines '{self.method.lines}' have no spans; take {', '.join(k for k in LINES if k != 'local')}")
 
+    @turn()
     def draw(self, replicate: int, first: int, count: int) -> Pairs:
         """Spans of the lines ``first`` to below ``first + count`` (from 0) of a replicate.
 
