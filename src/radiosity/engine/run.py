@@ -18,7 +18,7 @@ from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .device import choose, give_back_memory
-from .geometry import Geometry
+from .geometry import TRACING, Geometry
 from .problem import Problem
 from .process import AbstractProcess, State, make
 from .progress import Interrupted, Listener, Stop, Teller
@@ -242,7 +242,7 @@ class Run:
         return {
             "scene": self.patches.scene.hash, "source": self.patches.scene.source, "method": str(self.method),
             "choices": asdict(self.method), "seed": self.seed, "replicates": self.replicates, "device": self.device.name,
-            "patches": len(self.patches), "cut": self.patches.hash,
+            "patches": len(self.patches), "cut": self.patches.hash, "tracing": TRACING,
             "budget": self._budget,
             "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }  # fmt: skip
