@@ -90,7 +90,7 @@ class Run:
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
-        self.teller.begin(0 if self.resume is None else process.tally.lines(self.problem, process.capture()))
+        self.teller.begin(0 if self.resume is None else round(process.tally.about_lines(self.problem, process.capture())))
         status, pending, steps = "complete", {}, [target]
         while target:
             started = time.perf_counter()
@@ -100,13 +100,14 @@ class Run:
             except Interrupted as reason:
                 status, pending = str(reason), process.capture()
                 break
-            if self.replicates * len(self.patches) > LARGE:
+            large = self.replicates * len(self.patches) > LARGE
+            if large:
                 give_back_memory()
             snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture(), self.replicates, self.also)
             known = self.replicates > 1 and self._error_matters
             error = snapshot.error(self.rows) if known else math.nan
             margin = self._margin(snapshot)
-            lines = snapshot.lines
+            lines = snapshot.lines if known or large else round(snapshot.about_lines)
             self.teller.complete(lines, target, error, margin)
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
@@ -123,7 +124,7 @@ class Run:
                 continue
             target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
             steps = [target]
-            if target and self.replicates > 1:
+            if target and large and self.replicates > 1:
                 snapshot.settle()
         if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
             raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
