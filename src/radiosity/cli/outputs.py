@@ -20,14 +20,15 @@ def check(paths) -> None:
     Raises:
         OutputError: an unknown format, a folder that is not there or not writable, or one file named twice.
     """
-    from ..image import check_writable
+    from ..image import check_writable, files_of
 
-    seen = set()
+    seen: dict[Path, Path] = {}
     for path in paths:
-        place = Path(path).resolve()
-        if place in seen:
-            raise OutputError(f"{path} is named twice; give each output its own name")
-        seen.add(place)
+        for place in (file.resolve() for file in files_of(path)):
+            if place in seen:
+                also = "" if seen[place] == path else f" ({printable(seen[place])} writes {printable(place.name)}, too)"
+                raise OutputError(f"{path} is named twice{also}; give each output its own name")
+            seen[place] = path
         check_writable(path)
 
 

@@ -239,6 +239,10 @@ class Engine:
     def _land(self, origin, direction, replicate, coherent: bool, active):
         return self.slot(land(self.geometry, origin, direction, coherent=coherent, active=active), replicate)
 
+    def land_in(self, line, replicate, active):
+        """The slot of ``arrivals`` where lines land, from their origins and directions."""
+        return self._land(*line, replicate, False, active)
+
     def _replicate(self, number):
         return self.types.UInt32(0) if self.replicates == 1 else self.replicate(number)
 

@@ -6,7 +6,7 @@ from typing import Any
 import drjit as dr
 
 from ..scene.model import Back
-from .departure import BACK, MASK, local_line, local_lines
+from .departure import BACK, MASK, before, local_line, local_lines
 from .device import classes
 from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, Geometry
 from .recorded import loop
@@ -49,8 +49,8 @@ def land(geometry: Geometry, origin, direction, *, coherent: bool = False, activ
         travelled = dr.select(going, hit[5] + new.distance, hit[5])
         kept = [dr.select(done, value, old) for value, old in zip(_fields(new), hit, strict=True)]
         # go on in front of the face just passed, from the side of its normal
-        offset = dr.gather(Float, geometry.offsets, dr.gather(UInt32, geometry.primitive_faces, new.primitive, passes), passes)
-        step = origin + direction * new.distance + normal * (offset * (1.0 / NORMAL_ONE))
+        least = dr.gather(Float, geometry.offsets, dr.gather(UInt32, geometry.primitive_faces, new.primitive, passes), passes)
+        step = before(origin + direction * new.distance, normal * (1.0 / NORMAL_ONE), least)
         return dr.select(passes, step, origin), passes, (*kept[:5], travelled, *kept[6:])
 
     width = dr.width(origin, direction)

@@ -126,8 +126,9 @@ def _point(types, records, pair, is_triangle, x, y):
 
 def _records(geometry: Geometry, polygons: Polygons) -> np.ndarray:
     """(m, WORDS) float32 in the caster's coordinates, drawn in from the edges as whole faces are (`Geometry.face_records`)."""
-    tree, offset = geometry.tree, geometry.frames[3][polygons.face]
+    tree = geometry.tree
     points = (polygons.corners - tree.centre) * tree.scale
+    offset = geometry.offset(polygons.face, points)
     origin, first, second = points[:, 0], points[:, 1] - points[:, 0], points[:, 3] - points[:, 0]
     flat = _is_triangle(polygons) == 1
     area = np.maximum(np.linalg.norm(np.cross(first, second), axis=1), 1e-300)
