@@ -13,6 +13,7 @@ from .blocks import shared
 from .device import frozen, upload
 from .lines import local_line
 from .process import State
+from .recorded import loop
 from .residue import Groups, Starts
 
 
@@ -110,7 +111,7 @@ def _walk(engine, begun: Starts, carried: list[np.ndarray], tally) -> tuple[list
 
     going = dr.arange(types.UInt32, width) < dr.opaque(types.UInt32, m)
     state = (number, dr.zeros(types.UInt32, width), going, weights, [dr.zeros(type(weight), width) for weight in weights])
-    _, turn, _, _, spent = dr.while_loop(state, lambda number, turn, going, weights, spent: going, body, mode="symbolic")
+    _, turn, _, _, spent = loop(state, lambda number, turn, going, weights, spent: going, body)
     with shared(width):
         dr.eval(tally, turn, *spent)
     return [int(frozen(one)[:m].sum(dtype=np.int64)) for one in spent], int(frozen(turn)[:m].sum(dtype=np.int64))
