@@ -67,7 +67,8 @@ def test_every_column():
 def test_the_report_begins_with_what_shines_most():
     lines = made_up().report().splitlines()
     start = next(i for i, line in enumerate(lines) if line.startswith("surface "))
-    assert [line.split()[0] for line in lines[start + 1 : start + 5]] == ["wall", "lamp", "dark", "empty"]  # by the power that leaves
+    shown = [line.split()[0] for line in lines[start + 1 : start + 5]]
+    assert shown == ["wall", "lamp", "dark", "empty"]  # by the power that leaves
     assert "B warm" in lines[start]
 
 
