@@ -31,6 +31,11 @@ class Pooled(AbstractTally):
             power = power + first_shot.landed(problem, state, group)[0]
         return power, 1.0
 
+    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+        """Of a patch's ends one sees the brightest light."""
+        ends = _pooled(problem, state["ends"], state)
+        return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(ends.mean(axis=0), 1)
+
     def books(self, problem: Problem, state: State, group: int) -> dict:
         """Escaped or lost is, of what a patch sends, the share of its ends that see nothing, or an absorbing back."""
         power, _ = self.irradiance(problem, state, group)

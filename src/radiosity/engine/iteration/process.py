@@ -64,7 +64,8 @@ class Iteration(AbstractProcess):
     def unfinished(self, state: State) -> bool:
         if "unsent" in state:
             return bool(state["unsent"].any())
-        return int(state["progress"][1]) < int(state["progress"][0])
+        quanta, done, summed = (int(x) for x in state["progress"][:3])
+        return done < quanta or summed == 0
 
     @property
     def tally(self) -> IterationTally:

@@ -55,7 +55,7 @@ class Regular:
         """Iterate until a replicate has traced N lines."""
         if quanta > self.plan.quanta:
             self._begin(quanta)
-        while self.plan.done < quanta:
+        while not self.plan.over:
             swept(self._next())
 
     @property

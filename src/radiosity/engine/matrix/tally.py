@@ -36,6 +36,12 @@ class MatrixTally(AbstractTally):
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
         return self._solved(problem, state, group)[0], 1.0
 
+    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+        """Of a patch's lines one meets the brightest light."""
+        n, (rows, _) = len(problem.patches), split(state["keys"])
+        each = np.bincount(rows % n, weights=state["counts"], minlength=n) / int(state["replicates"])
+        return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(each, 1)
+
     def books(self, problem: Problem, state: State, group: int) -> dict:
         values, missed = self._solved(problem, state, group)
         emitted = float(problem.groups.emission[:, group] @ problem.patches.area)

@@ -139,6 +139,11 @@ class GatheringTally(AbstractTally):
         mean = state["met"][..., group] / np.maximum(state["fired"], 1)
         return mean * problem.patches.area, float(problem.groups.emission[:, group].max()) / UNIT
 
+    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+        """Of a patch's lines one meets the brightest light."""
+        brightest, each = problem.groups.emission[:, group].max(), state["fired"].sum(axis=0) / len(state["fired"])
+        return brightest * problem.patches.area / np.maximum(each, 1)
+
     def books(self, problem: Problem, state: State, group: int) -> dict:
         values, unit = self.irradiance(problem, state, group)
         received = values.mean(axis=0) * unit
