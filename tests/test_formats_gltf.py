@@ -120,6 +120,19 @@ def test_transforms_names_and_instances(tmp_path):
     assert corners[2, 0, 2] == 7
 
 
+def test_rotations_are_those_of_their_quaternions(tmp_path, random):
+    """About any axis, also where a quaternion is not of unit length; against scipy."""
+    from scipy.spatial.transform import Rotation
+
+    for quaternion in random.normal(size=(5, 4)):
+        node = {"rotation": quaternion.tolist(), "scale": [2, 3, 4], "translation": [5, 6, 7]}
+        scene = one(tmp_path, node=node)
+        expected = Rotation.from_quat(quaternion).apply(np.array(SQUARE) * [2, 3, 4]) + np.array([5, 6, 7])
+        found = scene.vertices[scene.faces[0]]
+        assert np.abs(found[:, None] - expected).max(axis=2).min(axis=0).max() < 1e-6  # each corner is there
+        np.testing.assert_allclose(scene.normal[0], Rotation.from_quat(quaternion).apply([0, 0, 1]), atol=1e-6)
+
+
 def test_a_mirrored_instance_keeps_its_front(tmp_path):
     assert one(tmp_path).normal[0].tolist() == [0, 0, 1]
     assert one(tmp_path, node={"scale": [-1, 1, 1]}).normal[0].tolist() == [0, 0, 1]

@@ -212,6 +212,33 @@ def test_a_surface_reaches_its_error():
     assert solution.provenance["budget"] == {"error": 0.004, "error_of": "surface:*box"}
 
 
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        ("lamp[1]", [0]),  # a name, though it is a pattern for lamp1
+        ("lamp1", [1]),
+        ("lamp[2]", [2]),  # no name, so a pattern
+        ("lamp[12]", [1, 2]),
+        ("lamp*", [0, 1, 2, 3]),
+        ("*", [4]),
+        ("?", [4, 5]),
+        ("LAMP1", [6]),
+        ("[!l]*", [4, 5, 6]),
+    ],
+)
+def test_a_target_means_the_surface_of_that_name_or_else_a_pattern(asked, found):
+    from radiosity.engine.target import rows_of
+
+    names = ["lamp[1]", "lamp1", "lamp2", "lamp[1]x", "*", "a", "LAMP1"]
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    vertices = np.concatenate([np.column_stack([corners, np.full(4, z)]) for z in range(7)])
+    scene = rd.Scene.from_arrays(vertices, np.arange(28).reshape(7, 4), 0.5, 1.0, surface=range(7), names=names, two_sided=True)
+    patches = rd.subdivide(scene, cells=2)
+    rows = rows_of(patches, f"surface:{asked}")
+    assert rows.tolist() == np.flatnonzero(np.isin(patches.surface, found)).tolist()
+    assert len(rows) == 8 * len(found)  # both sides of four cells
+
+
 @pytest.mark.parametrize("name", ["floor", "surface:", "surface:flor", "patch:3"])
 def test_surfaces_that_are_not_there(name):
     with pytest.raises(rd.MethodError, match=r"floor|surface:NAME"):

@@ -132,9 +132,12 @@ def test_a_parallelogram_stays_one_face():
     assert scene.area[0] == 1
 
 
+@pytest.mark.parametrize("begin", range(4))
 @pytest.mark.parametrize("apex", [(3, 2, 0), (0.2, 0.2, 0)], ids=["convex", "concave"])
-def test_another_quadrilateral_becomes_two_triangles(apex):
-    scene = build(vertices=[(0, 0, 0), (1, 0, 0), apex, (0, 1, 0)], faces=[(0, 1, 2, 3)], reflectance=[0.25])
+def test_another_quadrilateral_becomes_two_triangles(apex, begin):
+    """Whichever corner comes first: the reflex one may be any of the four."""
+    faces = [np.roll([0, 1, 2, 3], begin)]
+    scene = build(vertices=[(0, 0, 0), (1, 0, 0), apex, (0, 1, 0)], faces=faces, reflectance=[0.25])
     assert scene.n_faces == 2
     assert not scene.is_quad.any()
     assert (scene.normal == [0, 0, 1]).all()

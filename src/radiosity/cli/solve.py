@@ -1,5 +1,6 @@
 """``radiosity solve``"""
 
+from functools import partial
 from pathlib import Path
 
 from ..errors import MethodError
@@ -205,12 +206,11 @@ def solve(
                 solution = checked.coarse
             else:
                 solution = rd.solve(patches, chosen, **options, resume=before, checkpoint=keeper)
-        tell(solution.report())
+        also: list = [("the report", lambda: tell(solution.report()))]
         if checked is not None:
-            tell(f"\n{checked.report()}")
-            for path in tables:
-                checked.export(path)
-        outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path)
+            also += [("the refine check's report", lambda: tell(f"\n{checked.report()}"))]
+            also += [(path, partial(checked.export, path)) for path in tables]
+        outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path, also=also)
     except KeyboardInterrupt:
         if keeper is None or not keeper.written:
             raise

@@ -65,6 +65,7 @@ class BandTally:
     patch lie side by side in memory, so that a landing touches one place.
 
     Attributes:
+        groups: the bands.
         received: UInt64, group g of slot s (see `firing`) at s * n_groups + g.
         before, arrivals_before: the same of patch numbers, and their arrivals, as they were at the last sweep.
         fired: UInt64, power that left replicate r along lines, at g * replicates + r.
@@ -72,7 +73,7 @@ class BandTally:
     """
 
     def __init__(self, engine, groups: BandGroups):
-        self.n = groups.n_groups
+        self.groups, self.n = groups, groups.n_groups
         types, areas = engine.types, engine.geometry.patches.area
         self.shares = [upload(types.Float64, groups.emission[:, g] * areas / engine.source.power) for g in range(self.n)]
         self.rhos = [upload(types.UInt32, Source.fixed(groups.reflectance[:, g])) for g in range(self.n)]

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import MethodError
 from ..method.model import Method
-from ..method.numbers import make
+from ..method.numbers import ready
 from . import quanta as contract
 from .bands import BandGroups, BandTally
 from .blocks import shared
@@ -20,6 +20,7 @@ from .geometry import Geometry
 from .landings import DENSE, AbstractLandings, landings
 from .lanes import PIECE, Batch, Chunk, Sweep, boxes_for, sums
 from .lines import land, local_line, local_lines, patch_of
+from .recorded import loop
 
 MANY = 4  # at least one in so many patches was landed on: all are looked through
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
@@ -38,7 +39,7 @@ class Engine:
         if self.total + 2 * replicates > 2**31:
             raise MethodError(f"{self.n} patches times {replicates} replicates are too many to count; take fewer of either")
         self.types = geometry.device.types
-        self.numbers = make(method.numbers)
+        self.numbers = ready(method.numbers, self.types)
         u32 = self.types.UInt32
         self.rho = upload(u32, self.source.rho)
         self.phase = upload(u32, contract.phases(seed, replicates, self.n))
@@ -223,7 +224,7 @@ class Engine:
         else:
             points = self.numbers.in_turn(first, *self._stream(number, replicate), bits, 1 << max(SHIFTS))
             count = chunk.lines(types, first)
-            dr.while_loop((types.UInt32(0),), lambda turn: turn < count, turn_by_turn, mode="symbolic")
+            loop((types.UInt32(0),), lambda turn: turn < count, turn_by_turn)
         if few:
             dr.schedule(landed)
         with shared(chunk.lanes):
@@ -237,6 +238,10 @@ class Engine:
 
     def _land(self, origin, direction, replicate, coherent: bool, active):
         return self.slot(land(self.geometry, origin, direction, coherent=coherent, active=active), replicate)
+
+    def land_in(self, line, replicate, active):
+        """The slot of ``arrivals`` where lines land, from their origins and directions."""
+        return self._land(*line, replicate, False, active)
 
     def _replicate(self, number):
         return self.types.UInt32(0) if self.replicates == 1 else self.replicate(number)

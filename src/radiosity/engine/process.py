@@ -99,6 +99,10 @@ class AbstractTally(ABC):
     def lines(self, problem: Problem, state: State) -> int:
         """Lines of all replicates, as the paper counts them: a local line 1, a span of a global line 2."""
 
+    def about_lines(self, problem: Problem, state: State) -> float:
+        """The same where it is quick to tell, else an estimate."""
+        return self.lines(problem, state)
+
     @abstractmethod
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
         """(n_patches,) int64: lines that landed on each patch, replicates together."""

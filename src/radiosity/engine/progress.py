@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from .budget import DONE, Budget
+from .turn import aside
 
 SLOPE = 0.6  # of the error against lines, as measured with low discrepancy numbers
 LAST = 4  # stages that a run's own slope is taken from
@@ -85,17 +86,17 @@ class Teller:
         tracing = time.perf_counter() - self.tracing_since
         rate = (self.lines - self.lines_before) / tracing if tracing > 0 else 0.0
         fraction, left = self._ahead(rate)
-        self.listener(
-            Progress(
-                self.stage,
-                self.lines,
-                rate,
-                self.error,
-                None if fraction is None else min(max(fraction, 0.0), 1.0),
-                None if left is None else max(left, 0.0),
-                message,
-            )
+        moment = Progress(
+            self.stage,
+            self.lines,
+            rate,
+            self.error,
+            None if fraction is None else min(max(fraction, 0.0), 1.0),
+            None if left is None else max(left, 0.0),
+            message,
         )
+        with aside():
+            self.listener(moment)
 
     def _ahead(self, rate: float) -> tuple[float | None, float | None]:
         """The fraction that is done, and the seconds left: of an error with a limit, by what comes first."""

@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
-from ..errors import MethodError, RadiosityWarning
+from ..errors import DeviceError, MethodError, RadiosityWarning
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import NOT_REACHED, Solution
@@ -18,7 +18,7 @@ from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .device import choose, give_back_memory
-from .geometry import Geometry
+from .geometry import TRACING, Geometry
 from .problem import Problem
 from .process import AbstractProcess, State, make
 from .progress import Interrupted, Listener, Stop, Teller
@@ -27,9 +27,15 @@ from .snapshot import Snapshot
 from .state import check_same
 from .target import nothing_before_lights, rows_of
 from .trial import few_quanta
+from .turn import turn
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
+LOST_HITS = (
+    "the energy balance does not close: hits were lost while another thread of this process ran kernels of Dr.Jit or Mitsuba "
+    "(runs of radiosity wait for each other). Solve again while nothing else uses them, or in a process of its own; a checkpoint "
+    "of this run is of no use"
+)
 ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
 LARGE = 1 << 19  # counters: before results are read, memory that sweeps took is given back, which costs some milliseconds
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
@@ -66,7 +72,7 @@ class Run:
 
     def solve(self) -> Solution:
         """Stage after stage until the budget is used up, or Ctrl-C."""
-        with self.stop.listening():
+        with turn(), self.stop.listening():
             return self._stages()
 
     def _stages(self) -> Solution:
@@ -84,7 +90,7 @@ class Run:
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
-        self.teller.begin(0 if self.resume is None else process.tally.lines(self.problem, process.capture()))
+        self.teller.begin(0 if self.resume is None else round(process.tally.about_lines(self.problem, process.capture())))
         status, pending, steps = "complete", {}, [target]
         while target:
             started = time.perf_counter()
@@ -94,13 +100,14 @@ class Run:
             except Interrupted as reason:
                 status, pending = str(reason), process.capture()
                 break
-            if self.replicates * len(self.patches) > LARGE:
+            large = self.replicates * len(self.patches) > LARGE
+            if large:
                 give_back_memory()
             snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture(), self.replicates, self.also)
             known = self.replicates > 1 and self._error_matters
             error = snapshot.error(self.rows) if known else math.nan
             margin = self._margin(snapshot)
-            lines = snapshot.lines
+            lines = snapshot.lines if known or large else round(snapshot.about_lines)
             self.teller.complete(lines, target, error, margin)
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
@@ -117,7 +124,7 @@ class Run:
                 continue
             target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
             steps = [target]
-            if target and self.replicates > 1:
+            if target and large and self.replicates > 1:
                 snapshot.settle()
         if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
             raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
@@ -238,6 +245,8 @@ class Run:
         return self._read(snapshot, status, pending or snapshot.state)
 
     def _read(self, snapshot: Snapshot, status: str, state: State) -> Solution:
+        if any(book["closes"] is False for book in snapshot.books):
+            raise DeviceError(LOST_HITS)
         mean, error = snapshot.irradiance
         return Solution(
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
@@ -253,7 +262,7 @@ class Run:
         return {
             "scene": self.patches.scene.hash, "source": self.patches.scene.source, "method": str(self.method),
             "choices": asdict(self.method), "seed": self.seed, "replicates": self.replicates, "device": self.device.name,
-            "patches": len(self.patches), "cut": self.patches.hash,
+            "patches": len(self.patches), "cut": self.patches.hash, "tracing": TRACING,
             "budget": self._budget,
             "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }  # fmt: skip

@@ -45,6 +45,11 @@ class Snapshot:
         return self.tally.lines(self.problem, self.state)
 
     @cached_property
+    def about_lines(self) -> float:
+        """See `AbstractTally.about_lines`."""
+        return self.tally.about_lines(self.problem, self.state)
+
+    @cached_property
     def arrivals(self) -> np.ndarray:
         return self.tally.arrivals(self.problem, self.state)
 

@@ -14,6 +14,7 @@ from .budget import Budget
 from .checkpoint import Checkpoint
 from .memory import limited
 from .progress import Listener
+from .turn import turn
 
 if TYPE_CHECKING:
     from .run import Run
@@ -68,14 +69,15 @@ def solve(
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
-        unfinished stage are kept for ``resume``.
+        unfinished stage are kept for ``resume``. Of several threads one solves at a time; the others wait for it to end.
 
     Raises:
         SceneError: nothing emits. MethodError: a choice or budget that makes no sense, a solution that cannot be resumed, or
-            more memory than the run may take. OutputError: no checkpoint can be written there. DeviceError: nothing to run on.
+            more memory than the run may take. OutputError: no checkpoint can be written there. DeviceError: nothing to run on,
+            or hits were lost, since another thread ran kernels of Dr.Jit or Mitsuba.
             KeyboardInterrupt: Ctrl-C before the first stage was complete; a checkpoint has been written.
     """
-    with limited(memory):
+    with limited(memory), turn():
         return prepared(
             scene, resolve(method, **choices), rays=rays, seconds=seconds, error=error, quanta=quanta, replicates=replicates,
             seed=seed, device=device, progress=progress, resume=resume, error_of=error_of, checkpoint=checkpoint,

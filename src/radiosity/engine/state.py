@@ -5,7 +5,7 @@ import numpy as np
 from ..errors import MethodError
 from .device import frozen, upload
 
-SAME = ("scene", "cut", "seed", "replicates", "device")  # like devices give like bits
+SAME = ("scene", "cut", "seed", "replicates", "device", "tracing")  # like devices give like bits
 
 
 def capture(engine) -> dict[str, np.ndarray]:

@@ -3,16 +3,18 @@
 import drjit as dr
 import numpy as np
 
-from ...method.numbers import make
+from ...method.numbers import ready
 from ..device import upload
 from ..geometry import Geometry
 from ..lanes import CHUNK
 from ..lines import land, local_line, patch_of
 from ..quanta import stream
+from ..turn import turn
 
 PURPOSE = 5  # of the stream (`quanta.stream`)
 
 
+@turn()
 def missed(geometry: Geometry, lines: int = 1024, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """Shares escaped and lost, (n_patches,) float64 each, exactly zero where no line tells of any.
 
@@ -21,7 +23,7 @@ def missed(geometry: Geometry, lines: int = 1024, seed: int = 0) -> tuple[np.nda
     """
     types, n = geometry.device.types, len(geometry.patches)
     UInt32, size = types.UInt32, max(CHUNK // lines, 1)
-    numbers = make("sobol")
+    numbers = ready("sobol", types)
     shift = upload(UInt32, numbers.randomisation(stream(seed, 0, PURPOSE)))
     geometry.prepare()
     counts = np.zeros((2, n))

@@ -13,6 +13,7 @@ from ..firing import Engine
 from ..landings import DENSE
 from ..lanes import Batch, Chunk
 from ..process import AbstractTally, State
+from ..recorded import loop
 from .births import Births
 from .density import DensityTally
 from .flock import Flock, Legs
@@ -107,7 +108,7 @@ class Walks(AbstractLaunches):
             return tuple(kept), leg + 1, lines + dr.select(going, types.UInt32(1), types.UInt32(0)), sums, alive
 
         state = (flock.columns(), dr.opaque(types.UInt32, leg, dr.width(going)), lines, sums, going)
-        _, _, lines, sums, _ = dr.while_loop(state, lambda columns, leg, lines, sums, going: going, body, mode="symbolic")
+        _, _, lines, sums, _ = loop(state, lambda columns, leg, lines, sums, going: going, body)
         total = dr.sum(types.UInt64(lines))
         parts = [dr.sum(s) for s in sums]
         dr.eval(self.engine.arrivals, *self.scores.arrays(), total, parts)

@@ -38,6 +38,10 @@ class AbstractNumbers(ABC):
             bits: a compile-time bound; a few steps only, so that few kernels are compiled.
         """
 
+    @abstractmethod
+    def prepare(self, types: Any) -> None:
+        """Make on the device what `points` reads, of Dr.Jit's array ``types``: in a loop that is recorded nothing can be made."""
+
     def in_turn(self, first: Any, patch: Any, randomisation: Any, bits: int, turns: int) -> Callable[[Any], list[Any]]:
         """For a loop over the `points` of ``turns`` indices from ``first`` on: made before the loop, and called in it with the
         turn, UInt32 from 0 on. Those of indices that are 2**bits and beyond may be anything."""

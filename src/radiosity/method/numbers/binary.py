@@ -37,6 +37,9 @@ class Binary(AbstractNumbers):
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
 
+    def prepare(self, types):
+        _tables(self.matrices, types.UInt32)
+
     def points(self, index, patch, randomisation, bits):
         Float = dr.float32_array_t(type(index))
         return [Float(word >> 8) * 2.0**-24 for word in self.words(index, randomisation, bits)]

@@ -22,6 +22,9 @@ class Halton(AbstractNumbers):
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
 
+    def prepare(self, types):
+        pass  # reads nothing
+
     def points(self, index, patch, randomisation, bits):
         inverses = [radical_inverse(index, base, bits) for base in BASES[1:]]
         return moved([binary(index), *inverses], shifts(randomisation))

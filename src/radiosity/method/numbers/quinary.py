@@ -41,6 +41,9 @@ class Quinary(AbstractNumbers):
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return packed(np.random.Generator(np.random.Philox(stream)).integers(0, BASE, (DIMENSIONS, ROWS)))
 
+    def prepare(self, types):
+        _table(self.matrices, types.UInt32)
+
     def points(self, index, patch, randomisation, bits):
         Float = dr.float32_array_t(type(index))
         values = [

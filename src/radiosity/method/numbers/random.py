@@ -22,6 +22,9 @@ class Random(AbstractNumbers):
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return stream.generate_state(WORDS, np.uint32)
 
+    def prepare(self, types):
+        pass  # reads nothing
+
     def points(self, index, patch, randomisation, bits):
         Float = dr.float32_array_t(type(index))
         words = philox([index, patch, *randomisation[2:4]], randomisation[:2])

@@ -29,6 +29,10 @@ class ScrambledHalton(AbstractNumbers):
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
 
+    def prepare(self, types):
+        for base in BLOCKS:
+            _table(base, types.UInt32)
+
     def points(self, index, patch, randomisation, bits):
         inverses = [radical_inverse(index, 3, bits), *(scrambled(index, base, bits) for base in BASES[2:])]
         return moved([binary(index), *inverses], shifts(randomisation))
