@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy import stats
 
 import radiosity as rd
 from radiosity.scene.shapes import box
@@ -40,11 +39,15 @@ def drawn(patches: rd.Patches, mean: np.ndarray, rng, replicates: int = 8) -> rd
     values = counts * quantum / patches.area  # of each replicate
     arrivals = counts.sum(axis=0).astype(np.int64)
     error = values.std(axis=0, ddof=1)[:, None] / math.sqrt(replicates)
-    error = intervals.least_error(values.mean(axis=0)[:, None], error, arrivals, patches.area, np.array([quantum / replicates]), 8)
+    error = intervals.least_error(
+        values.mean(axis=0)[:, None], error, arrivals, patches.area, np.array([quantum / replicates]), 8
+    )
     power = np.stack([counts * quantum, 0 * counts])[..., None]
     emitted = float(patches.emission[:, 0] @ patches.area)
-    return rd.Solution(patches, values.mean(axis=0)[:, None], error, arrivals, 10**6, 1.0, round(emitted / quantum), replicates, (),
-                       "complete", {"choices": {}, "method": "drawn", "seed": 0}, surface_power=power)  # fmt: skip
+    return rd.Solution(
+        patches, values.mean(axis=0)[:, None], error, arrivals, 10**6, 1.0, round(emitted / quantum), replicates, (), "complete",
+        {"choices": {}, "method": "drawn", "seed": 0}, surface_power=power,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("mean", [0.3, 1.0, 3.0, 10.0, 25.0, 60.0])
