@@ -230,7 +230,7 @@ MISTAKES = (
     Mistake("scene/formats/toml/__init__.py", "                self.powers.pop(part.name, None)\n", "", ("test_formats_toml.py",),
             "a power holds although a later entry gives an emission"),
     Mistake("scene/degenerate.py", "(height <= RESOLUTION * reach)", "(height <= RESOLUTION)",
-            ("test_scene_arrays.py", "test_scale.py"), "slivers of small scenes go, those of large ones stay"),
+            ("test_scene_arrays.py",), "slivers of small scenes go, those of large ones stay"),
     Mistake("scene/topology.py", "    after[triangle, 2] = corners[triangle, 0]\n", "", ("test_check.py",),
             "triangles have two edges"),
     Mistake("scene/topology.py", "shifted = np.floor(", "shifted = np.round(", ("test_check.py",),
