@@ -3,8 +3,8 @@
     python tests/fuzz/commands.py --seed 0 --first 0 --count 100 --keep out/fuzz
 
 A job is a check, or a solve with some choices and perhaps a resume and a picture after it (`jobs`). Right are exit status 0, 2
-with a line of ``error:``, and of ``check`` 1. Anything else is told with the job's number, and its folder is kept; job k of a
-seed is always the same, so ``--first k --count 1`` runs it again.
+with a line of ``error:``, 3 where an error was not reached, and of ``check`` 1. Anything else is told with the job's number, and
+its folder is kept; job k of a seed is always the same, so ``--first k --count 1`` runs it again.
 """
 
 import argparse
@@ -55,6 +55,8 @@ def judged(command: list[str], status: int | None, output: str) -> tuple[str, st
         return "done", None
     if status == 1 and command[0] == "check":
         return "suspicious", None
+    if status == 3 and "was not reached" in output:
+        return "not reached", None
     if status == 2 and "error:" in output:
         return "refused", None
     return f"status {status}", f"ended with status {status}: {last}"
@@ -112,7 +114,7 @@ def fuzz(seed: int, first: int, count: int, keep: Path | None = None, start=fres
                 print(f"  {seed} {number}: {outcome.found[number]}", flush=True)
                 if keep is not None:
                     shutil.copytree(folder, keep / f"commands-{seed}-{number}", dirs_exist_ok=True)
-        if (number + 1 - first) % 100 == 0:
+        if (number + 1 - first) % 25 == 0:
             print(f"{number + 1 - first} jobs, {dict(outcome.counts)}", flush=True)
     outcome.seconds = time.monotonic() - begun
     return outcome

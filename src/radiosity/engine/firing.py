@@ -49,6 +49,7 @@ class Engine:
         self.arrivals, self.fired = dr.opaque(u32, 0, width), dr.opaque(u32, 0, self.total)
         self.touched, self.landed = dr.opaque(self.types.Bool, False, width), None
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
+        self.by_patch, self.own_lines = method.randomisation == "by-patch", dr.opaque(u32, own_lines(self.n))
         self.quanta = 0
         self.everywhere, self.owes = True, False
         self.swept = 0  # lines of the sweeps so far
@@ -248,14 +249,18 @@ class Engine:
 
     def points(self, number, index, replicate, bits: int):
         """The numbers of the ``index``-th line of each patch number."""
-        return self.numbers.points(index, *self._stream(number, replicate), bits)
+        patch, randomisation = self._stream(number, replicate)
+        return self.numbers.points(index, patch, randomisation(index), bits)
 
     def _stream(self, number, replicate):
-        """Patch and randomisation."""
+        """Patch, and its randomisation as a function of the index: its own for its first lines, then that of all patches."""
         types = self.types
         patch = number if self.replicates == 1 else number - replicate * self.n_opaque
         halves = [dr.gather(types.Array4u, self.randomisation, replicate * 2 + half) for half in (0, 1)]
-        return patch, [word for half in halves for word in half]
+        words = [word for half in halves for word in half]
+        if not self.by_patch:
+            return patch, lambda index: words
+        return patch, lambda index: self.numbers.of_patch(words, dr.select(index <= self.own_lines, patch, 0))
 
     def slot(self, hit, replicate):
         """The slot of ``arrivals`` for lines of a replicate, from where they land."""
@@ -263,6 +268,12 @@ class Engine:
         landed = patch_of(self.geometry, hit, LOST, ESCAPED)
         slot = dr.select(landed == ESCAPED, types.UInt32(self.total), types.UInt32(self.total + self.replicates)) + replicate
         return dr.select(landed >= LOST, slot, landed + replicate * self.n_opaque)
+
+
+def own_lines(n: int) -> int:
+    """How many lines of a patch take its own randomisation: a power of two between twice and four times as many as there are
+    patches. With more lines than that, one for all is as good for means over surfaces, and better for patches."""
+    return min(1 << (4 * n).bit_length() - 1, contract.LIMIT)
 
 
 def _not_alone(numbers: np.ndarray, total: int) -> np.ndarray:

@@ -1,14 +1,13 @@
 """What whole lines leave unsent (contract 12), and where the lines begin that send it on.
 
-When a stage ends, patch i owes x_i = E_i A_i / delta + rho_i h_i and has fired s_i = floor(x_i + phase_i) lines. The residue x_i - s_i
-is known exactly, and h_j - sum_i s_i F_ij has mean zero; so what is missing of E[h] is the answer to a source of the residues'
-means: D = F^T r + F^T rho D. Where no line comes back to its patch they are zero, since phases are uniform. Where lines come back
-they are not: in a narrow gap most of the light is missing at few lines.
+When a stage ends, patch i owes x_i = E_i A_i / delta + rho_i h_i and has fired s_i = floor(x_i + phase_i) lines. The residue
+r_i = x_i - s_i is known exactly, and h_j - sum_i s_i F_ij has mean zero; so what is missing of the mean of h is the answer D to
+the means of the residues: D = F^T r + F^T rho D. Where no light comes back to its patch these are zero, since phases are uniform.
+In a narrow gap they are not, and most of the light is missing at few lines.
 
-x_i - s_i is frac(x_i + phase_i) - phase_i. Its mean is that of frac(x_i + phase_i) - 1/2, which varies half as much; and it is zero
-where nothing was ever owed, or nothing is reflected. These are summed over groups of consecutive patches, in which what is noise
-cancels, and become whole lines of weight 1 or -1 by systematic rounding along the patches. A group's lines begin on its
-patches in proportion to what these owe, up to one line: as their residues' means grow, too.
+Residues are summed over groups of consecutive patches, in which most of their noise cancels, and become whole lines of weight 1
+or -1 by systematic rounding along the patches: all that is left unsent of a replicate is less than a line. A group's lines begin
+on its patches in proportion to what these owe, up to one line: as the means of their residues grow, too.
 """
 
 import math
@@ -22,9 +21,10 @@ from ..pieces import PIECE, pieces
 from . import quanta as contract
 from .quanta import Source
 
-SHARE = 0.03  # of a replicate's quanta: lines that noise makes
-TYPICAL = math.sqrt(1 / (6 * math.pi))  # mean size of a normal variable of the variance 1/12
-ONE, HALF, FRACTION = np.uint64(1 << 32), np.int64(1 << 31), np.uint64(0xFFFFFFFF)
+SHARE = 0.025  # of a replicate's quanta: the lines that noise makes are to be no more
+MOST = 512  # patches of a group
+TYPICAL = math.sqrt(1 / (3 * math.pi))  # mean size of a normal variable of the variance 1/6, which residues have
+ONE = np.uint64(1 << 32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Starts:
     Attributes:
         replicate, patch: (m,) int64, where they begin, replicate by replicate.
         line: (m,) uint32, which of its replicate, from 0 on.
-        sign: (m,) int32, 1 or -1.
+        sign: (m,) int64, 1 or -1.
     """
 
     replicate: np.ndarray
@@ -102,22 +102,19 @@ class Groups:
 def group_size(n_patches: int, quanta: int) -> int:
     """Patches whose residues are summed before they become lines: so many that these stay few."""
     alone = TYPICAL * n_patches / (SHARE * quanta)
-    return min(max(1, math.ceil(alone**2)), n_patches)
+    return min(math.ceil(alone**2), MOST)
 
 
 def _lines(rho, emitted, arrivals, phase, groups: Groups, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Patches where a replicate's lines begin, and their signs."""
-    sum_before, found = int(random.integers(0, 1 << 32)), []
+    total, found = int(random.integers(0, 1 << 32)), []
     for part, begins in groups.parts():
         owed = rho[part].astype(np.uint64) * arrivals[part] + emitted[part]
-        left = ((owed + phase[part]) & FRACTION).astype(np.int64) - HALF
-        left[(owed == 0) | (rho[part] == 0)] = 0
-        sums = np.cumsum(np.add.reduceat(left, begins)) + sum_before
-        reached = np.concatenate([[sum_before], sums]) >> 32
-        sum_before = int(sums[-1])
-        lines = np.diff(reached)
+        left = ((owed + phase[part]) % ONE).astype(np.int64) - phase[part]
+        sums = np.cumsum(np.append(total, np.add.reduceat(left, begins)))
+        total, lines = int(sums[-1]), np.diff(sums >> 32)
         group = np.repeat(np.arange(len(lines)), np.abs(lines))
-        sign = np.sign(lines[group]).astype(np.int32)
+        sign = np.sign(lines[group])
         found.append((part.start + (group if groups.begins is None else _within(owed, begins, group, random)), sign))
     return tuple(np.concatenate(column) for column in zip(*found, strict=True))
 

@@ -52,7 +52,7 @@ class Pooling(AbstractProcess):
         self.spans = Spans(self.geometry, self.method, self.seed, self.halves)
         self.shot = None
         if self.method.first_shot:
-            self.shot = FirstShot(self.geometry, self.problem, self.method.numbers, self.seed, self.replicates)
+            self.shot = FirstShot(self.geometry, self.problem, self.method, self.seed, self.replicates)
         groups, total = self.problem.groups, self.halves * self.n
         self.n_groups = groups.n_groups
         self._quanta, self.done = 0, 0
