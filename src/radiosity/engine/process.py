@@ -133,6 +133,14 @@ class AbstractBiasedTally(AbstractTally):
         errors hold it."""
 
 
+class AbstractMeanTally(AbstractBiasedTally):
+    """A tally of means over the lines of each patch; patches without lines take those of their face (`unmet`)."""
+
+    @abstractmethod
+    def measured(self, problem: Problem, state: State) -> np.ndarray:
+        """(replicates, n_patches): lines that each patch's value is the mean of."""
+
+
 def make(geometry: Geometry, problem: Problem, method: "Method | Baseline", seed: int, replicates: int) -> AbstractProcess:
     """The process that runs a method."""
     geometry.prepare()

@@ -13,14 +13,14 @@ from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import NOT_REACHED, Solution
 from ..solution.without_results import without_results
-from . import demand
+from . import demand, unmet
 from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .device import choose, give_back_memory
 from .geometry import TRACING, Geometry
 from .problem import Problem
-from .process import AbstractProcess, State, make
+from .process import AbstractMeanTally, AbstractProcess, State, make
 from .progress import Interrupted, Listener, Stop, Teller
 from .shortfall import warn_of_more, warn_of_target
 from .snapshot import Snapshot
@@ -231,12 +231,14 @@ class Run:
             warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
         if status == NOT_REACHED:
             warn_of_target(self, snapshot)
+        if isinstance(snapshot.tally, AbstractMeanTally):
+            unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
         ends = snapshot.lines / self.replicates / len(self.patches)
         global_factors = self.method.machine == "matrix" and self.method.lines != "local"
         if global_factors and ends < ENDS_ENOUGH:
             warnings.warn(
                 f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over that "
-                "number, and not in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
+                "number, and in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
                 RadiosityWarning,
                 stacklevel=5,
             )
