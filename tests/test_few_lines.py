@@ -257,3 +257,12 @@ def test_a_sensor_that_half_a_line_reaches(closed):
 def test_a_sensor_that_few_lines_reach(closed, quanta):
     """0.5, 4.6, 18 and 69 lines in the mean."""
     assert (held(closed, quanta, 400) >= 0.92).all()
+
+
+def test_a_report_without_a_complete_stage_has_no_nan(blind):
+    from radiosity.solution.without_results import without_results
+
+    text = without_results(blind.patches, 8, 1.0, "interrupted", blind.provenance, {}).report()
+    assert "nan" not in text
+    assert "emitted ? W" in text
+    assert "?: unknown, since no stage is complete yet" in text
