@@ -138,9 +138,7 @@ class Engine:
             counts = self._count(read, arrivals, total, largest)
             dr.eval(total, largest, *([counts] if keep else []), *([arrivals] if self.bands is not None else []))
             if self.bands is not None:
-                self.bands.weigh(self, piece, places, arrivals)
-        if self.bands is not None:
-            self.bands.quanta_before = self.quanta
+                self.bands.weigh(self, piece, places, arrivals, counts)
         lines = int(total[0])
         return (Sweep(numbers, low, size, lines, counts if keep else None), int(largest[0])) if lines else (None, 0)
 

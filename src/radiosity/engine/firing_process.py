@@ -43,11 +43,11 @@ class Firing(AbstractProcess):
         counters.restore(self.engine, state)
 
     def unfinished(self, state: State) -> bool:
-        return "before" in state
+        return "within" in state
 
     @cached_property
     def tally(self) -> "Arrivals":
-        return Arrivals(self.engine)
+        return Arrivals(self.engine, self.problem)
 
 
 class Arrivals(AbstractTally):
@@ -56,8 +56,8 @@ class Arrivals(AbstractTally):
 
     settles = True
 
-    def __init__(self, engine: Engine):
-        self.engine = engine
+    def __init__(self, engine: Engine, problem: Problem):
+        self.engine, self.problem = engine, problem
         self.forget()
 
     def forget(self) -> None:
@@ -69,17 +69,17 @@ class Arrivals(AbstractTally):
         """What the residue of a state brings."""
         if self._sent is None or self._state is not state:
             self.forget()  # first, for the sake of memory
-            self._state, self._sent = state, send(self.engine, state)
+            self._state, self._sent = state, send(self.engine, self.problem, state)
         return self._sent
 
     def lines(self, problem: Problem, state: State) -> int:
         return exact_sum(state["fired"]) + self.sent(state).lines
 
     def about_lines(self, problem: Problem, state: State) -> float:
-        fired, sign = exact_sum(state["fired"]), starts(self.engine, state).sign
+        fired, begun = exact_sum(state["fired"]), starts(self.engine, problem, state)
         packets = self.engine.replicates * int(state["quanta"])
-        of_one = fired / max(packets - int(sign.sum()), packets / 2)  # what is fired lacks those of the residue
-        return fired + LONGER * len(sign) * of_one
+        of_one = fired / max(packets - begun.net, packets / 2)  # what is fired lacks those of the residue
+        return fired + LONGER * len(begun.line) * of_one
 
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
         return state["arrivals"].sum(axis=0, dtype=np.int64)
