@@ -52,3 +52,14 @@ def plain_hits(scene, origins, directions):
             array = getattr(best, name)
             array[nearer] = np.broadcast_to(value, len(origins))[nearer]
     return best
+
+
+UTM = (500000.137, 5400000.211, 100.05)  # metres: single precision has half a metre there
+
+
+def far_room(corner=UTM):
+    """The built-in room with a corner at a far place."""
+    from dataclasses import replace
+
+    scene = rd.load_scene("room")
+    return replace(scene, vertices=scene.vertices - scene.bounds[0] + np.array(corner))

@@ -5,7 +5,7 @@ import struct
 
 import numpy as np
 import pytest
-from image_samples import quad_scene, solution
+from image_samples import UTM, far_room, quad_scene, solution
 
 import radiosity as rd
 from radiosity.image import export, gltf
@@ -95,6 +95,31 @@ def test_scenes_that_are_z_up_are_turned_to_y_up(tmp_path):
     export(solution(patches), tmp_path / "a.glb")
     bounds = trimesh.load(tmp_path / "a.glb").bounds
     np.testing.assert_allclose(bounds, [[0, 0, -4], [6, 3, 0]], atol=1e-6)
+
+
+def test_rooms_far_from_the_origin_keep_shape_and_place(tmp_path):
+    scene = far_room()
+    patches = rd.subdivide(scene, cells=8)
+    export(solution(patches), tmp_path / "a.glb")
+    document, _ = tree(tmp_path / "a.glb")
+    assert all("translation" in node for node in document["nodes"][1:])
+    read = trimesh.load(tmp_path / "a.glb", process=False)
+    turned = scene.bounds[:, [0, 2, 1]] * [1, 1, -1]  # y up
+    np.testing.assert_allclose(read.bounds, np.sort(turned, axis=0), rtol=0, atol=1e-6)
+    for i, name in enumerate(scene.names):
+        mesh = read.geometry[name]
+        assert mesh.area == pytest.approx(patches.area[patches.surface == i].sum(), rel=1e-5)
+        assert mesh.area_faces.min() > 1e-3 * patches.area.min()
+    back = rd.load_scene(tmp_path / "a.glb")
+    # y up, as the file says; the z axis of the room is its second
+    np.testing.assert_allclose(back.bounds[0][[0, 1]], [UTM[0], UTM[2]], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(back.bounds[1][2], -UTM[1], rtol=0, atol=1e-6)
+
+
+def test_rooms_at_the_origin_have_no_translations(tmp_path):
+    export(solution(rd.subdivide(rd.load_scene("room"), cells=1)), tmp_path / "a.glb")
+    moved = {node["name"] for node in tree(tmp_path / "a.glb")[0]["nodes"] if "translation" in node}
+    assert not moved
 
 
 def test_the_automatic_scale_leaves_lamps_out():

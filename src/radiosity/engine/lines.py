@@ -6,9 +6,10 @@ from typing import Any
 import drjit as dr
 
 from ..scene.model import Back
-from .departure import BACK, MASK, local_line, local_lines
+from .departure import BACK, MASK, before, local_line, local_lines
 from .device import classes
 from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, Geometry
+from .recorded import loop
 
 NORMAL_MASK = (1 << NORMAL_BITS) - 1
 
@@ -35,6 +36,7 @@ class Landing:
 
 def land(geometry: Geometry, origin, direction, *, coherent: bool = False, active=True) -> Landing:
     """Trace lines to the first side that does not let them pass."""
+    geometry.prepare_hits()
     if not geometry.some_backs_pass:
         return _hit(geometry, origin, direction, coherent, active)[0]
     types = geometry.device.types
@@ -47,14 +49,14 @@ def land(geometry: Geometry, origin, direction, *, coherent: bool = False, activ
         travelled = dr.select(going, hit[5] + new.distance, hit[5])
         kept = [dr.select(done, value, old) for value, old in zip(_fields(new), hit, strict=True)]
         # go on in front of the face just passed, from the side of its normal
-        offset = dr.gather(Float, geometry.offsets, dr.gather(UInt32, geometry.primitive_faces, new.primitive, passes), passes)
-        step = origin + direction * new.distance + normal * (offset * (1.0 / NORMAL_ONE))
+        least = dr.gather(Float, geometry.offsets, dr.gather(UInt32, geometry.primitive_faces, new.primitive, passes), passes)
+        step = before(origin + direction * new.distance, normal * (1.0 / NORMAL_ONE), least)
         return dr.select(passes, step, origin), passes, (*kept[:5], travelled, *kept[6:])
 
     width = dr.width(origin, direction)
     none, zero, whole = dr.full(Bool, False, width), dr.zeros(Float, width), dr.zeros(UInt32, width)
     state = (types.Array3f(origin), dr.full(Bool, True, width) & active, (none, whole, zero, zero, none, zero, whole, whole))
-    _, _, hit = dr.while_loop(state, lambda origin, going, hit: going, body, mode="symbolic")
+    _, _, hit = loop(state, lambda origin, going, hit: going, body)
     return Landing(*hit)
 
 

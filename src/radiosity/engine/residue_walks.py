@@ -18,6 +18,7 @@ from .device import frozen, upload
 from .lines import local_line
 from .problem import Problem
 from .process import State
+from .recorded import loop
 from .residue import Starts
 
 LEAST = QUANTUM // 2  # 2^30
@@ -89,13 +90,13 @@ def _walk(engine, begun: Starts, tally) -> tuple[list[int], int]:
         rho = dr.gather(types.UInt32, engine.rho, patch, here)
         left = types.UInt32((types.UInt64(weight) * types.UInt64(rho)) >> 32)
         after = dr.maximum(left, LEAST)
-        here &= choice >> 2 < left | (left >= LEAST)
+        here &= choice >> 2 < left
         return slot, turn + 1, here, after, _reflected(engine, powers, patch, here, left, after), fired
 
     powers = [column(types.Int64, power) for power in begun.power.T]
     none = [dr.zeros(types.Int64, width) for _ in powers]
     state = (number, dr.zeros(types.UInt32, width), going, dr.full(types.UInt32, QUANTUM, width), powers, none)
-    _, turn, _, _, _, fired = dr.while_loop(state, lambda number, turn, going, *rest: going, body, mode="symbolic")
+    _, turn, _, _, _, fired = loop(state, lambda number, turn, going, *rest: going, body)
     with shared(width):
         dr.eval(tally, turn, *fired)
     return [int(frozen(one)[:m].sum()) for one in fired], int(frozen(turn)[:m].sum(dtype=np.int64))

@@ -5,7 +5,8 @@ import numpy as np
 from ..errors import MethodError
 from .device import frozen, upload
 
-SAME = ("scene", "cut", "seed", "replicates", "device")  # like devices give like bits
+OLDER = {"randomisation": "shared"}  # of solutions written before there was a choice
+SAME = ("scene", "cut", "seed", "replicates", "device", "tracing")  # like devices give like bits
 
 
 def capture(engine) -> dict[str, np.ndarray]:
@@ -62,7 +63,7 @@ def check_same(before: dict, now: dict) -> None:
     Raises:
         MethodError: what differs.
     """
-    choices, chosen = before.get("choices") or {}, now["choices"]
+    choices, chosen = OLDER | (before.get("choices") or {}), now["choices"]
     different = [f"{key} ({before.get(key)} then, {now[key]} now)" for key in SAME if before.get(key) != now[key]]
     different += [f"{key} ({choices.get(key)} then, {value} now)" for key, value in chosen.items() if choices.get(key) != value]
     versions = before.get("versions", {})

@@ -3,7 +3,8 @@
 Khronos glTF 2.0 with KHR_materials_unlit. COLOR_0 holds radiosity x scale, linear as the standard asks, as 16-bit
 fractions that end at 1; ``_RADIOSITY_0`` and so on hold the bands themselves, as 32-bit floats. Each radiating side
 is single-sided geometry, so that closed rooms can be looked into from outside. glTF is y-up: the root node turns
-scenes that are z-up, and vertices keep the scene's coordinates (metres).
+scenes that are z-up, and vertices keep the scene's coordinates (metres). Vertices are in single precision: those of a surface far
+from the origin, for its size, are about a point near it, to which its node moves them (JSON holds doubles).
 """
 
 import json
@@ -45,7 +46,7 @@ def write(solution, path, look: Look) -> None:
 
 def document(mesh: ColouredMesh) -> tuple[dict, list]:
     """The JSON tree, and the buffer's parts in order."""
-    views, accessors, meshes, blocks, length = [], [], [], [], 0
+    views, accessors, meshes, nodes, blocks, length = [], [], [], [], [], 0
 
     def add(array: np.ndarray, kind: str, component: int, target: int, **more) -> int:
         nonlocal length
@@ -57,7 +58,7 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         return len(accessors) - 1
 
     for part in mesh.by_surface():
-        points = part.vertices.astype("<f4")
+        points = (part.vertices - part.origin).astype("<f4")
         tint = np.full((len(points), 4), 65535, "<u2")
         tint[:, :3] = np.clip(np.nan_to_num(part.linear), 0, 1) * 65535 + 0.5
         limits = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
@@ -69,6 +70,8 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
                 np.nan_to_num(part.values[:, band]).astype("<f4"), "SCALAR", FLOAT, ARRAY
             )
         indices = add(part.triangles.astype("<u4").ravel(), "SCALAR", UINT, ELEMENTS)
+        move = {"translation": part.origin.tolist()} if part.origin.any() else {}
+        nodes.append({"name": part.name, "mesh": len(meshes), **move})
         meshes.append({"name": part.name, "primitives": [{"attributes": attributes, "indices": indices, "material": 0}],
                        "extras": {"scale": mesh.scale, "unit": mesh.unit}})  # fmt: skip
     root = {"name": "scene", "children": list(range(1, len(meshes) + 1)), **({"rotation": TURN} if mesh.up == "z" else {})}
@@ -77,7 +80,7 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         "extensionsUsed": ["KHR_materials_unlit"],
         "scene": 0,
         "scenes": [{"nodes": [0]}],
-        "nodes": [root, *({"name": m["name"], "mesh": i} for i, m in enumerate(meshes))],
+        "nodes": [root, *nodes],
         "meshes": meshes,
         "materials": [{
             "name": mesh.key, "doubleSided": False, "extensions": {"KHR_materials_unlit": {}},

@@ -10,6 +10,8 @@ from .look import Look
 from .quantity import choose
 from .view import up_axis
 
+FAR = 16  # times its extent: a surface whose coordinates are larger would lose 1e-6 of its size in single precision
+
 
 @dataclass(frozen=True, eq=False)
 class SurfacePart:
@@ -20,6 +22,17 @@ class SurfacePart:
     triangles: np.ndarray
     values: np.ndarray
     linear: np.ndarray
+
+    @property
+    def origin(self) -> np.ndarray:
+        """(3,) float64 metres: a point near the surface, in round numbers, where single precision would lose 1e-6 of its size
+        about the scene's origin; zeros where not."""
+        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        extent = float((high - low).max())
+        if extent == 0 or np.abs([low, high]).max() <= FAR * extent:
+            return np.zeros(3)
+        step = 2.0 ** np.ceil(np.log2(extent))
+        return np.round((low + high) / 2 / step) * step
 
 
 @dataclass(frozen=True, eq=False)

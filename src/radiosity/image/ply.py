@@ -1,7 +1,8 @@
 """PLY: triangles with vertex colours (8 bits, sRGB) and the values themselves (32-bit floats, one property a band).
 
 Vertices keep the scene's axes and metres, and carry the number of their surface; the surfaces' names, the unit and
-the scale stand in comments of the header. Unknown values are NaN. Faces carry nothing else: some readers stumble over it.
+the scale stand in comments of the header. Coordinates are 32-bit floats, or doubles where these would lose 1e-6 of a surface's
+size. Unknown values are NaN. Faces carry nothing else: some readers stumble over it.
 """
 
 import re
@@ -20,7 +21,9 @@ def write(solution, path, look: Look) -> None:
     """Write a binary PLY file."""
     mesh = coloured(solution, look)
     bands = [mesh.key] if len(mesh.bands) == 1 else [f"{mesh.key}_{_word(band)}" for band in mesh.bands]
-    vertex = np.dtype([("xyz", "<f4", 3), ("rgb", "u1", 3), ("values", "<f4", mesh.values.shape[1]), ("surface", "<i4")])
+    far = any(part.origin.any() for part in mesh.by_surface())
+    place, values = ("xyz", "<f8" if far else "<f4", 3), ("values", "<f4", mesh.values.shape[1])
+    vertex = np.dtype([place, ("rgb", "u1", 3), values, ("surface", "<i4")])
     face = np.dtype([("n", "u1"), ("corners", "<i4", 3)])
     surface = np.zeros(len(mesh.vertices), np.int32)
     surface[mesh.triangles] = mesh.surface[:, None]
@@ -29,7 +32,7 @@ def write(solution, path, look: Look) -> None:
         f"comment quantity {mesh.key} unit {mesh.unit} scale {mesh.scale!r}",
         "comment colours are sRGB of value x scale, clipped to 1",
         *(f"comment surface {i} {_line(name)}" for i, name in enumerate(mesh.names)),
-        f"element vertex {len(mesh.vertices)}", *(f"property float {axis}" for axis in "xyz"),
+        f"element vertex {len(mesh.vertices)}", *(f"property {'double' if far else 'float'} {axis}" for axis in "xyz"),
         *(f"property uchar {colour}" for colour in ("red", "green", "blue")), *(f"property float {band}" for band in bands),
         "property int surface",
         f"element face {len(mesh.triangles)}", "property list uchar int vertex_indices", "end_header",
