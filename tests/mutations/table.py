@@ -254,7 +254,7 @@ MISTAKES = (
             ("test_checkpoint.py", "test_solve.py"),
             "another cut is gone on from"),
     Mistake("engine/matrix/factors.py", "self.values * area[self.rows] / area[self.columns]",
-            "self.values * area[self.columns] / area[self.rows]", ("test_balance.py", "test_matrix.py"), "areas are swapped"),
+            "self.values * area[self.columns] / area[self.rows]", ("test_balance.py",), "areas are swapped"),
     Mistake("engine/visibility.py", "up * down / (square * square), 0)", "up * down / square, 0)", ("test_visibility.py",),
             "rays are weighted by cosines alone"),
     Mistake("engine/visibility.py", "inset * lengths[1 - i] / area", "inset * lengths[i] / area", ("test_visibility.py",),
