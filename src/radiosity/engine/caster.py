@@ -46,6 +46,7 @@ def first_hits(scene: Scene, origins: np.ndarray, directions: np.ndarray, device
     from .lines import land
 
     geometry = Geometry(subdivide(scene, cells=1), chosen)
+    geometry.prepare()
     types, tree = chosen.types, geometry.tree
     origins, directions = (np.asarray(a, np.float64).reshape(-1, 3) for a in (origins, directions))
     length = np.linalg.norm(directions, axis=1, keepdims=True)
