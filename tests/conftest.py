@@ -1,5 +1,6 @@
 """What the tests share: scenes made by strangers, where a checkout has them, and a small closed box."""
 
+from functools import wraps
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,29 @@ def strangers() -> Path:
 def strangers_or_none() -> Path | None:
     """The same, for tests that have more than these: None where it is absent."""
     return STRANGERS if STRANGERS.is_dir() else None
+
+
+@pytest.fixture(scope="session", autouse=True)
+def nothing_is_evaluated_in_recorded_loops():
+    """In all tests: what kernels are made of calls nothing of Dr.Jit that evaluates arrays while a loop is recorded."""
+    import drjit as dr
+
+    from radiosity.engine.recorded import not_recorded
+
+    def guarded(name):
+        function = getattr(dr, name)
+
+        @wraps(function)
+        def call(*arguments, **options):
+            not_recorded(f"dr.{name} is called")
+            return function(*arguments, **options)
+
+        return call
+
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("eval", "opaque", "make_opaque", "schedule", "compress", "prefix_sum", "sync_thread"):
+            patch.setattr(dr, name, guarded(name))
+        yield
 
 
 @pytest.fixture

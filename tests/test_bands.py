@@ -50,6 +50,42 @@ def test_equal_bands_are_computed_once_and_are_the_integers():
     assert np.allclose(solution.irradiance, grey.irradiance * [1.0, 0.25, 0.0], rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("emission", "reflectance", "groups"),
+    [
+        (([1, 1], [1, 1.005]), ([0.5, 0.5], [0.5, 0.5]), 2),
+        (([1, 1], [1, 1 + 1e-9]), ([0.5, 0.5], [0.5, 0.5]), 2),
+        (([1, 1], [1.005, 1.005]), ([0.5, 0.5], [0.5, 0.5]), 1),
+        (([1, 3], [0.1, 0.3]), ([0.5, 0.2], [0.5, 0.2]), 1),
+        (([1, 0], [1, 1e-9]), ([0.5, 0.5], [0.5, 0.5]), 2),
+        (([1, 0], [0, 1]), ([0.5, 0.5], [0.5, 0.5]), 2),
+        (([1, 1], [2, 2]), ([0.5, 0.5], [0.5, 0.5 + 1e-12]), 2),
+        (([1, 1], [0, 0]), ([0.5, 0.5], [0.1, 0.9]), 1),  # dark: any group times zero
+        (([0, 0], [1, 1]), ([0.5, 0.5], [0.1, 0.9]), 1),
+        (([1, 2], [3, 4], [2, 4], [1.5, 2]), 4 * ([0.5, 0.2],), 2),
+    ],
+)
+def test_bands_are_one_group_where_one_is_a_multiple_of_the_other(emission, reflectance, groups):
+    """Two lamps in bands, (n_bands, 2) here: what the groups say of each band is the band."""
+    corners = [[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    scene = rd.Scene.from_arrays(corners, [[0, 1, 2, 3], [7, 6, 5, 4]], np.transpose(reflectance), np.transpose(emission))
+    found = BandGroups.of(rd.subdivide(scene, cells=1))
+    assert found.n_groups == groups
+    np.testing.assert_allclose(found.emission[:, found.index] * found.scale, scene.emission, rtol=1e-14, atol=0)
+    lit = scene.emission.any(axis=0)
+    np.testing.assert_array_equal(found.reflectance[:, found.index[lit]], scene.reflectance[:, lit])
+
+
+def test_lamps_that_differ_by_half_a_percent_stay_apart():
+    """Each lights the other: one receives the same in both bands, the other half a percent more in the second."""
+    light = np.zeros((6, 2))
+    light[4], light[5] = [1, 1], [1, 1.005]
+    solution = rd.solve(rd.subdivide(cube(0.0, light), cells=1), quanta=1 << 16, replicates=2, numbers="sobol")
+    lower, upper = solution.irradiance[4], solution.irradiance[5]  # each is lit by the other
+    assert upper[1] == pytest.approx(upper[0], rel=1e-3)
+    assert lower[1] == pytest.approx(1.005 * lower[0], rel=1e-3)
+
+
 def test_the_integers_are_those_of_the_largest_band():
     scene = cube(COLORS, LIGHT)
     largest = rd.Scene.from_arrays(scene.vertices, scene.faces, scene.reflectance.max(axis=1), scene.emission.max(axis=1))

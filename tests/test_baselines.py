@@ -159,6 +159,31 @@ def test_shots_converge_to_the_matrix_of_the_same_rows(room):
     assert shots.quanta >= steps[-1]
 
 
+@pytest.mark.parametrize("overshooting", [False, True])
+@pytest.mark.parametrize("factors", ["polygons", "hemicube", "lines"])
+def test_the_first_shot_is_that_of_the_most_power(factors, overshooting):
+    """Area times emission, all bands together: neither the brightest patch nor the largest one, nor the most of one band."""
+    emission = [[1.0, 1.0], [0.0, 0.0], [3.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]]
+    scene = rd.Scene.from_arrays(
+        [(0, 0, 0), (1, 0, 0), (1, 3, 0), (0, 3, 0), (0, 0, 2), (1, 0, 2), (1, 3, 2), (0, 3, 2)],
+        [(0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)],
+        0.3 if overshooting else 0.0, emission, surface=range(6), names=list("abcdef"),
+    )  # fmt: skip
+    power = scene.area[:, None] * scene.emission
+    assert power.sum(axis=1).argmax() == 0
+    assert power[:, 0].argmax() == 2
+    assert scene.area.argmax() == 3
+    method = rd.Baseline("progressive", factors, overshooting=overshooting)
+    one, two = (rd.solve(rd.subdivide(scene, cells=1), method, quanta=shots) for shots in (1, 2))
+    assert one.irradiance[0] == pytest.approx([0, 0], abs=1e-12)  # its own light: a plane does not see itself
+    assert (one.irradiance[[1, 2, 3, 4, 5]] > 0).all()
+    assert (two.irradiance[:, 0] - one.irradiance[:, 0])[[0, 1, 3, 4, 5]].min() > 0  # then that of c, in one band
+    if not overshooting:
+        assert np.array_equal(two.irradiance[:, 1], one.irradiance[:, 1])
+        for solution, shot in ((one, power[0]), (two, power[0] + power[2])):
+            assert solution.patches.area @ solution.irradiance == pytest.approx(shot, rel=0.02)
+
+
 def test_ambient_light_is_there_from_the_start(room):
     patches, reference = room
     few = [rd.solve(patches, rd.Baseline("progressive", ambient=ambient), quanta=20) for ambient in (False, True)]

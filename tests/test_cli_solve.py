@@ -182,6 +182,72 @@ def test_one_failing_output_does_not_take_the_others_along(capsys, monkeypatch, 
     assert "kept in" not in err
 
 
+@pytest.fixture
+def places(tmp_path):
+    """A folder with names for others in it: ``sub``, a link to it, and links to files that are not there yet."""
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "also").symlink_to("sub", target_is_directory=True)
+    (tmp_path / "link.npz").symlink_to("a.npz")
+    (tmp_path / "link.png").symlink_to(tmp_path / "sub" / "b.png")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("a.npz", "a.npz"),
+        ("a.npz", "sub/../a.npz"),
+        ("a.npz", "./sub/.././a.npz"),
+        ("a.npz", "also/../a.npz"),
+        ("sub/a.glb", "also/a.glb"),
+        ("a.npz", "link.npz"),
+        ("sub/../link.npz", "a.npz"),
+        ("link.png", "also/b.png"),
+        ("a.csv", "a.surfaces.csv"),  # the table of surfaces lies beside that of patches
+        ("sub/a.surfaces.csv", "also/a.csv"),
+    ],
+)
+@pytest.mark.parametrize("absolute", [False, True])
+def test_one_file_under_two_names_is_refused_before_the_run(capsys, monkeypatch, places, one, other, absolute):
+    monkeypatch.chdir(places)
+    monkeypatch.setattr(rd, "load_scene", lambda *_, **__: pytest.fail("it ran"))
+    before = sorted(places.rglob("*"))
+    second = places / other if absolute else other
+    for more in ((), ("c.ply",)):
+        status, out, err = run(capsys, "solve", "cornell-box", *SMALL, "-o", one, *more, "-o", second)
+        assert (status, out) == (2, "")
+        named = re.escape(str(Path(second)))
+        assert re.match(rf"radiosity: error: {named} is named twice.*; give each output its own name\n", err)
+    assert sorted(places.rglob("*")) == before
+
+
+@pytest.mark.parametrize(("one", "other"), [("a.png", "sub/../a.png"), ("link.png", "also/b.png")])
+def test_one_picture_under_two_names_is_refused(capsys, monkeypatch, places, solved, one, other):
+    monkeypatch.chdir(places)
+    status, _, err = run(capsys, "render", solved, "-o", one, other)
+    assert status == 2
+    assert f"{other} is named twice" in err
+    assert [path.name for path in places.rglob("*.png")] == ["link.png"]
+
+
+@pytest.mark.parametrize(
+    ("output", "checkpoint"), [("a.npz", "sub/../a.npz"), ("a.npz", "link.npz"), ("also/a.npz", "sub/a.npz")]
+)
+def test_a_checkpoint_that_is_an_output_is_refused(capsys, monkeypatch, places, output, checkpoint):
+    monkeypatch.chdir(places)
+    status, _, err = run(capsys, "solve", "cornell-box", *SMALL, "-o", output, "--checkpoint", checkpoint)
+    assert status == 2
+    assert "is named twice; give the checkpoint a name of its own" in err
+
+
+def test_other_files_of_like_names_are_no_doubles(capsys, monkeypatch, places):
+    monkeypatch.chdir(places)
+    names = ("a.csv", "b.csv", "sub/a.csv", "sub/a.npz", "a.npz")
+    assert run(capsys, "solve", "cornell-box", *SMALL, "-o", *names)[0] == 0
+    for name in (*names, "a.surfaces.csv", "b.surfaces.csv", "sub/a.surfaces.csv"):
+        assert (places / name).stat().st_size > 100
+
+
 def test_render(capsys, solved, tmp_path):
     from PIL import Image
 

@@ -286,7 +286,8 @@ def test_faces_of_a_flat_mesh_are_beside_each_other_and_a_plate_on_it_is_found()
 def test_polygons_in_common():
     square, right = np.array([[(0, 0), (1, 0), (1, 1), (0, 1)]], float), np.array([1.0, 0])
     for other, area in (
-        (square + right / 2 + right[::-1] / 4, 0.375), (square[:, ::-1] * 0.5 + 0.1, 0.25), (square + right, 0.0), (square + 3 * right, 0.0),
+        (square + right / 2 + right[::-1] / 4, 0.375), (square[:, ::-1] * 0.5 + 0.1, 0.25), (square + right, 0.0),
+        (square + 3 * right, 0.0),
         (np.array([[(0, 0), (2, 0), (0, 2), (0, 2)]], float) - 0.5, 0.5), (square * 3 - 1, 1.0),
     ):  # fmt: skip
         assert common(square, other)[1][0] == pytest.approx(area, abs=1e-15)

@@ -1,6 +1,7 @@
 """VTP files, read back as XML."""
 
 import base64
+import io
 from xml.etree import ElementTree
 
 import numpy as np
@@ -68,3 +69,18 @@ def test_long_arrays_are_written_in_pieces(tmp_path, monkeypatch):
     monkeypatch.setattr(vtp, "CHUNK", 30)
     export(result, tmp_path / "pieces.vtp")
     assert (tmp_path / "whole.vtp").read_bytes() == (tmp_path / "pieces.vtp").read_bytes()
+
+
+@pytest.mark.parametrize("more", [-1, 0, 1])
+@pytest.mark.parametrize("pieces", [1, 2])
+def test_pieces_join_to_one_text_of_base64(pieces, more):
+    """As long as the pieces are: 3 bytes are 4 letters, and none are filled up but the last."""
+    from radiosity.image import vtp
+
+    values = np.arange(pieces * vtp.CHUNK // 8 + more)
+    file = io.BytesIO()
+    vtp._array(file, "x", values)
+    text = ElementTree.fromstring(file.getvalue()).text.strip()
+    assert len(text) == 12 + 4 * -(-values.nbytes // 3)
+    assert base64.b64decode(text[:12], validate=True) == np.array([values.nbytes], "<u8").tobytes()
+    assert base64.b64decode(text[12:], validate=True) == values.tobytes()

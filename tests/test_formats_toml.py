@@ -84,6 +84,25 @@ def test_power_is_spread_over_all_radiating_area(load):
     np.testing.assert_allclose(scene.emission[1:], 20)  # three sides of 1 m²
 
 
+@pytest.mark.parametrize(
+    ("later", "exitance"), [("emission = 7", 7), ("radiance = 2", 2 * np.pi), ("power = 3", 1), ("sides = 2", 20)]
+)
+def test_a_later_entry_takes_the_place_of_a_power(load, later, exitance):
+    """Of whatever kind it is; the lamp has 1.5 m² on each of two sides, and one that gives no light leaves the power."""
+    scene = load(f"""
+        geometry = [{{file = "lamp.stl", unit = "cm", scale = 1.224744871391589}}]
+        [[surface]]
+        name = "lamp"
+        reflectance = 0
+        power = 60
+        [[surface]]
+        name = "la*"
+        {later}
+    """)
+    np.testing.assert_allclose(scene.emission, exitance)
+    np.testing.assert_allclose(scene.back_emission, exitance)
+
+
 def test_reflectance_replaces_texture_and_colours_but_not_light(load):
     scene = load('geometry = ["box.glb"]\n[[surface]]\nname = "box/*"\nreflectance = 0.25\n')
     patches = rd.subdivide(scene, cells=1)
@@ -129,6 +148,33 @@ def test_names_with_brackets_match_themselves(load, tmp_path):
     assert scene.reflectance.tolist() == [[0.1]]
 
 
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize(("name", "other"), [("lamp[1]", "lamp1"), ("lamp?", "lamp2"), ("*", "desk"), ("[a]*", "ab")])
+def test_a_name_of_a_surface_is_no_pattern_for_others(load, tmp_path, name, other, order):
+    """Whichever file comes first; the pattern that means both is written out."""
+    for file in (name, other):
+        (tmp_path / f"{file}.ply").write_text(ply_text())
+    files = [f"{name}.ply", f"{other}.ply"][::order]
+    begin = f'geometry = {files}\n[[surface]]\nname = "[!z]*"\nreflectance = 0.3\nemission = 1\n'
+    scene = load(f'{begin}[[surface]]\nname = "{name}"\nreflectance = 0.1\npower = 5\npatch_size = 0.2\nsides = 1\n')
+    assert scene.names == tuple([name, other][::order])
+    assert scene.reflectance[::order].tolist() == [[0.1], [0.3]]
+    assert scene.emission[::order].tolist() == [[5], [1]]  # 5 W on one side of 1 m²
+    assert scene.back[::order].tolist() == [Back.ABSORBS, Back.RADIATES]
+    np.testing.assert_array_equal(scene.patch_size[::order], [0.2, np.nan])
+    scene = load(f'{begin}[[surface]]\nname = "{other}"\nreflectance = 0.1\n')
+    assert scene.reflectance[::order].tolist() == [[0.3], [0.1]]
+
+
+def test_names_that_are_patterns_too_are_warned_of_once(load, tmp_path, recwarn):
+    for file in ("lamp[1]", "lamp1"):
+        (tmp_path / f"{file}.ply").write_text(ply_text())
+    with pytest.warns(RadiosityWarning, match="no surface is called 'x'") as told:
+        load('geometry = ["lamp[1].ply", "lamp1.ply"]\n[[surface]]\nname = "lamp[1]"\nreflectance = 0.1\n'
+             '[[surface]]\nname = "lamp1"\nreflectance = 0.2\n[[surface]]\nname = "x"\nreflectance = 0.1\n')  # fmt: skip
+    assert len(told) == 1
+
+
 def test_cameras_and_photometric(load):
     scene = load("""
         geometry = ["room.obj"]
@@ -140,6 +186,42 @@ def test_cameras_and_photometric(load):
     """)
     assert scene.photometric
     assert scene.cameras == (Camera((0, 1, 2), (1, 1, 2), (0, 0, 1), 60.0, 800, 600),)
+
+
+def sensor(origin: str, target: str) -> str:
+    return (
+        f'<scene version="3.0.0"><shape type="rectangle"><bsdf type="twosided"><bsdf type="diffuse"/></bsdf></shape><sensor '
+        f'type="perspective"><float name="fov" value="45"/><film type="hdrfilm"><integer name="width" value="32"/>'
+        f'<integer name="height" value="24"/></film><transform name="to_world"><lookat origin="{origin}" target="{target}" '
+        f'up="0,1,0"/></transform></sensor></scene>'
+    )
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254), ("ft", 0.3048)])
+@pytest.mark.parametrize("format", ["xml", "glb"])
+def test_units_scale_the_cameras_of_files_as_they_scale_their_faces(load, tmp_path, unit, metres, format):
+    """Where a camera stands and what it looks at are lengths; up and the field of view are none, and [[camera]] is in metres."""
+    if format == "xml":
+        (tmp_path / "seen.xml").write_text(sensor("1,2,30", "1,2,0"))
+    else:
+        gltf = box_gltf()
+        gltf.tree["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.7, "aspectRatio": 1.5}}]
+        gltf.node(camera=0, translation=[1, 2, 30])
+        gltf.write(tmp_path / "seen.glb")
+    alone = rd.load_scene(tmp_path / f"seen.{format}")
+    text = f'unit = "{unit}"\nscale = 2\ngeometry = ["seen.{format}"]\n[[camera]]\norigin = [1, 2, 3]\ntarget = [4, 5, 6]\n'
+    scene, factor = load(text), 2 * metres
+    ours, theirs = scene.cameras
+    assert (ours.origin, ours.target) == ((1, 2, 3), (4, 5, 6))
+    expected = alone.cameras[0]
+    assert expected.origin == pytest.approx((1, 2, 30))
+    assert theirs.origin == pytest.approx(np.multiply(factor, expected.origin))
+    assert theirs.target == pytest.approx(np.multiply(factor, expected.target))
+    assert theirs.up == expected.up
+    assert (theirs.fov, theirs.width, theirs.height) == (expected.fov, expected.width, expected.height)
+    np.testing.assert_allclose(scene.bounds, factor * alone.bounds, rtol=1e-6)
+    own = load(f'geometry = [{{file = "seen.{format}", unit = "{unit}", scale = 2}}, "room.obj"]\nunit = "ft"\n')
+    assert own.cameras == (theirs,)
 
 
 @pytest.mark.parametrize(

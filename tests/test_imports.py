@@ -94,6 +94,35 @@ def test_other_packages_are_imported_where_they_are_used():
     assert offenders(rule) == {}
 
 
+def called(path: Path) -> set[str]:
+    """Names that a module uses of Dr.Jit, such as ``eval`` of ``dr.eval``."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    attributes = (node for node in ast.walk(tree) if isinstance(node, ast.Attribute))
+    return {node.attr for node in attributes if isinstance(node.value, ast.Name) and node.value.id == "dr"}
+
+
+def test_loops_are_recorded_in_one_place():
+    """`engine.recorded`, where uploads within them are an error and not the end of the process."""
+    recording = {"while_loop", "syntax", "if_stmt", "switch", "dispatch", "freeze"}
+
+    def rule(name, path):
+        return set() if name == "engine/recorded.py" else called(path) & recording
+
+    assert offenders(rule) == {}
+    assert called(ROOT / "engine" / "recorded.py") >= {"while_loop"}
+
+
+def test_kernels_take_numbers_whose_tables_are_on_the_device():
+    """`ready`, not `make`."""
+
+    def rule(name, path):
+        found = {imported for imported, _ in imports(path)} & {"radiosity.method.numbers.make"}
+        return found if name.startswith(("engine/", "deterministic/")) else set()
+
+    assert offenders(rule) == {}
+    assert "radiosity.method.numbers.ready" in {imported for imported, _ in imports(ROOT / "engine" / "firing.py")}
+
+
 def loaded_by(statement: str) -> set[str]:
     code = f"{statement}\nimport sys\nprint(*sorted({{name.split('.')[0] for name in sys.modules}}))"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -1,5 +1,7 @@
 """Solvers of B = E + rho F B against elimination, on matrices whose rows sum to one or less."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
 import radiosity as rd
-from radiosity.deterministic.solvers import SOLVERS, System, solve
+from radiosity.deterministic.solvers import SOLVERS, System, solve, southwell
 
 
 def system(seed: int, n: int, bands: int = 2, *, largest: float = 0.9, closed: bool = True) -> System:
@@ -74,12 +76,63 @@ def test_faster_solvers_take_fewer_steps():
 
 def test_a_shooting_step_with_the_transposed_row_is_rejected(monkeypatch):
     """Wrong on purpose: F_ij in place of F_ji."""
-    from radiosity.deterministic.solvers import southwell
-
     problem = system(9, 20)
     wrong = System(csr_array(problem.factors.T), problem.emission, problem.reflectance, problem.area)
     exact = eliminated(problem)
     assert np.abs(southwell.solve(wrong).radiosity - exact).max() > 1e-3 * exact.max()
+
+
+class Shots(list):
+    """Where columns begin, (n + 1,); remembers of whom it was asked: a shot of patch i asks for i and i + 1."""
+
+    def __init__(self, begin):
+        super().__init__(begin)
+        self.asked = []
+
+    def __getitem__(self, index):
+        self.asked.append(index)
+        return super().__getitem__(index)
+
+
+def shots_of(problem: System) -> list[int]:
+    """The patches that Southwell relaxation shoots, one after the other."""
+    columns = problem.factors.tocsc()
+    begin = Shots(columns.indptr.tolist())
+
+    class Watched:
+        data, sum = problem.factors.data, problem.factors.sum
+
+        @staticmethod
+        def tocsc():
+            return SimpleNamespace(indptr=begin, indices=columns.indices, data=columns.data)
+
+    southwell.solve(System(Watched(), problem.emission, problem.reflectance, problem.area))
+    asked = begin.asked[::4]
+    assert begin.asked == [index for i in asked for index in (i, i + 1, i, i + 1)]
+    return asked
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_southwell_shoots_from_the_patch_with_the_most_unshot_power(seed):
+    """Power, not radiosity: the first shot is that of the largest A E, not of the largest E or A; then likewise with what
+    arrived, all bands together."""
+    problem, n = system(seed, 20, bands=2), 20
+    area = problem.area * np.where(np.arange(n) == 5, 8.0, 1.0)
+    emission = problem.emission.copy()
+    emission[[0, 5, 10, 15]] = [[0.9, 0.9], [0.5, 0.4], [2.0, 0.0], [0.0, 1.9]]
+    area[[0, 10, 15]] = 1.0
+    area[3] = 2 * area[5]
+    assert len({int(np.argmax(x)) for x in (area * emission.sum(axis=1), emission.sum(axis=1), area, emission[:, 0])}) == 3
+    problem = System(problem.factors, emission, problem.reflectance, area)
+    shots = shots_of(problem)
+    assert shots[0] == 5
+    factors, unshot = problem.factors.toarray(), emission.copy()
+    for i in shots[:60]:
+        power = area * unshot.sum(axis=1)
+        assert power[i] == pytest.approx(power.max(), rel=1e-9)
+        shot = unshot[i].copy()
+        unshot[i] = 0
+        unshot += problem.reflectance * factors[:, [i]] * shot
 
 
 def test_conjugate_gradients_refuse_what_is_not_reciprocal():

@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import llvm
 from ..errors import DeviceError
+from .recorded import not_recorded
 
 VARIANTS = {"cpu": "llvm_ad_rgb", "cuda": "cuda_ad_rgb"}
 PACKET = 64  # kernels may read whole packets past an array's end: every upload is padded to this
@@ -75,9 +76,13 @@ def upload(dtype, values: np.ndarray):
 
     A Dr.Jit array made straight from numpy may borrow its memory, and kernels read whole packets: at the end of a page
     that ends the process. So a padded copy is handed over, and gathered into memory of Dr.Jit's own.
+
+    Raises:
+        RecordedError: a loop is being recorded.
     """
     import drjit as dr
 
+    not_recorded("an array is uploaded")
     values = np.ascontiguousarray(values).ravel()
     padded = np.zeros(len(values) // PACKET * PACKET + 2 * PACKET, values.dtype)
     padded[: len(values)] = values
@@ -94,6 +99,7 @@ def frozen(array) -> np.ndarray:
     """
     import drjit as dr
 
+    not_recorded("an array is read")
     dr.eval(array)
     dr.sync_thread()
     return np.asarray(type(array)(array))

@@ -44,8 +44,13 @@ class Geometry:
         return self.patches.scene
 
     def prepare(self) -> None:
-        """Make what kernels read. Records made within a recorded loop would end the process where they have one entry."""
-        _ = self.face_records, self.hit_records, self.patch_records, self.primitive_faces, self.offsets
+        """Make what kernels read, before any loop is recorded (`recorded.not_recorded`)."""
+        self.prepare_hits()
+        _ = self.face_records, self.patch_records
+
+    def prepare_hits(self) -> None:
+        """Of that, what hits are read from."""
+        _ = self.tree, self.hit_records, self.primitive_faces, self.offsets
         if self.ties is not None:
             self.ties.prepare()
 

@@ -9,6 +9,7 @@ from ..scene.model import Back
 from .departure import BACK, MASK, before, local_line, local_lines
 from .device import classes
 from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, TIED, Geometry
+from .recorded import loop
 
 NORMAL_MASK = (1 << NORMAL_BITS) - 1
 
@@ -35,6 +36,7 @@ class Landing:
 
 def land(geometry: Geometry, origin, direction, *, coherent: bool = False, active=True) -> Landing:
     """Trace lines to the first side that does not let them pass."""
+    geometry.prepare_hits()
     if not geometry.some_backs_pass:
         return _hit(geometry, origin, direction, coherent, active)[0]
     types = geometry.device.types
@@ -54,7 +56,7 @@ def land(geometry: Geometry, origin, direction, *, coherent: bool = False, activ
     width = dr.width(origin, direction)
     none, zero, whole = dr.full(Bool, False, width), dr.zeros(Float, width), dr.zeros(UInt32, width)
     state = (types.Array3f(origin), dr.full(Bool, True, width) & active, (none, whole, zero, zero, none, zero, whole, whole))
-    _, _, hit = dr.while_loop(state, lambda origin, going, hit: going, body, mode="symbolic")
+    _, _, hit = loop(state, lambda origin, going, hit: going, body)
     return Landing(*hit)
 
 

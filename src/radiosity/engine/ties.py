@@ -17,6 +17,7 @@ from ..scene.coplanar import contacts, copied
 from ..scene.model import Back
 from ..scene.precision import EPSILON
 from .device import upload
+from .recorded import loop
 
 if TYPE_CHECKING:
     from .geometry import Geometry
@@ -173,7 +174,7 @@ class Ties:
             return at + 1, *best
 
         state = (at, *(UInt32(nobody) for _ in range(count)))
-        _, *best = dr.while_loop(state, lambda at, *best: at < end, body, mode="symbolic")
+        _, *best = loop(state, lambda at, *best: at < end, body)
         return [self._met(key, side == 1, origin, direction, flagged) for side, key in enumerate(best)]
 
     def _met(self, key, turned: bool, origin, direction, flagged) -> tuple:

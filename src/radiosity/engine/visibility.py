@@ -13,13 +13,14 @@ import numpy as np
 
 from ..errors import MethodError
 from ..method.lines.local import triangle
-from ..method.numbers import make
+from ..method.numbers import ready
 from ..method.numbers.random import philox
 from ..patches.model import Patches
 from .device import upload
 from .geometry import INSET, OFFSET, Geometry
 from .lanes import CHUNK
 from .lines import land
+from .turn import turn
 
 MOST = (1 << 16) - 1  # rays of a pair
 WORDS = 10  # of a polygon on the device: origin, two edges, offset
@@ -50,6 +51,7 @@ class Polygons:
         return Polygons(self.corners[rows], self.face[rows])
 
 
+@turn()
 def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int = 16, seed: int = 0) -> np.ndarray:
     """(m,) float64 in [0, 1]: share of what goes from ``one`` to ``other`` that meets nothing on its way, for m pairs.
 
@@ -96,7 +98,7 @@ def _chunk(geometry: Geometry, one: Polygons, other: Polygons, keys: np.ndarray,
     index = lane - pair * dr.opaque(UInt32, rays) + 1
     shift = philox([*(dr.gather(UInt32, word, pair) for word in words), UInt32(0), UInt32(0)],
                    [dr.opaque(UInt32, seed >> part & 0xFFFFFFFF) for part in (0, 32)])  # fmt: skip
-    numbers = make("sobol").points(index, pair, [*shift, UInt32(0)], 16)
+    numbers = ready("sobol", types).points(index, pair, [*shift, UInt32(0)], 16)
     kinds = dr.gather(UInt32, triangles, pair)
     start, normal, above = _point(types, records[0], pair, (kinds & 1) != 0, *numbers[:2])
     end, facing, beyond = _point(types, records[1], pair, (kinds & 2) != 0, *numbers[2:4])

@@ -18,7 +18,7 @@ FORMATS = {
 }
 SUFFIXES = (".npz", *FORMATS)  # a solution saves itself as .npz
 
-__all__ = ["Look", "check_writable", "export", "render"]
+__all__ = ["Look", "check_writable", "export", "files_of", "render"]
 
 
 def check_writable(path) -> Path:
@@ -28,14 +28,22 @@ def check_writable(path) -> Path:
         OutputError: unknown suffix, missing or read-only folder, a folder or a read-only file of that name, or a
             library that is not installed.
     """
-    path = _check(path, SUFFIXES)
-    if path.suffix.lower() == ".csv":
-        from .tables import surfaces_path
-
-        _check(surfaces_path(path), SUFFIXES)
+    for file in files_of(path):
+        _check(file, SUFFIXES)
+    path = Path(path)
     if path.suffix.lower() == ".png":
         require("PIL", f"{path}: writing PNG")
     return path
+
+
+def files_of(path) -> tuple[Path, ...]:
+    """The files that `export` writes for a path: itself, and beside ``x.csv`` the table of surfaces."""
+    path = Path(path)
+    if path.suffix.lower() != ".csv":
+        return (path,)
+    from .tables import surfaces_path
+
+    return path, surfaces_path(path)
 
 
 def export(solution, path, *, smooth=True, quantity="radiosity", band=None, exposure=None, scale=None) -> Path:

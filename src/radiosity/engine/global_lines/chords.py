@@ -8,6 +8,7 @@ import numpy as np
 
 from ..device import frozen
 from ..lanes import paired
+from ..recorded import loop
 from ..tree import REACH
 from .crossing import CODES, ESCAPED, ONE_WAY, PENDING, Crossings
 from .walking import Sink, step
@@ -79,6 +80,7 @@ def _walk(crossings: Crossings, index, lines: int, line, sink: Sink, coherent: b
     """Walk lines to their ends, all in one kernel."""
     types = crossings.geometry.device.types
     UInt32, Bool, width = types.UInt32, types.Bool, dr.width(index)
+    crossings.prepare()
     going = dr.arange(UInt32, width) < dr.opaque(UInt32, lines)
     origin, direction, within, first = line(index)
     start = dr.select(within, first, UInt32(ESCAPED))
@@ -87,7 +89,7 @@ def _walk(crossings: Crossings, index, lines: int, line, sink: Sink, coherent: b
         return step(crossings, index, direction, state, sink, coherent)
 
     state = (types.Array3f(origin), going, dr.full(Bool, False, width), start, start, dr.zeros(UInt32, width))
-    dr.while_loop(state, lambda origin, going, *rest: going, body, mode="symbolic")
+    loop(state, lambda origin, going, *rest: going, body)
     dr.eval(sink.counter, sink.records, sink.counts)
 
 

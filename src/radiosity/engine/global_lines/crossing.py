@@ -48,6 +48,11 @@ class Crossings:
 
     geometry: Geometry
 
+    def prepare(self) -> None:
+        """Make what `next` reads, before any loop is recorded (`recorded.not_recorded`)."""
+        self.geometry.prepare_hits()
+        _ = self.records
+
     @cached_property
     def records(self):
         """(n_faces * 16,) Float: origin, edges, normal, whether there is nothing in front and behind, and the plane's offset."""

@@ -15,6 +15,7 @@ import drjit as dr
 import numpy as np
 
 from ..device import frozen, upload
+from ..recorded import loop
 from .crossing import CODES, ESCAPED, ONE_WAY
 
 LEDGER = ("fired", "reflected", "escaped", "lost")
@@ -91,7 +92,7 @@ class Exchange:
 
         nothing = [dr.zeros(UInt64, lanes) for _ in range(5)]
         state = (span, dr.zeros(UInt32, lanes), *nothing)
-        ledger = dr.while_loop(state, lambda span, *rest: span < end, body, mode="symbolic")[3:]
+        ledger = loop(state, lambda span, *rest: span < end, body)[3:]
         dr.eval(*ledger, self.unshot, self.landed)
         return np.stack([np.array(frozen(column))[: len(lengths)] for column in ledger])
 

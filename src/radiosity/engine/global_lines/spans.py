@@ -14,12 +14,13 @@ from ...errors import MethodError
 from ...method.lines import LINES
 from ...method.lines.global_lines import by_disc, by_two_points, of_bundle
 from ...method.model import Method
-from ...method.numbers import make
+from ...method.numbers import ready
 from ...scene.precision import EPSILON
 from .. import quanta as contract
 from ..device import upload
 from ..geometry import Geometry
 from ..tree import REACH
+from ..turn import turn
 from .chords import MARGIN, crossing_box, walk
 from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 from .entrance import Entrance
@@ -71,6 +72,7 @@ class Spans:
         if self.method.lines not in LINES or self.method.lines == "local":
             raise MethodError(f"lines '{self.method.lines}' have no spans; take {', '.join(k for k in LINES if k != 'local')}")
 
+    @turn()
     def draw(self, replicate: int, first: int, count: int) -> Pairs:
         """Spans of the lines ``first`` to below ``first + count`` (from 0) of a replicate.
 
@@ -132,7 +134,7 @@ class Spans:
 
     @cached_property
     def _numbers(self):
-        return make(self.method.numbers)
+        return ready(self.method.numbers, self.geometry.device.types)
 
     @cached_property
     def _randomisation(self):

@@ -16,6 +16,7 @@ from ..departure import BACK, MASK, Frame
 from ..device import frozen, upload
 from ..geometry import COLUMN_BITS, QUAD, Geometry
 from ..lines import Landing, land, patch_of
+from ..recorded import loop
 from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 
 MOST_CELLS = 1 << 20
@@ -78,9 +79,8 @@ class Surfaces:
         UInt32 = self.geometry.device.types.UInt32
         ends, guide, sides = self._tables
         side = dr.gather(UInt32, guide, word >> (32 - self.bits))
-        (side,) = dr.while_loop(
-            (side,), lambda side: dr.gather(UInt32, ends, side) < word, lambda side: (side + 1,), mode="symbolic"
-        )
+        (side,) = loop(
+            (side,), lambda side: dr.gather(UInt32, ends, side) < word, lambda side: (side + 1,))
         return dr.gather(UInt32, sides, side)
 
     def word(self, numbers, index):
@@ -129,6 +129,7 @@ class Surfaces:
 
     def _through(self, crossings: Crossings, origin, direction):
         """What lines land on, with ONE_WAY where they passed a back."""
+        crossings.prepare()
         types = self.geometry.device.types
 
         def body(origin, going, passed, seen):
@@ -140,5 +141,5 @@ class Surfaces:
         width = dr.width(direction)
         yes, no = dr.full(types.Bool, True, width), dr.full(types.Bool, False, width)
         state = (types.Array3f(origin), yes, no, dr.full(types.UInt32, ESCAPED, width))
-        _, _, passed, seen = dr.while_loop(state, lambda origin, going, passed, seen: going, body, mode="symbolic")
+        _, _, passed, seen = loop(state, lambda origin, going, passed, seen: going, body)
         return dr.select(passed & (seen < CODES), seen | ONE_WAY, seen)

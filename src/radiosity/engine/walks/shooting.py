@@ -4,6 +4,8 @@ Continuous: S. N. Pattanaik and S. P. Mudur, "Computation of global illumination
 of light", 3rd Eurographics Workshop on Rendering, 1992. Discrete: M. Sbert 1997. What a landing scores is the estimator's choice.
 """
 
+from dataclasses import replace
+
 import drjit as dr
 import numpy as np
 
@@ -13,6 +15,7 @@ from ..firing import Engine
 from ..landings import DENSE
 from ..lanes import Batch, Chunk
 from ..process import AbstractTally, State
+from ..recorded import loop
 from .births import Births
 from .density import DensityTally
 from .flock import Flock, Legs
@@ -28,7 +31,10 @@ class Walks(AbstractLaunches):
     """Walks of local lines that score where they land."""
 
     def _prepare(self) -> None:
-        self.engine = Engine(self.geometry, self.problem.source, self.method, self.seed, self.replicates)
+        method = self.method
+        if method.absorption == "fractional":  # walk n takes point n, its birth patch too: patches have no points of their own
+            method = replace(method, randomisation="shared")
+        self.engine = Engine(self.geometry, self.problem.source, method, self.seed, self.replicates)
         self.types = self.engine.types
         self.legs = Legs(self.engine, continuous=self.method.equation == "continuous")
         self.births = Births.of_power(self.problem, self.seed, self.replicates)
@@ -107,7 +113,7 @@ class Walks(AbstractLaunches):
             return tuple(kept), leg + 1, lines + dr.select(going, types.UInt32(1), types.UInt32(0)), sums, alive
 
         state = (flock.columns(), dr.opaque(types.UInt32, leg, dr.width(going)), lines, sums, going)
-        _, _, lines, sums, _ = dr.while_loop(state, lambda columns, leg, lines, sums, going: going, body, mode="symbolic")
+        _, _, lines, sums, _ = loop(state, lambda columns, leg, lines, sums, going: going, body)
         total = dr.sum(types.UInt64(lines))
         parts = [dr.sum(s) for s in sums]
         dr.eval(self.engine.arrivals, *self.scores.arrays(), total, parts)

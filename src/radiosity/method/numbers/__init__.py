@@ -1,6 +1,7 @@
 """Which points of the unit cube? A new sequence is one new file and one line in each table."""
 
 from importlib import import_module
+from typing import Any
 
 from .base import DIMENSIONS, WORDS, AbstractNumbers
 
@@ -14,10 +15,17 @@ NUMBERS = {
     "sobol": "sobol:sobol",
 }
 
-__all__ = ["DIMENSIONS", "NUMBERS", "WORDS", "AbstractNumbers", "make"]
+__all__ = ["DIMENSIONS", "NUMBERS", "WORDS", "AbstractNumbers", "make", "ready"]
 
 
 def make(name: str) -> AbstractNumbers:
     """The sequence called ``name``. Its module is imported here, since it imports Dr.Jit."""
     module, maker = NUMBERS[name].split(":")
     return getattr(import_module(f".{module}", __package__), maker)()
+
+
+def ready(name: str, types: Any) -> AbstractNumbers:
+    """The sequence called ``name`` with its tables on the device of Dr.Jit's array ``types``: kernels may ask for its points."""
+    numbers = make(name)
+    numbers.prepare(types)
+    return numbers

@@ -22,6 +22,12 @@ class Random(AbstractNumbers):
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return stream.generate_state(WORDS, np.uint32)
 
+    def of_patch(self, randomisation, place):
+        return randomisation  # the patch is in the counter
+
+    def prepare(self, types):
+        pass  # reads nothing
+
     def points(self, index, patch, randomisation, bits):
         Float = dr.float32_array_t(type(index))
         words = philox([index, patch, *randomisation[2:4]], randomisation[:2])

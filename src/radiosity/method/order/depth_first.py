@@ -6,6 +6,8 @@ arrival and every line number is claimed once, by an atomic counter, so the coun
 
 import drjit as dr
 
+from ...engine.recorded import loop
+
 
 def run(engine, progress) -> None:
     """Follow all walks to their ends. ``progress(lines)`` is called after each launch."""
@@ -44,5 +46,5 @@ def walk(engine, chunk) -> None:
         return landed, going
 
     going = chunk.real(types)
-    dr.while_loop((number, going), lambda number, going: going, body, mode="symbolic")
+    loop((number, going), lambda number, going: going, body)
     dr.eval(engine.arrivals, engine.fired)

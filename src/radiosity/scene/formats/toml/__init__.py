@@ -1,6 +1,7 @@
 """A .toml scene: geometry files, and reflectance, emission, sides and patch size by surface name (docs/scene-toml.md)."""
 
 import tomllib
+from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -30,12 +31,19 @@ def read(path: Path, options: ReadOptions) -> Scene:
     except (ValueError, RecursionError) as error:
         raise SceneError(f"{path}: is no TOML ({error})") from None
     asked = checked(values, str(path))
+    factors = [UNITS[entry.unit or asked.unit] * (entry.scale or asked.scale) for entry in asked.geometry]
+
+    def dressed(looks: Looks) -> list[Scene]:
+        each = zip(asked.geometry, factors, strict=True)
+        return [_geometry(path.parent / entry.file, factor, entry.name, looks, options, path) for entry, factor in each]
+
     looks = Looks(asked.surface)
-    scenes, factors = [], []
-    for entry in asked.geometry:
-        factors.append(UNITS[entry.unit or asked.unit] * (entry.scale or asked.scale))
-        scenes.append(_geometry(path.parent / entry.file, factors[-1], entry.name, looks, options, path))
+    scenes = dressed(looks)
     names = [name for scene in scenes for name in scene.names]
+    called = {surface.name for surface in asked.surface} & set(names)
+    if any(name != one and _matches(name, one) for one in called for name in names):
+        looks = Looks(asked.surface, called)  # known only now: lamp[1] is a surface here, and lamp1 another one
+        scenes = dressed(looks)
     for surface in asked.surface:
         if not any(_matches(name, surface.name) for name in names):
             warn(f"{path}: no surface is called '{surface.name}'; there are {shown(sorted(set(names)), 20)}")
@@ -53,17 +61,23 @@ def read(path: Path, options: ReadOptions) -> Scene:
 
 
 class Looks:
-    """The surface entries of a file: for every property of a surface the last entry that matches and gives it."""
+    """The surface entries of a file: for every property of a surface the last entry that matches and gives it.
 
-    def __init__(self, entries):
-        self.entries = entries
-        self.powers: dict[str, int] = {}  # entry that gives a surface its power
+    Attributes:
+        entries: as the file has them.
+        called: names of surfaces; an entry of such a name means that surface alone, whatever else it matches as a pattern.
+        powers: the number of the entry that gives a surface its power, by the surface's name.
+    """
+
+    def __init__(self, entries, called: AbstractSet[str] = frozenset()):
+        self.entries, self.called = entries, called
+        self.powers: dict[str, int] = {}
 
     def apply(self, part: Part) -> Part:
         """A part with what the entries say, but for powers: they need the areas of all parts."""
         material = part.material
         for number, entry in enumerate(self.entries):
-            if not _matches(part.name, entry.name):
+            if not (part.name == entry.name if entry.name in self.called else _matches(part.name, entry.name)):
                 continue
             if entry.reflectance is not None:
                 material = replace(material, reflectance=tuple(entry.reflectance), back_reflectance=None, diffuse=True)

@@ -1,0 +1,213 @@
+"""Nothing is lost between a solution, its file and what is taken of a scene: field by field, so that a new one
+cannot be forgotten. No field has its default here, or it could be lost unseen.
+"""
+
+import json
+from dataclasses import MISSING, fields, replace
+
+import numpy as np
+import pytest
+from members import OPTIONS, accepted
+
+import radiosity as rd
+from radiosity.method.baseline import CHOICES, USED
+from radiosity.scene import Back, Camera
+from radiosity.scene.combine import combine
+from radiosity.scene.paint import Paint
+
+
+def paint(random, n: int, limit: float) -> Paint:
+    images = (random.random((3, 2, 2)).astype(np.float32), random.random((1, 4, 1)).astype(np.float32))
+    uv = random.random((n, 4, 2)).astype(np.float32)
+    return Paint(images, np.arange(n, dtype=np.int32) % 3 - 1, uv, 1 - random.random((n, 4, 2)).astype(np.float32) / 2, limit)
+
+
+def everything() -> rd.Scene:
+    """The room and a triangle within it, with all that a scene may have."""
+    random = np.random.Generator(np.random.Philox(1))
+    room = rd.load_scene("room")
+    n = room.n_faces + 1
+    vertices = [*room.vertices.tolist(), [1.0, 1.0, 1.9], [1.5, 1.0, 1.9], [1.0, 1.5, 2.0]]
+    triangle = [len(vertices) - 3, len(vertices) - 2, len(vertices) - 1, -1]
+    scene = rd.Scene.from_arrays(
+        vertices, [*room.faces.tolist(), triangle], random.random((n, 2)) / 2, random.random((n, 2)),
+        surface=[*room.surface, 0], names=room.names,
+        back=np.arange(n) % 3, back_reflectance=random.random((n, 2)) / 2, back_emission=random.random((n, 2)),
+        bands=("warm", "cold"), photometric=True, source="everything",
+        cameras=(Camera((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (0.0, 1.0, 0.0), 33.0, 640, 480), Camera((0, 0, 1), (1, 1, 1))),
+    )  # fmt: skip
+    sizes = np.where(np.arange(len(room.names)) % 2, 0.5, np.nan)
+    return replace(
+        scene, patch_size=sizes, scale=0.01, reflectance_paint=paint(random, n, 0.9), emission_paint=paint(random, n, 7.0)
+    )
+
+
+def same(one, other, name: str) -> None:
+    """Equal to the bit, kinds of arrays included; dataclasses field by field."""
+    if hasattr(one, "__dataclass_fields__"):
+        assert type(one) is type(other), name
+        for field in fields(one):
+            same(getattr(one, field.name), getattr(other, field.name), f"{name}.{field.name}")
+    elif isinstance(one, np.ndarray):
+        assert one.dtype == other.dtype, name
+        np.testing.assert_array_equal(one, other, err_msg=name)
+    elif isinstance(one, dict):
+        assert one.keys() == other.keys(), name
+        for key, value in one.items():
+            same(value, other[key], f"{name}[{key!r}]")
+    elif isinstance(one, tuple | list):
+        assert (type(one), len(one)) == (type(other), len(other)), name
+        for i, value in enumerate(one):
+            same(value, other[i], f"{name}[{i}]")
+    else:
+        assert one == other, name
+
+
+def is_default(field, value) -> bool:
+    default = field.default if field.default_factory is MISSING else field.default_factory()
+    return default is not MISSING and np.array_equal(default, value)
+
+
+@pytest.fixture(scope="module")
+def solution() -> rd.Solution:
+    return rd.solve(rd.subdivide(everything(), size=2.5), quanta=2000, replicates=3, seed=2**40)
+
+
+def test_no_field_has_its_default(solution):
+    scene = solution.patches.scene
+    for value in (solution, solution.patches, scene, scene.cameras[0], scene.reflectance_paint):
+        for field in fields(value):
+            assert not is_default(field, getattr(value, field.name)), f"{type(value).__name__}.{field.name}"
+    assert set(scene.back) == set(Back)
+    assert np.isfinite(scene.patch_size).any()
+    assert solution.state
+    assert not (solution.patches.columns == solution.patches.rows).all()
+
+
+def test_every_field_survives_a_file(solution, tmp_path):
+    solution.save(tmp_path / "a.npz")
+    loaded = rd.load_solution(tmp_path / "a.npz")
+    as_json = {"provenance": json.loads(json.dumps(solution.provenance)), "books": tuple(dict(book) for book in solution.books)}
+    same(replace(solution, **as_json), loaded, "solution")
+    for name in ("radiosity", "standard_error", "escaped", "bands", "unit", "few", "error"):
+        same(getattr(solution, name), getattr(loaded, name), name)
+    for name in ("hash", "area", "normal", "bounds", "unit", "power_unit"):
+        same(getattr(solution.patches.scene, name), getattr(loaded.patches.scene, name), name)
+    for name in ("hash", "face", "is_back", "area", "normal", "centroid", "surface", "reflectance", "emission"):
+        same(getattr(solution.patches, name), getattr(loaded.patches, name), name)
+    loaded.save(tmp_path / "b.npz")
+    same(loaded, rd.load_solution(tmp_path / "b.npz"), "solution")
+
+
+@pytest.mark.parametrize("state", [{}, None], ids=["without a state", "with a state"])
+@pytest.mark.parametrize("power", [True, False])
+def test_what_may_be_absent_stays_absent(solution, tmp_path, state, power):
+    kept = replace(
+        solution,
+        state=solution.state if state is None else state,
+        surface_power=solution.surface_power if power else None,
+    )
+    kept.save(tmp_path / "a.npz")
+    loaded = rd.load_solution(tmp_path / "a.npz")
+    same(kept.state, loaded.state, "state")
+    same(kept.surface_power, loaded.surface_power, "surface_power")
+
+
+FACE_FIELDS = {"faces", "reflectance", "emission", "back", "back_reflectance", "back_emission", "surface"}
+PAINT_FIELDS = {"image", "uv", "color"}
+
+
+@pytest.mark.parametrize("masked", [False, True])
+def test_a_choice_of_faces_keeps_all_of_them(masked):
+    scene, rows = everything(), np.array([4, 0, 2])
+    if masked:
+        rows = np.arange(scene.n_faces) % 2 == 0
+    taken = scene.take(rows)
+    for field in fields(scene):
+        whole, part = getattr(scene, field.name), getattr(taken, field.name)
+        if isinstance(whole, Paint):
+            for inner in fields(whole):
+                value = getattr(whole, inner.name)
+                same(value[rows] if inner.name in PAINT_FIELDS else value, getattr(part, inner.name), inner.name)
+        else:
+            same(whole[rows] if field.name in FACE_FIELDS else whole, part, field.name)
+
+
+def test_a_scene_combined_with_nothing_or_with_itself_is_there_whole():
+    scene = everything()
+    alone = combine([scene], source=scene.source, photometric=scene.photometric, scale=scene.scale)
+    for which in ("reflectance_paint", "emission_paint"):
+        one, other = getattr(scene, which), getattr(alone, which)
+        for image, again in zip(one.images, other.images, strict=True):
+            np.testing.assert_array_equal(np.broadcast_to(image, (*image.shape[:2], 2)), again)  # one band becomes two
+        same(replace(one, images=()), replace(other, images=()), which)
+    plain = {"reflectance_paint": None, "emission_paint": None}
+    same(replace(scene, **plain), replace(alone, **plain), "scene")
+    renamed = replace(scene, names=tuple(f"other {name}" for name in scene.names))
+    for which in ("reflectance_paint", "emission_paint"):
+        one = getattr(renamed, which)
+        renamed = replace(renamed, **{which: replace(one, images=tuple(1 - image / 2 for image in one.images))})
+    twice = combine([scene, renamed], source="", photometric=True, scale=1.0)
+    n = scene.n_faces
+    one, other = (rd.subdivide(twice.take(np.arange(k, k + n)), cells=2) for k in (0, n))
+    for patches, alike in ((one, scene), (other, renamed)):
+        expected = rd.subdivide(alike, cells=2)
+        for name in ("corners", "normal", "area", "reflectance", "emission", "is_back"):
+            same(getattr(expected, name), getattr(patches, name), name)
+    assert twice.names == (*scene.names, *(f"other {name}" for name in scene.names))
+    np.testing.assert_array_equal(twice.patch_size, np.tile(scene.patch_size, 2))
+    assert twice.cameras == 2 * scene.cameras
+
+
+@pytest.mark.parametrize("name", [f.name for f in fields(rd.Scene) if f.name not in ("cameras", "scale", "source", "patch_size")])
+def test_the_hash_sees_every_field_that_results_depend_on(name):
+    scene = everything()
+    value = getattr(scene, name)
+    if isinstance(value, Paint):
+        for inner in fields(value):
+            old = getattr(value, inner.name)
+            if inner.name == "images":
+                new = (old[0], old[1] + 1)
+            else:
+                new = old + 1
+            assert replace(scene, **{name: replace(value, **{inner.name: new})}).hash != scene.hash, inner.name
+        other = None
+    elif isinstance(value, np.ndarray):
+        other = value.copy()
+        other.flat[-1] += 1
+    else:
+        other = not value if isinstance(value, bool) else (*value[:-1], "another")
+    assert replace(scene, **{name: other}).hash != scene.hash
+
+
+METHODS = [*accepted(), *(preset.method for preset in rd.PRESETS.values())]
+
+
+def test_methods_come_back_from_what_solutions_say_of_them(solution, tmp_path):
+    """Through a file, every method that makes sense, with each option that goes with it, and baselines with each choice."""
+    methods = list(dict.fromkeys(METHODS))
+    for option, on in (OPTIONS | {"coherent": True, "numbers": "sobol"}).items():
+        for method in tuple(methods):
+            try:
+                methods.append(replace(method, **{option: on}))
+            except rd.MethodError:
+                continue
+    baselines = CHOICES | {"samples": (7,), "epsilon": (1e-3,), "reciprocal": (True,), "ambient": (True,)}
+    for scheme in USED:
+        for choice, values in baselines.items():
+            for value in values:
+                try:
+                    methods.append(rd.Baseline(**({"scheme": scheme} | {choice: value})))
+                except rd.MethodError:
+                    continue
+    assert len(set(methods)) > 100
+    names = {}
+    for method in dict.fromkeys(methods):
+        choices = {field.name: getattr(method, field.name) for field in fields(method)}
+        kept = json.loads(json.dumps(choices))
+        assert type(method)(**kept) == method
+        assert names.setdefault(str(method), method) == method  # two methods of one name could not be told apart in a report
+    for method in (rd.Method(numbers="sobol", order="regular", warm_up=True), rd.PRESETS["stochastic-jacobi"].method):
+        done = rd.solve(solution.patches.scene.take([0, 3]), method, quanta=10, replicates=2)
+        done.save(tmp_path / "a.npz")
+        assert rd.Method(**rd.load_solution(tmp_path / "a.npz").provenance["choices"]) == method
