@@ -296,7 +296,7 @@ def test_negative_irradiance_is_kept_and_told_everywhere(tmp_path):
 
 
 def test_weights_fall_with_the_reflectance_and_chance_keeps_their_mean():
-    """In a cube of reflectance 0.75 a line brings 0.75 k times to its k-th end in the mean: what all walks bring is 1 / (1 - rho)."""
+    """In a cube of reflectance 0.75 all that a walk brings is 1 / (1 - 0.75) in the mean, line by line less."""
     patches = rd.subdivide(cube(0.75, 0.25), cells=1)
     process = process_of(patches, 1)
     m, types = 20_000, process.engine.types

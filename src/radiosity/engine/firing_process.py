@@ -73,7 +73,10 @@ class Arrivals(AbstractTally):
         return self._sent
 
     def lines(self, problem: Problem, state: State) -> int:
-        return exact_sum(state["fired"]) + self.sent(state).lines
+        return self.swept_lines(problem, state) + self.sent(state).lines
+
+    def swept_lines(self, problem: Problem, state: State) -> int:
+        return exact_sum(state["fired"])
 
     def about_lines(self, problem: Problem, state: State) -> float:
         fired, begun = exact_sum(state["fired"]), starts(self.engine, problem, state)
