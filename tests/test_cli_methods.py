@@ -34,6 +34,15 @@ def test_an_axis_is_explained(axis, capsys):
     assert all(len(row.split()) > 2 for row in rows)
 
 
+def test_the_randomisation_is_explained_and_chosen(capsys):
+    assert run(["methods", "randomisation"]) == 0
+    assert [row.split()[0] for row in capsys.readouterr().out.splitlines()] == ["by-patch", "shared"]
+    assert run(["solve", "room", "--rays", "200k", "--randomisation", "shared"]) == 0
+    assert "breadth-first/halton/shared" in capsys.readouterr().out
+    assert run(["solve", "room", "--rays", "200k", "--randomisation", "wild"]) == 2
+    assert "known are by-patch, shared" in capsys.readouterr().err
+
+
 def test_an_unknown_method_is_an_error_that_lists_them(capsys):
     assert run(["methods", "magic"]) == 2
     assert "known are random-walk" in capsys.readouterr().err

@@ -32,8 +32,9 @@ def with_quads(scene: rd.Scene, name: str, quads) -> rd.Scene:
 
 
 def stray(scene: rd.Scene, distance: float) -> rd.Scene:
-    """A square metre more, far away along two axes, which faces up."""
-    return with_quads(scene, "stray", [quad((distance, distance, 0), (1, 0, 0), (0, 1, 0))])
+    """A square more, far away along two axes, which faces up: of a metre, or of six at 1000 km, where an ulp is 12 cm."""
+    size = 6.0 if distance > 100 * KILOMETRE else 1.0
+    return with_quads(scene, "stray", [quad((distance, distance, 0), (size, 0, 0), (0, size, 0))])
 
 
 @pytest.fixture(scope="module")
@@ -72,9 +73,9 @@ def test_a_stray_object_at_a_thousand_kilometres_leaves_millimetres_apart():
 
     size = 1e-3
     quads = [quad((0, 0, 0), (size, 0, 0), (0, size, 0)), quad((0, 0, size), (0, size, 0), (size, 0, 0))]
-    far = quad((1000 * KILOMETRE, 0, 0), (1, 0, 0), (0, 1, 0))
-    # walls of a metre hold the median here
-    walls = [quad((-0.5, -0.5, -0.1), (1, 0, 0), (0, 1, 0)), quad((-0.5, -0.5, 0.1), (0, 1, 0), (1, 0, 0))]
+    far = quad((1000 * KILOMETRE, 0, 0), (100, 0, 0), (0, 100, 0))
+    # walls of 100 m hold the median here
+    walls = [quad((-50, -50, -0.1), (100, 0, 0), (0, 100, 0)), quad((-50, -50, 0.1), (0, 100, 0), (100, 0, 0))]
     quads = [*quads, *walls, far]
     scene = rd.Scene.from_arrays(np.concatenate(quads), np.arange(20).reshape(5, 4), 0.0, [1.0, 0, 0, 0, 0])
     assert scene.n_faces == 5
@@ -135,3 +136,13 @@ def test_a_run_from_before_lines_began_elsewhere_is_not_gone_on_with(room):
         rd.solve(patches, quanta=128, replicates=2, resume=before)
         with pytest.raises(rd.MethodError, match="cannot go on from that solution: tracing"):
             rd.solve(patches, quanta=128, replicates=2, resume=old)
+
+
+def test_what_is_no_larger_than_an_ulp_where_it_lies_is_told_by_name(room):
+    """A square metre at 1000 km, where an ulp is 12 cm: lines begin a metre in front of it."""
+    far = with_quads(room, "pebble", [quad((1000 * KILOMETRE, 0, 0), (1, 0, 0), (0, 1, 0))])
+    message = "1 face .*'pebble'.* is hardly larger than what single precision holds apart .*begin 0.954 m in front"
+    with pytest.warns(rd.RadiosityWarning, match=message):
+        rd.solve(rd.subdivide(far, cells=1), rays=20_000)
+    (text,) = [f.message for f in check(far).findings if f.kind == "too small"]
+    assert "'pebble'" in text

@@ -16,6 +16,7 @@ def test_a_method_prints_as_its_choices():
     assert str(rd.Method(equation="continuous", estimator="survival", numbers="sobol")) == (
         "continuous/local/breadth-first/sobol/survival"
     )
+    assert str(rd.Method(randomisation="shared")) == "discrete/local/breadth-first/halton/shared"
     shot = rd.Method(lines="global", order="multipath", first_shot=0.25)
     assert str(shot) == "discrete/global/multipath/halton/first-shot=0.25"
 
@@ -48,6 +49,7 @@ def test_a_method_prints_as_its_choices():
         ({"reconstruction": "magic"}, "known are patches, local-linear"),
         ({"coherent": True, "order": "staged"}, "leave one out"),
         ({"estimator": "wishful"}, "known are collision"),
+        ({"randomisation": "none"}, "known are by-patch, shared"),
         ({"absorption": "black"}, "known are auto, rounded"),
         ({"equation": "cubic"}, "known are discrete, continuous"),
     ],

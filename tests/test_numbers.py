@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from radiosity.engine.departure import place_number
 from radiosity.engine.device import choose, upload
+from radiosity.engine.geometry import COLUMN_BITS
 from radiosity.engine.quanta import stream
 from radiosity.errors import MethodError
 from radiosity.method.numbers import DIMENSIONS, NUMBERS, WORDS, make
@@ -12,7 +14,7 @@ from radiosity.method.numbers import DIMENSIONS, NUMBERS, WORDS, make
 ALPHA = 1e-4  # of each test, divided by the number of its comparisons
 
 
-def points(name, index, *, patch=0, seed=0, bits=32, zero=False, turns=None):
+def points(name, index, *, patch=0, seed=0, bits=32, zero=False, turns=None, of_patch=False):
     """Those of each index; or of ``turns`` from each index on, (turns, n, DIMENSIONS)."""
     import drjit as dr
 
@@ -21,12 +23,14 @@ def points(name, index, *, patch=0, seed=0, bits=32, zero=False, turns=None):
     drawn = np.zeros(WORDS, np.uint32) if zero else numbers.randomisation(stream(seed, 0, 1))
     randomisation = [dr.opaque(types.UInt32, int(word)) for word in drawn]  # no literals: one kernel
     index = np.asarray(index, np.uint32)
-    patches = upload(types.UInt32, np.full(len(index), patch, np.uint32))
+    patches = upload(types.UInt32, np.broadcast_to(np.asarray(patch, np.uint32), index.shape))
     index = upload(types.UInt32, index)
+    if of_patch:
+        randomisation = numbers.of_patch(randomisation, patches)
     if turns is None:
         found = [numbers.points(index, patches, randomisation, bits)]
     else:
-        in_turn = numbers.in_turn(index, patches, randomisation, bits, turns)
+        in_turn = numbers.in_turn(index, patches, lambda index: randomisation, bits, turns)
         found = [in_turn(types.UInt32(turn)) for turn in range(turns)]
     found = np.stack([np.stack([np.broadcast_to(np.array(c), len(patches)) for c in point], axis=1) for point in found])
     return found[0] if turns is None else found
@@ -122,11 +126,49 @@ def test_a_biased_generator_is_rejected():
     assert stats.chisquare(np.histogram2d(x[:, 0], x[:, 0], bins=10, range=[[0, 1], [0, 1]])[0].ravel()).pvalue < ALPHA
 
 
-def test_patches_share_one_sequence_unless_it_is_random():
-    index = np.arange(1, 100)
-    for name in set(NUMBERS) - {"random"}:
-        assert np.array_equal(points(name, index, patch=1), points(name, index, patch=2))
-    assert not np.array_equal(points("random", index, patch=1), points("random", index, patch=2))
+@pytest.mark.parametrize("name", NUMBERS)
+class TestPatches:
+    """Points with the randomisation of a patch, `of_patch`."""
+
+    def test_patches_have_points_of_their_own(self, name):
+        index = np.arange(1, 100)
+        found = [points(name, index, patch=patch, of_patch=True) for patch in (0, 1, 2, 77_777)]
+        assert len({x.tobytes() for x in found}) == 4
+        assert np.array_equal(found[3], points(name, index, patch=77_777, of_patch=True))
+        shared = [points(name, index, patch=patch) for patch in (0, 1)]
+        assert np.array_equal(*shared) == (name != "random")  # those of the replicate are the same for all
+        assert np.array_equal(found[0], shared[0])
+
+    @pytest.mark.parametrize("patch", [1, 30, 99_999, 2**31 - 1])
+    def test_the_points_of_a_patch_are_uniform(self, name, patch):
+        x = points(name, np.arange(1, 40_001), patch=patch, seed=13, of_patch=True)
+        assert x.min() >= 0
+        assert x.max() < 1
+        comparisons = 4 * DIMENSIONS * (DIMENSIONS + 1) / 2
+        for a in range(DIMENSIONS):
+            assert stats.kstest(x[:, a], "uniform").pvalue > ALPHA / comparisons
+            for b in range(a):
+                counts, *_ = np.histogram2d(x[:, a], x[:, b], bins=10, range=[[0, 1], [0, 1]])
+                assert stats.chisquare(counts.ravel()).pvalue > ALPHA / comparisons
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("cells", [(10, 10), (34, 34), (158, 6)])
+def test_a_line_of_all_patches_of_a_face_fills_the_square(name, cells):
+    """The k-th lines of the patches of a face: at least as evenly over 4 x 4 or 8 x 8 boxes as random points."""
+    columns, rows = (axis.ravel() for axis in np.meshgrid(*map(np.arange, cells)))
+    boxes, shares = 4 if len(columns) < 500 else 8, []
+    for face, index in ((0, 1), (7, 6), (80_000, 50)):
+        record = np.full(len(columns), face, np.uint32), (columns | rows << COLUMN_BITS).astype(np.uint32)
+        places = place_number([upload(choose("cpu").types.UInt32, part) for part in record])
+        x = points(name, np.full(len(columns), index), patch=np.array(places), seed=14, of_patch=True)
+        for a in range(DIMENSIONS):
+            for b in range(a):
+                counts, *_ = np.histogram2d(x[:, a], x[:, b], bins=boxes, range=[[0, 1], [0, 1]])
+                found = stats.chisquare(counts.ravel())
+                assert found.pvalue > ALPHA / (9 * DIMENSIONS * (DIMENSIONS - 1) / 2)
+                shares.append(found.statistic / (boxes**2 - 1))
+    assert np.mean(shares) < (1.3 if name == "random" else 0.7)  # of squares that random points have
 
 
 def test_random_is_philox():

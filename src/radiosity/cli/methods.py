@@ -9,7 +9,7 @@ def methods(name: str | None = None, /) -> int:
     Parameters
     ----------
     name
-        Of a method, or of one of the four axes: equation, lines, order, numbers.
+        Of a method, or of one of the four axes: equation, lines, order, numbers; or randomisation.
     """
     from ..errors import MethodError
     from ..method import BASELINES, PRESETS
@@ -18,12 +18,13 @@ def methods(name: str | None = None, /) -> int:
     known = PRESETS | BASELINES
     if name is None:
         _list()
-    elif name in AXES:
+    elif name in AXES or name == "randomisation":
         _axis(name)
     elif name in known:
         _explain(name)
     else:
-        raise MethodError(f"method '{name}' does not exist; known are {', '.join(known)}; and the axes {', '.join(AXES)}")
+        axes = ", ".join((*AXES, "randomisation"))
+        raise MethodError(f"method '{name}' does not exist; known are {', '.join(known)}; and the axes {axes}")
     return 0
 
 
@@ -75,8 +76,10 @@ def _axis(axis: str) -> None:
     from ..method.lines import LINES
     from ..method.numbers import NUMBERS
     from ..method.order import ORDERS
+    from ..method.randomisation import RANDOMISATIONS
 
-    texts = {"equation": EQUATIONS, "lines": LINES, "order": ORDERS}.get(axis) or {name: _numbers(name) for name in NUMBERS}
+    known = {"equation": EQUATIONS, "lines": LINES, "order": ORDERS, "randomisation": RANDOMISATIONS}
+    texts = known.get(axis) or {name: _numbers(name) for name in NUMBERS}
     width = max(map(len, texts))
     for value, text in texts.items():
         print(f"{value:<{width}}  {text}")
@@ -101,7 +104,7 @@ def _explain(name: str) -> None:
     for text in (preset.about, f"When: {preset.when}"):
         print(textwrap.fill(text, 100) + "\n")
     if preset.parameters:
-        axes = "" if name in BASELINES else ", besides equation, lines, order and numbers"
+        axes = "" if name in BASELINES else ", besides equation, lines, order, numbers and randomisation"
         print(f"Its own parameters{axes}:")
         for parameter, meaning in preset.parameters:
             print(f"  {parameter:<16} {meaning}")

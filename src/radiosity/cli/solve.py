@@ -27,6 +27,7 @@ def solve(
     lines: str | None = None,
     order: str | None = None,
     numbers: str | None = None,
+    randomisation: str | None = None,
     estimator: str | None = None,
     absorption: str | None = None,
     first_shot: Share = None,
@@ -93,6 +94,8 @@ def solve(
         Likewise: which line is fired next.
     numbers
         Likewise: which points of the unit cube the lines are made from.
+    randomisation
+        Of numbers: by-patch (each patch shifts the sequence by its own amount) or shared (one shift for all patches).
     estimator
         Likewise: what is scored of a walk or line: collision, absorption, survival, gathering, bidirectional.
     absorption
@@ -178,9 +181,9 @@ def solve(
     from .progress import bar
 
     choices = {
-        "equation": equation, "lines": lines, "order": order, "numbers": numbers, "estimator": estimator,
-        "absorption": absorption, "first_shot": first_shot, "control_variate": control_variate, "warm_up": warm_up,
-        "reconstruction": reconstruction, "coherent": coherent or None, "factors": factors, "solver": solver,
+        "equation": equation, "lines": lines, "order": order, "numbers": numbers, "randomisation": randomisation,
+        "estimator": estimator, "absorption": absorption, "first_shot": first_shot, "control_variate": control_variate,
+        "warm_up": warm_up, "reconstruction": reconstruction, "coherent": coherent or None, "factors": factors, "solver": solver,
         "reciprocal": reciprocal, "resolution": resolution, "rotated": rotated, "samples": samples, "ambient": ambient,
         "overshooting": overshooting, "epsilon": epsilon, "refinement": refinement,
     }  # fmt: skip

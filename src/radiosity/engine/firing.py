@@ -15,6 +15,7 @@ from ..method.numbers import ready
 from . import quanta as contract
 from .bands import BandGroups, BandTally
 from .blocks import shared
+from .departure import place_number
 from .device import frozen, upload
 from .geometry import Geometry
 from .landings import DENSE, AbstractLandings, landings
@@ -49,6 +50,7 @@ class Engine:
         self.arrivals, self.fired = dr.opaque(u32, 0, width), dr.opaque(u32, 0, self.total)
         self.touched, self.landed = dr.opaque(self.types.Bool, False, width), None
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
+        self.by_patch, self.own_lines = method.randomisation == "by-patch", dr.opaque(u32, own_lines(self.n))
         self.quanta = 0
         self.everywhere, self.owes = True, False
         self.swept = 0  # lines of the sweeps so far
@@ -137,9 +139,7 @@ class Engine:
             counts = self._count(read, arrivals, total, largest)
             dr.eval(total, largest, *([counts] if keep else []), *([arrivals] if self.bands is not None else []))
             if self.bands is not None:
-                self.bands.weigh(self, piece, places, arrivals)
-        if self.bands is not None:
-            self.bands.quanta_before = self.quanta
+                self.bands.weigh(self, piece, places, arrivals, counts)
         lines = int(total[0])
         return (Sweep(numbers, low, size, lines, counts if keep else None), int(largest[0])) if lines else (None, 0)
 
@@ -220,9 +220,9 @@ class Engine:
 
         landed = None
         if not chunk.batch.several:
-            landed = fire(self.points(number, first, replicate, bits), chunk.mask(types, always=few))
+            landed = fire(self.points(number, first, replicate, record, bits), chunk.mask(types, always=few))
         else:
-            points = self.numbers.in_turn(first, *self._stream(number, replicate), bits, 1 << max(SHIFTS))
+            points = self.numbers.in_turn(first, *self._stream(number, replicate, record), bits, 1 << max(SHIFTS))
             count = chunk.lines(types, first)
             loop((types.UInt32(0),), lambda turn: turn < count, turn_by_turn)
         if few:
@@ -234,7 +234,8 @@ class Engine:
     def trace(self, number, index, record, bits: int):
         """Fire the ``index``-th line (from 1) of each patch number: the slot of ``arrivals`` where it lands."""
         replicate = self._replicate(number)
-        return self._land(*local_line(self.geometry, record, self.points(number, index, replicate, bits)), replicate, False, True)
+        points = self.points(number, index, replicate, record, bits)
+        return self._land(*local_line(self.geometry, record, points), replicate, False, True)
 
     def _land(self, origin, direction, replicate, coherent: bool, active):
         return self.slot(land(self.geometry, origin, direction, coherent=coherent, active=active), replicate)
@@ -246,16 +247,21 @@ class Engine:
     def _replicate(self, number):
         return self.types.UInt32(0) if self.replicates == 1 else self.replicate(number)
 
-    def points(self, number, index, replicate, bits: int):
-        """The numbers of the ``index``-th line of each patch number."""
-        return self.numbers.points(index, *self._stream(number, replicate), bits)
+    def points(self, number, index, replicate, record, bits: int):
+        """The numbers of the ``index``-th line of each patch number, whose record it is."""
+        patch, randomisation = self._stream(number, replicate, record)
+        return self.numbers.points(index, patch, randomisation(index), bits)
 
-    def _stream(self, number, replicate):
-        """Patch and randomisation."""
+    def _stream(self, number, replicate, record):
+        """Patch, and its randomisation as a function of the index: its own for its first lines, then that of all patches."""
         types = self.types
         patch = number if self.replicates == 1 else number - replicate * self.n_opaque
         halves = [dr.gather(types.Array4u, self.randomisation, replicate * 2 + half) for half in (0, 1)]
-        return patch, [word for half in halves for word in half]
+        words = [word for half in halves for word in half]
+        if not self.by_patch:
+            return patch, lambda index: words
+        place = place_number(record)
+        return patch, lambda index: self.numbers.of_patch(words, dr.select(index <= self.own_lines, place, 0))
 
     def slot(self, hit, replicate):
         """The slot of ``arrivals`` for lines of a replicate, from where they land."""
@@ -263,6 +269,12 @@ class Engine:
         landed = patch_of(self.geometry, hit, LOST, ESCAPED)
         slot = dr.select(landed == ESCAPED, types.UInt32(self.total), types.UInt32(self.total + self.replicates)) + replicate
         return dr.select(landed >= LOST, slot, landed + replicate * self.n_opaque)
+
+
+def own_lines(n: int) -> int:
+    """How many lines of a patch take its own randomisation: a power of two between twice and four times as many as there are
+    patches. With more lines than that, one for all is as good for means over surfaces, and better for patches."""
+    return min(1 << (4 * n).bit_length() - 1, contract.LIMIT)
 
 
 def _not_alone(numbers: np.ndarray, total: int) -> np.ndarray:

@@ -103,6 +103,10 @@ class AbstractTally(ABC):
         """The same where it is quick to tell, else an estimate."""
         return self.lines(problem, state)
 
+    def swept_lines(self, problem: Problem, state: State) -> int:
+        """The same without lines that are traced where results are read."""
+        return self.lines(problem, state)
+
     @abstractmethod
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
         """(n_patches,) int64: lines that landed on each patch, replicates together."""
@@ -131,6 +135,14 @@ class AbstractBiasedTally(AbstractTally):
     def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
         """(n_patches,) the size of the bias of the values' mean, in the unit of `irradiance`; NaN where unknown. Stated standard
         errors hold it."""
+
+
+class AbstractMeanTally(AbstractBiasedTally):
+    """A tally of means over the lines of each patch; patches without lines take those of their face (`unmet`)."""
+
+    @abstractmethod
+    def measured(self, problem: Problem, state: State) -> np.ndarray:
+        """(replicates, n_patches): lines that each patch's value is the mean of."""
 
 
 def make(geometry: Geometry, problem: Problem, method: "Method | Baseline", seed: int, replicates: int) -> AbstractProcess:

@@ -81,7 +81,8 @@ class Source:
 
 
 def stream(seed: int, replicate: int, purpose: int) -> np.random.SeedSequence:
-    """An independent stream of a replicate: 0 for phases, 1 for numbers, others by their name. The number of replicates does not matter."""
+    """An independent stream of a replicate: 0 for phases, 1 for numbers, others by their name. The number of replicates does not
+    matter."""
     return np.random.SeedSequence([seed, replicate, purpose])
 
 

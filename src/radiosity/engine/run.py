@@ -13,14 +13,14 @@ from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import NOT_REACHED, Solution
 from ..solution.without_results import without_results
-from . import demand
+from . import demand, unmet
 from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .device import choose, give_back_memory
 from .geometry import TRACING, Geometry
 from .problem import Problem
-from .process import AbstractProcess, State, make
+from .process import AbstractMeanTally, AbstractProcess, State, make
 from .progress import Interrupted, Listener, Stop, Teller
 from .shortfall import warn_of_more, warn_of_target
 from .snapshot import Snapshot
@@ -90,7 +90,7 @@ class Run:
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
-        self.teller.begin(0 if self.resume is None else round(process.tally.about_lines(self.problem, process.capture())))
+        self.teller.begin(0 if self.resume is None else process.tally.swept_lines(self.problem, process.capture()))
         status, pending, steps = "complete", {}, [target]
         while target:
             started = time.perf_counter()
@@ -108,7 +108,7 @@ class Run:
             error = snapshot.error(self.rows) if known else math.nan
             margin = self._margin(snapshot)
             lines = snapshot.lines if known or large else round(snapshot.about_lines)
-            self.teller.complete(lines, target, error, margin)
+            self.teller.complete(lines, target, error, margin, process.tally.swept_lines(self.problem, snapshot.state))
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
                 break
@@ -231,12 +231,14 @@ class Run:
             warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
         if status == NOT_REACHED:
             warn_of_target(self, snapshot)
+        if isinstance(snapshot.tally, AbstractMeanTally):
+            unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
         ends = snapshot.lines / self.replicates / len(self.patches)
         global_factors = self.method.machine == "matrix" and self.method.lines != "local"
         if global_factors and ends < ENDS_ENOUGH:
             warnings.warn(
                 f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over that "
-                "number, and not in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
+                "number, and in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
                 RadiosityWarning,
                 stacklevel=5,
             )

@@ -39,7 +39,7 @@ def warn_of_target(run: "Run", snapshot: Snapshot) -> None:
     full = "counters are full: take more replicates"
     why = f"the limit was {', '.join(limits)}, or {full}" if limits else full
     warnings.warn(
-        f"the error {budget.error:.3g} of {whose} was not reached: {known}; {why}",
+        f"the error {100 * (budget.error or 0):.3g}% of {whose} was not reached: {known}; {why}",
         RadiosityWarning,
         stacklevel=6,
     )

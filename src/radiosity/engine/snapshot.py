@@ -9,7 +9,7 @@ import numpy as np
 
 from ..pieces import pieces
 from ..solution.errors import inner_products, margin, mean_and_error, relative_error
-from ..solution.intervals import FEW, least_error, usual_power
+from ..solution.intervals import FEW, by_luck, least_error, usual_power
 from .problem import Problem
 from .process import AbstractBiasedTally, AbstractTally, State
 
@@ -62,7 +62,8 @@ class Snapshot:
             bands = np.flatnonzero(groups.index == group)
             for part, one, its_error in self._irradiance(group):
                 mean[part, bands], error[part, bands] = (x[:, None] * groups.scale[bands] for x in (one, its_error))
-        if self.tally.counts_landings and (error == 0).any():
+        some = any(by_luck(mean[part], error[part]).any() for part in pieces(len(mean)))
+        if some and self.tally.counts_landings:
             usual = usual_power(mean, self.arrivals, self.problem.patches.area, self.line)
             error = least_error(mean, error, self.arrivals, self.problem.patches.area, usual, self.replicates)
         return mean, error
@@ -123,8 +124,9 @@ class Snapshot:
     def judged(self, rows: np.ndarray | slice = slice(None)) -> bool:
         """The error of some patches is known well enough to stop there: what makes it up comes from `FEW` lines or more.
 
-        Patches of squared error s_i, summed over area, are worth (sum s)^2 / sum s^2 of their kind, which n_i lines reached in
-        the mean weighted by s. Lines are counted as those from the lights that would bring as much power, where they are fewer.
+        The relative variance of an error that n lines tell goes with 1 / n. So the sum of squared errors s_i of patches that n_i
+        lines reached is known as well as that of a patch which (sum s)^2 / sum (s^2 / n) of them did. Lines are counted as those
+        from the lights that would bring as much power, where these are fewer; the least error where none landed as one.
         """
         patches, (mean, error) = self.problem.patches, self.irradiance
         area, rho, error = patches.area[rows, None], patches.reflectance[rows], error[rows]
@@ -133,8 +135,8 @@ class Snapshot:
         square = area * ((rho if rho.any() else 1.0) * error) ** 2
         known = square.sum(axis=0) > 0
         share = square[:, known] / square[:, known].sum(axis=0)
-        worth = (share * lines[:, known]).sum(axis=0) / (share**2).sum(axis=0)
-        return bool(known.any() and (worth >= FEW).all())
+        told = np.where(lines > 0, lines, 1.0)[:, known]
+        return bool(known.any() and (FEW * (share**2 / told).sum(axis=0) <= 1 + 1e-9).all())
 
     def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
         """How many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""

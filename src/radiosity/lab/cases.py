@@ -51,7 +51,7 @@ def reference(case: Case, equation: str, protocol: Protocol) -> tuple[np.ndarray
     the area-weighted RMS of its standard error over that of the reflected light."""
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
     replicates = 8
-    process = make(geometry, problem, Method(equation=equation), REFERENCE_SEED, replicates)
+    process = make(geometry, problem, Method(equation=equation, randomisation="shared"), REFERENCE_SEED, replicates)
     # a quantum takes 1 / (1 - mean reflectance) lines; more lines than asked for do no harm
     lines = protocol.reference * protocol.rungs[-1]
     process.advance(max(1, lines // replicates), lambda lines: None)

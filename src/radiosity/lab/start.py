@@ -40,7 +40,7 @@ def starts(case: Case, truth: np.ndarray, seed: int) -> list[Start]:
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
 
     def follow(order: str, quanta: list[int], *, within: bool):
-        process = make(geometry, problem, Method(order=order), seed, REPLICATES)
+        process = make(geometry, problem, Method(order=order, randomisation="shared"), seed, REPLICATES)
         lines, errors = [], []
 
         def note(_lines=0):

@@ -30,10 +30,10 @@ class Arm:
 
 
 def with_both_numbers(methods: dict[str, Method]) -> tuple[Arm, ...]:
-    """Two arms for each method, a family of its name: random and Halton numbers."""
+    """Two arms for each method, a family of its name: random and Halton numbers, one shift for all patches as in the paper."""
     kinds = {"random": "random", "Halton": "halton"}
     return tuple(
-        Arm(f"{name}, {kind}", replace(method, numbers=numbers), name)
+        Arm(f"{name}, {kind}", replace(method, numbers=numbers, randomisation="shared"), name)
         for name, method in methods.items()
         for kind, numbers in kinds.items()
     )

@@ -9,9 +9,12 @@ from .estimator import ABSORPTIONS, ESTIMATORS
 from .lines import LINES
 from .numbers import NUMBERS
 from .order import ORDERS
+from .randomisation import RANDOMISATIONS
 
 AXES = {"equation": tuple(EQUATIONS), "lines": tuple(LINES), "order": tuple(ORDERS), "numbers": tuple(NUMBERS)}
-CHOICES = AXES | {"estimator": tuple(ESTIMATORS), "absorption": ("auto", *ABSORPTIONS)}
+CHOICES = AXES | {
+    "randomisation": tuple(RANDOMISATIONS), "estimator": tuple(ESTIMATORS), "absorption": ("auto", *ABSORPTIONS),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -23,6 +26,8 @@ class Method:
         lines: what carries it?
         order: which line is fired next?
         numbers: which points of the unit cube?
+        randomisation: "by-patch" or "shared": do patches share the shift that moves a sequence? Random numbers have none: each
+            patch has its own in any case. What does not begin at patches (global lines, fractional absorption) shares it, too.
         estimator: what is scored?
         absorption: how does a walk end? "auto" is "rounded" where patches can round, else "drawn".
         first_shot: global lines: the share of all lines that sends the lights' own power by local lines first; 0 is none.
@@ -40,6 +45,7 @@ class Method:
     lines: str = "local"
     order: str = "breadth-first"
     numbers: str = "halton"
+    randomisation: str = "by-patch"
     estimator: str = "collision"
     absorption: str = "auto"
     first_shot: float = 0.0
@@ -66,7 +72,8 @@ class Method:
         return machine(self)
 
     def __str__(self) -> str:
-        extras = [] if self.estimator == "collision" else [self.estimator]
+        extras = [self.randomisation] if self.randomisation != "by-patch" else []
+        extras += [] if self.estimator == "collision" else [self.estimator]
         extras += [] if self.absorption == "auto" else [self.absorption]
         extras += [f"first-shot={self.first_shot:g}"] if self.first_shot else []
         extras += [self.reconstruction] if self.reconstruction != "patches" else []

@@ -13,6 +13,7 @@ from ..errors import MethodError
 from ..pieces import pieces
 
 FEW = 30  # arrivals, all replicates together: Student's intervals of patches with fewer are too narrow (docs/errors.md)
+ROUNDING = 1e-13  # relative, of sums over replicates
 QUANTITIES = ("radiosity", "irradiance")
 
 
@@ -100,6 +101,11 @@ def irradiance_bounds(
     return low * power, high * power
 
 
+def by_luck(mean: np.ndarray, error: np.ndarray) -> np.ndarray:
+    """Where all replicates agree, up to rounding."""
+    return error <= ROUNDING * np.abs(mean)
+
+
 def least_error(
     irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray,
     usual: np.ndarray | None = None, replicates: int = 1,
@@ -117,7 +123,7 @@ def least_error(
     usual = usual_power(irradiance, arrivals, area) if usual is None else usual
     usual = np.broadcast_to(usual, irradiance.shape)
     for part in pieces(len(area)):
-        lucky = error[part] == 0
+        lucky = by_luck(irradiance[part], error[part])
         if not lucky.any():
             continue
         count = np.where(irradiance[part] > 0, arrivals[part, None], 0)

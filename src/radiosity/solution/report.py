@@ -65,7 +65,7 @@ def _status(solution) -> str:
 
     if solution.status != NOT_REACHED:
         return solution.status
-    return f"{NOT_REACHED}: the error asked for was {percent(solution.provenance['budget']['error'], '.3g')}"
+    return f"{NOT_REACHED}: the error asked for was {100 * solution.provenance['budget']['error']:.3g}%"
 
 
 def _surfaces(solution) -> list[str]:

@@ -24,12 +24,13 @@ APART = 1 << 64  # added to the seed: local lines do not repeat the numbers of g
 class FirstShot:
     """Counters of the lines from the lights, of all replicates."""
 
-    def __init__(self, geometry: Geometry, problem: Problem, numbers: str, seed: int, replicates: int):
+    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int):
         self.source, self.groups = problem.source, problem.groups
         black = np.zeros_like(self.groups.reflectance)
         groups = BandGroups(self.groups.index, self.groups.scale, self.groups.emission, black)
         source = replace(self.source, rho=np.zeros_like(self.source.rho))
-        self.engine = Engine(geometry, source, Method(numbers=numbers), seed + APART, replicates, groups)
+        local = Method(numbers=method.numbers, randomisation=method.randomisation)
+        self.engine = Engine(geometry, source, local, seed + APART, replicates, groups)
 
     def fire(self, lines: int, swept: Swept) -> None:
         """Send each replicate's lights' power in so many lines, those fired before included."""

@@ -42,7 +42,7 @@ class Multipath(AbstractProcess):
         self.mixed = Mixed(self.spans)
         self.shot = None
         if self.method.first_shot:
-            self.shot = FirstShot(self.geometry, self.problem, self.method.numbers, self.seed, self.replicates)
+            self.shot = FirstShot(self.geometry, self.problem, self.method, self.seed, self.replicates)
         self.n, self.total = len(patches), len(patches) * self.replicates
         self._quanta, self.done = 0, 0
         self.ends = np.zeros((self.replicates, self.n), np.int64)

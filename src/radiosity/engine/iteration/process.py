@@ -52,7 +52,8 @@ class Iteration(AbstractProcess):
 
     def restore(self, state: State) -> None:
         shape = (self.replicates, self.exchange.n)
-        if "progress" not in state or "fired" not in state or state["fired"].shape != shape:
+        counters = {"progress", "fired"} | ({"fired_apart"} if self.exchange.turns > 1 else set())
+        if counters - set(state) or state["fired"].shape != shape:
             raise MethodError("the solution to go on from lacks the counters of its iterations, or has other sizes; start anew")
         self.exchange.shooter.restore(state)
         self.exchange.step = int(state["step"])

@@ -4,6 +4,8 @@ Continuous: S. N. Pattanaik and S. P. Mudur, "Computation of global illumination
 of light", 3rd Eurographics Workshop on Rendering, 1992. Discrete: M. Sbert 1997. What a landing scores is the estimator's choice.
 """
 
+from dataclasses import replace
+
 import drjit as dr
 import numpy as np
 
@@ -29,7 +31,10 @@ class Walks(AbstractLaunches):
     """Walks of local lines that score where they land."""
 
     def _prepare(self) -> None:
-        self.engine = Engine(self.geometry, self.problem.source, self.method, self.seed, self.replicates)
+        method = self.method
+        if method.absorption == "fractional":  # walk n takes point n, its birth patch too: patches have no points of their own
+            method = replace(method, randomisation="shared")
+        self.engine = Engine(self.geometry, self.problem.source, method, self.seed, self.replicates)
         self.types = self.engine.types
         self.legs = Legs(self.engine, continuous=self.method.equation == "continuous")
         self.births = Births.of_power(self.problem, self.seed, self.replicates)

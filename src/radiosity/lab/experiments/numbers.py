@@ -9,7 +9,7 @@ TITLE = "Sample number generators"
 QUESTION = "The local discrete random walk with random numbers and six low discrepancy sequences."
 SCENES = ("labyrinth-0.1", "labyrinth-0.5", "labyrinth-0.9", "room")
 SEQUENCES = [name for name in AXES["numbers"] if name != "random"]
-ARMS = tuple(Arm(name, Method(numbers=name), name) for name in ("random", *SEQUENCES))
+ARMS = tuple(Arm(name, Method(numbers=name, randomisation="shared"), name) for name in ("random", *SEQUENCES))
 
 
 def claims(results: Results) -> list[Claim]:

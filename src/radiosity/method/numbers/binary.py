@@ -22,7 +22,7 @@ STEPS = (16, 24, 32)  # whole bytes
 
 @dataclass(frozen=True)
 class Binary(AbstractNumbers):
-    """Replicates have a random digital shift each: the words of the randomisation are added to those of the coordinates.
+    """Patches of replicates have a digital shift each: the words of the randomisation are added to those of the coordinates.
 
     Line ``index`` takes point index - 1, so that the first 2^m lines are a net (A. B. Owen, "On dropping the first Sobol' point",
     MCQMC 2020); the shift moves point 0 away from the corner.

@@ -17,7 +17,7 @@ STEPS = (14, 16, 19, 24, 32)  # 2^19 is less than the smallest base**digits of o
 
 @dataclass(frozen=True)
 class Halton(AbstractNumbers):
-    """Radical inverses, each moved by a seeded shift modulo 1 (Cranley and Patterson 1976), one for the whole scene."""
+    """Radical inverses, each moved by a seeded shift modulo 1 (Cranley and Patterson 1976)."""
 
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
@@ -31,10 +31,10 @@ class Halton(AbstractNumbers):
 
     def in_turn(self, first, patch, randomisation, bits, turns):
         neighbours = [Neighbours.of(first, base, bits, turns) for base in BASES[1:]]
-        by = shifts(randomisation)
 
         def points(turn):
-            return moved([binary(first + turn), *(inverse.at(turn) for inverse in neighbours)], by)
+            index = first + turn
+            return moved([binary(index), *(inverse.at(turn) for inverse in neighbours)], shifts(randomisation(index)))
 
         return points
 

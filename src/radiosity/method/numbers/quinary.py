@@ -14,7 +14,7 @@ import drjit as dr
 import numpy as np
 
 from ...engine.device import upload
-from .base import DIMENSIONS, LARGEST, AbstractNumbers
+from .base import DIMENSIONS, KRONECKER, LARGEST, AbstractNumbers
 
 BASE = 5
 ROWS, COLUMNS = 12, 15  # 5^-12 is far below a float's last place; 5^14 > 2^32
@@ -25,7 +25,7 @@ BELOW_ONE = 1 - 2.0**-24
 
 @dataclass(frozen=True)
 class Quinary(AbstractNumbers):
-    """Replicates have a random digital shift each: their random digits are added to those of the coordinates.
+    """Patches of replicates have a digital shift each: digits of the randomisation are added to those of the coordinates.
 
     Line ``index`` takes point index - 1, so that the first 5^m lines are a net. The eight words of an entry, and of the
     randomisation: the first eight digits of coordinates 1 to 4; the last four digits of 1 and 2, and of 3 and 4; the first
@@ -40,6 +40,14 @@ class Quinary(AbstractNumbers):
 
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return packed(np.random.Generator(np.random.Philox(stream)).integers(0, BASE, (DIMENSIONS, ROWS)))
+
+    def of_patch(self, randomisation, place):
+        """The first four digits of each coordinate are moved, by multiples of 1/625."""
+        moved = list(randomisation)
+        for word, step in zip((0, 1, 2, 3, 6), KRONECKER, strict=True):
+            total = moved[word] + first_digits(place * step)
+            moved[word] = total - _fives(total + 0x33333333)
+        return moved
 
     def prepare(self, types):
         _table(self.matrices, types.UInt32)
@@ -89,6 +97,16 @@ def _halves(word):
     """Four digits become a whole number below 5^4, in both halves of a word."""
     word = word - ((word >> 4) & 0x0F0F0F0F) * (16 - BASE)
     return word - ((word >> 8) & 0x00FF00FF) * (256 - BASE**2)
+
+
+def first_digits(word):
+    """UInt32: the first four digits of ``word`` / 2^32, at the upper end, four bits each."""
+    four = dr.mul_hi(word, type(word)(BASE**4))
+    two = (four * 1311) >> 15  # the quotient by 25
+    pairs = (two << 16) | (four - two * BASE**2)
+    upper = ((pairs * 13) >> 6) & 0x00070007  # by 5
+    digits = (upper << 4) | (pairs - upper * BASE)
+    return ((digits & 0x00FF0000) << 8) | ((digits & 0xFF) << 16)
 
 
 def packed(digits: np.ndarray) -> np.ndarray:

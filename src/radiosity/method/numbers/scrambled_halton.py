@@ -24,7 +24,7 @@ STEPS = (14, 16, 19, 22, 32)  # 2^22 < 7^8: up to here two blocks are enough
 
 @dataclass(frozen=True)
 class ScrambledHalton(AbstractNumbers):
-    """Scrambled radical inverses, each moved by a seeded shift modulo 1 (Cranley and Patterson 1976), one for the whole scene."""
+    """Scrambled radical inverses, each moved by a seeded shift modulo 1 (Cranley and Patterson 1976)."""
 
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
