@@ -31,9 +31,8 @@ def with_quads(scene: rd.Scene, name: str, quads) -> rd.Scene:
     )  # fmt: skip
 
 
-def stray(scene: rd.Scene, distance: float) -> rd.Scene:
-    """A square more, far away along two axes, which faces up: of a metre, or of six at 1000 km, where an ulp is 12 cm."""
-    size = 6.0 if distance > 100 * KILOMETRE else 1.0
+def stray(scene: rd.Scene, distance: float, size: float = 6.0) -> rd.Scene:
+    """A square more, some way off along two axes, which faces up: of six metres, since an ulp at 1000 km is 12 cm."""
     return with_quads(scene, "stray", [quad((distance, distance, 0), (size, 0, 0), (0, size, 0))])
 
 
@@ -51,10 +50,13 @@ def irradiance(scene: rd.Scene, faces: int, method: str = "random-walk", **optio
 
 @pytest.mark.parametrize("distance", [10 * KILOMETRE, 1000 * KILOMETRE])
 def test_a_stray_object_leaves_the_room_as_it_is(room, distance):
-    """The lines are the same; only what is rounded at cells' edges may differ."""
-    alone, error = irradiance(room, room.n_faces)
+    """As where the object stands 20 m off: the lines are the same, and only what is rounded at cells' edges may differ."""
+    near, error = irradiance(stray(room, 20), room.n_faces)
     beside, _ = irradiance(stray(room, distance), room.n_faces)
-    assert np.sqrt(np.mean(((beside - alone)[error > 0] / error[error > 0]) ** 2)) < 0.05
+    assert np.sqrt(np.mean(((beside - near)[error > 0] / error[error > 0]) ** 2)) < 0.05
+    alone, other = irradiance(room, room.n_faces)
+    # Student with 7 degrees of freedom for some 200 patches: beyond 8 in one of 200 000
+    assert np.abs((beside - alone) / np.hypot(error, other))[error > 0].max() < 8
 
 
 @pytest.mark.parametrize("method", ["particle-tracing", "stochastic-jacobi", "global-multipath-first-shot"])
