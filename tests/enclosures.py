@@ -115,3 +115,27 @@ def coaxial_discs(first: float = 1.0, second: float = 0.7, distance: float = 0.9
     r1, r2 = first / distance, second / distance
     x = 1 + (1 + r2 * r2) / (r1 * r1)
     return scene, float((x - np.sqrt(x * x - 4 * (r2 / r1) ** 2)) / 2)
+
+
+def lamp_lit(reflectance=0.9, *, floor: float | None = None) -> rd.Scene:
+    """A unit cube seen from inside, with a lamp of a fifth of its width in the middle of the ceiling, flush with it. Nothing
+    escapes: where all surfaces reflect alike, the mean irradiance is E_lamp A_lamp / (A (1 - reflectance)), whatever the patches.
+
+    Args:
+        reflectance: of all surfaces, or of the floor if given otherwise.
+    """
+    edges = (0.0, 0.4, 0.6, 1.0)
+    parts = list(zip(("south", "north", "west", "east", "floor"), box((0, 0, 0), (1, 1, 1), inward=True)[:5], strict=True))
+    for i, j in np.ndindex(3, 3):
+        across, along = edges[i + 1] - edges[i], edges[j + 1] - edges[j]
+        parts.append(("lamp" if i == j == 1 else "ceiling", quad((edges[i], edges[j], 1), (0, along, 0), (across, 0, 0))))
+    names = list(dict.fromkeys(name for name, _ in parts))
+    values = {name: reflectance if floor is None or name != "floor" else floor for name in names}
+    return rd.Scene.from_arrays(
+        np.concatenate([corners for _, corners in parts]),
+        np.arange(4 * len(parts)).reshape(-1, 4),
+        [values[name] for name, _ in parts],
+        [25.0 if name == "lamp" else 0.0 for name, _ in parts],
+        surface=[names.index(name) for name, _ in parts],
+        names=names,
+    )

@@ -50,6 +50,21 @@ def test_closed_scenes_do_not_leak(name):
     assert not kinds(report, "error", "warning")
 
 
+@pytest.mark.parametrize("back", [False, True])
+@pytest.mark.parametrize("face", [0, 1])
+def test_lines_leave_from_the_side_that_emits(face, back):
+    """Two sheets that radiate both ways, between two more: what the first generation meets tells the side it came from."""
+    sheets = [[(-9 * w, -9 * w, z), (10 * w, -9 * w, z), (10 * w, 10 * w, z), (-9 * w, 10 * w, z)]
+              for z, w in ((1.0, 1), (2.0, 1), (0.0, 99), (3.0, 99))]  # fmt: skip
+    scene = rd.Scene.from_arrays(np.concatenate(sheets), np.arange(16).reshape(4, 4), 0.0, 1.0, two_sided=True)
+    power = np.zeros((2, 4))
+    power[int(back), face] = 1.0
+    fates = leaks.follow(scene, power, 500)
+    assert (fates.face == face).all()
+    met = {(0, False): 1, (0, True): 2, (1, False): 3, (1, True): 0}[face, back]
+    assert (fates.hit == met).mean() > 0.8  # the rest passes by, or meets it at its rim
+
+
 def test_power_and_area_count_both_sides():
     scene = rd.Scene.from_arrays(SQUARE, [(0, 1, 2, 3)], 0.2, 3.0, two_sided=True, back_reflectance=0.6, back_emission=5.0)
     (surface,) = check(scene).surfaces

@@ -86,13 +86,47 @@ def test_any_text_is_a_sound_value_or_a_value_error(text):
         assert value > 0
 
 
-@pytest.mark.parametrize(("value", "text"), [(0, "0"), (999, "999"), (12_345, "12.3k"), (2.5e6, "2.5M"), (4e9, "4G")])
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0, "0"),
+        (999, "999"),
+        (1000, "1k"),
+        (12_345, "12.3k"),
+        (-5000, "-5k"),
+        (1e6, "1M"),
+        (2.5e6, "2.5M"),
+        (1e9, "1G"),
+        (4e9, "4G"),
+    ],
+)
 def test_short(value, text):
     assert amounts.short(value) == text
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.2, "0 s"), (59.4, "59 s"), (185, "3 min 05 s"), (7800, "2 h 10 min"), (-1, "0 s")]
+    ("value", "text"),
+    [
+        (0.2, "0 s"),
+        (59.4, "59 s"),
+        (59.6, "1 min 00 s"),
+        (185, "3 min 05 s"),
+        (3599, "59 min 59 s"),
+        (3600, "1 h 00 min"),
+        (7800, "2 h 10 min"),
+        (-1, "0 s"),
+    ],
 )
 def test_durations(value, text):
     assert duration(value) == text
+
+
+@pytest.mark.parametrize(("text", "value"), [("1", 1.0), ("-0.5", -0.5), ("100", 100.0), ("-100", -100.0), ("+2", 2.0)])
+def test_stops(text, value):
+    assert amounts.stops(text) == value
+
+
+@pytest.mark.parametrize("text", ["100.1", "-101", "1%", "1k", "", "nan", "inf"])
+def test_no_stops(text):
+    with pytest.raises(ValueError, match="no exposure"):
+        amounts.stops(text)

@@ -9,6 +9,7 @@ import sys
 import time
 from contextlib import suppress
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -94,6 +95,29 @@ def test_an_earlier_one_is_pointed_at_and_a_resumed_one_removed(capsys, tmp_path
     status, _, err = run(capsys, *RUN, "-o", output, "--resume", kept)
     assert (status, err) == (0, "")
     assert not kept.exists()
+
+
+@pytest.mark.parametrize(
+    ("status", "written", "named", "outputs", "resumed", "stays", "points"),
+    [
+        ("interrupted", True, False, ["a.glb", "a.csv"], False, True, True),
+        ("interrupted", True, False, ["a.glb", "a.NPZ"], False, False, False),  # that output holds the state, too
+        ("interrupted", True, True, ["a.npz"], False, True, True),  # asked for by name
+        ("interrupted", False, True, ["a.npz"], False, True, False),  # what is there is of an earlier run
+        ("complete", True, False, ["a.glb"], False, False, False),
+        ("complete", True, True, ["a.glb"], False, False, False),
+        ("complete", False, True, ["a.glb"], False, True, False),
+        ("complete", False, False, ["a.glb"], True, False, False),  # it was gone on from, and is done
+    ],
+)
+def test_what_becomes_of_it_in_the_end(tmp_path, status, written, named, outputs, resumed, stays, points):
+    kept = tmp_path / "a.checkpoint.npz"
+    kept.write_bytes(b"")
+    keeper, solution = SimpleNamespace(path=kept, written=written), SimpleNamespace(status=status)
+    resume = tmp_path / "." / "a.checkpoint.npz" if resumed else None
+    found = checkpoints.finish(keeper, solution, [tmp_path / name for name in outputs], named=named, resume=resume)
+    assert found == (str(kept) if points else None)
+    assert kept.exists() == stays
 
 
 @pytest.mark.parametrize(

@@ -90,6 +90,11 @@ def test_blocks_are_merged_where_values_are_even(two_sided):
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0])[:, 2]
     assert np.abs(normal).sum() == pytest.approx(1 + two_sided)
     assert np.array_equal(normal < 0, patches.is_back[patch])
+    # each block begins with the cell at its corner next to the face's origin
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    np.testing.assert_allclose((patches.centroid[patch] - low)[:, :2], 1 / 16)
+    assert len(set(patch)) == len(patch)
+    assert set(np.round((high - low)[:, 0] * 8)) == {1, 2, 4}
 
 
 def test_exports_use_its_mesh(tmp_path):

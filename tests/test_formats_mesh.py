@@ -114,6 +114,8 @@ def test_ply_faults(tmp_path):
     fails(path, ply_text().replace("property float z", "property float w"), "x, y, z")
     fails(path, ply_text(faces=[[0, 1, 7]]), "face 0 names vertex 7", "there are 4")
     fails(path, ply_text(faces=[[0, 1, -2]]), "face 0 names vertex -2")
+    for row, faces in enumerate(([[8, 0, 1], [0, 1, 2]], [[0, 1, 2, 3], [8, 0, 1]], [[0, 1, 2], [0, 1, 2, 3], [0, 1, 8]])):
+        fails(path, ply_text(faces=faces), f"face {row} names vertex 8")
     fails(path, ply_text(faces=[]), "4 points but no faces")
     fails(path, ply_text(vertices=[["nan", 0, 0], *SQUARE[1:]]), "vertex 0", "'bad'", "nan")
     fails(path, ply_text(vertices=[["x", 0, 0], *SQUARE[1:]]), "numbers")

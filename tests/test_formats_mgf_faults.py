@@ -96,6 +96,11 @@ def test_a_fault_in_an_included_file_names_that_file_once(write):
     assert scene.n_faces == 2
 
 
+def test_a_statement_of_several_lines_is_called_by_its_first(write):
+    with pytest.warns(rd.RadiosityWarning, match=r"scene\.mgf:11: 'nowhere' is not defined"):
+        rd.load_scene(write(FACE + "# one more line\nf a \\\n b \\\n nowhere\n"))
+
+
 def test_very_many_faults_end_in_one_summary(write):
     with pytest.warns(rd.RadiosityWarning) as caught:
         rd.load_scene(write(FACE + "f a b nowhere\n" * 100))

@@ -121,6 +121,13 @@ def test_checkerboards_and_raw_images(tmp_path):
     np.testing.assert_allclose(means, [0.3, 0.2, ((0.2 + 0.055) / 1.055) ** 2.4], rtol=1e-3)
     quarter = patches.reflectance[patches.surface == 0][:, 0]
     assert sorted(np.unique(quarter.round(3))) == pytest.approx([0.1, 0.5])
+    (tmp_path / "scene.xml").write_text(HEAD + shapes[0] + TAIL)
+    scene = rd.load_scene(tmp_path / "scene.xml")
+    above = np.array([(x, y, 5) for x in (-0.6, 0.7) for y in (-0.4, 0.3)])
+    down = np.tile([0.0, 0, -1], (4, 1))
+    seen = [hits[2] for hits in (mitsuba_hits(tmp_path / "scene.xml", above, down), our_hits(scene, above, down))]
+    np.testing.assert_allclose(*seen, rtol=1e-6)  # which of the colours lies where
+    assert sorted(seen[0][:, 0]) == pytest.approx([0.1, 0.1, 0.5, 0.5])
 
 
 def test_emission_textures(tmp_path):

@@ -183,7 +183,7 @@ def test_spans_are_those_that_numpy_finds(kind, passing):
     numbers = spans._numbers.points(index, types.UInt32(0), words, 32)
     make = global_lines.by_two_points if kind == "global" else global_lines.by_disc
     point, direction = (np.array(x, np.float64).T for x in make(numbers, types.Float(spans.radius), types.Array3f))
-    point = (point - 4 * 2.0**REACH * direction) / tree.scale + tree.centre  # well before the scene
+    point = (point + spans.middle - 4 * 2.0**REACH * direction) / tree.scale + tree.centre  # well before the scene
     assert (np.diff(pairs.line.astype(int)) >= 0).all()
     wrong = 0
     for line, crossed in enumerate(all_hits(patches, point, direction)):

@@ -67,6 +67,31 @@ def test_up_is_that_of_the_camera_then_of_the_floors_then_of_the_format():
     assert [view.up_axis(join([("a", 0.5, 0.0, cube)], source=source)) for source in ("x.glb", "x.mgf")] == ["y", "z"]
 
 
+@pytest.mark.parametrize(
+    ("floors", "source", "up"),
+    [
+        ((50, 1.0, 1.4), "x.obj", "z"),  # clearly more area across z than across y, whatever stands across x
+        ((0, 1.0, 1.4), "x.obj", "z"),
+        ((50, 1.0, 1.2), "x.obj", "y"),  # not clearly: what is usual in the format
+        ((50, 1.4, 1.0), "x.obj", "y"),
+        ((50, 1.4, 1.0), "x.mgf", "y"),
+        ((0, 1.4, 1.0), "x.mgf", "y"),
+        ((50, 1.2, 1.0), "x.mgf", "z"),
+        ((50, 1.0, 1.4), "x.mgf", "z"),
+    ],
+)
+def test_up_is_where_clearly_more_floors_are(floors, source, up):
+    """Squares across x, y and z of so many square metres."""
+    quads = []
+    for axis, area in enumerate(floors):
+        if area:
+            one, other = np.roll(np.eye(3), axis + 1, axis=1)[:2] * np.sqrt(area)
+            quads.append([10 * np.eye(3)[axis] + p for p in (0 * one, one, one + other, other)])
+    scene = rd.Scene.from_arrays(np.concatenate(quads), np.arange(4 * len(quads)).reshape(-1, 4), 0.5, 0.0, source=source)
+    assert set(np.abs(scene.normal).argmax(axis=1)) == {axis for axis, area in enumerate(floors) if area}
+    assert view.up_axis(scene) == up
+
+
 def light(patches):
     return np.ones(len(patches))
 

@@ -5,7 +5,7 @@ import pytest
 from image_samples import plain_hits, quad_scene, solution
 
 import radiosity as rd
-from radiosity.image import render
+from radiosity.image import false_color, render
 from radiosity.image.false_color import automatic_limits
 
 matplotlib = pytest.importorskip("matplotlib")
@@ -30,6 +30,23 @@ def test_colours_are_those_of_the_map_and_the_legend_stands_beside():
     assert result[140, 210].tolist() == [128, 128, 128]  # unknown
     assert not result[5, 5].any()  # nothing there
     assert (result[:, 400:].reshape(-1, 3).max(axis=0) == 255).all()
+
+
+@pytest.mark.parametrize(
+    ("limits", "arrow"),
+    [((0.5, 8), "neither"), ((1, 4), "neither"), ((1, 3), "max"), ((2, 4), "min"), ((2, 3), "both"), (None, "neither")],
+)
+def test_the_legend_has_an_arrow_where_values_lie_beyond(monkeypatch, limits, arrow):
+    """Of the values 1, 2 and 4; the unknown one is beyond nothing."""
+    legend, found = false_color._legend, []
+
+    def watched(norm, shades, label, extend, height):
+        found.append(extend)
+        return legend(norm, shades, label, extend, height)
+
+    monkeypatch.setattr(false_color, "_legend", watched)
+    picture(range=limits)
+    assert found == [arrow]
 
 
 def test_logarithmic_scale():

@@ -6,12 +6,19 @@ import pytest
 from radiosity import OutputError
 from radiosity.image import tone
 from radiosity.image.look import Look
+from radiosity.scene.formats.textures import decode_srgb
 
 
 def test_srgb_at_known_values():
     known = {0.0: 0.0, 0.0031308: 0.04044994, 0.18: 0.46135613, 0.2140411: 0.5, 0.5: 0.73535698, 1.0: 1.0, 7.0: 1.0, -1.0: 0.0}
     np.testing.assert_allclose(tone.srgb(np.array(list(known))), list(known.values()), atol=1e-6)
     assert tone.srgb(np.array([np.nan, np.inf])) == pytest.approx([0, 1])
+
+
+def test_images_are_decoded_by_the_inverse_curve():
+    linear = np.concatenate([np.linspace(0, 0.01, 200), np.linspace(0.01, 1, 200)])
+    np.testing.assert_allclose(decode_srgb(tone.srgb(linear)), linear, rtol=1e-4, atol=1e-9)
+    np.testing.assert_allclose(decode_srgb(np.array([0.02, 0.04, 0.5])), [0.02 / 12.92, 0.04 / 12.92, 0.21404114], rtol=1e-7)
 
 
 def test_eight_bits_are_rounded():

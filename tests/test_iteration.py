@@ -81,7 +81,7 @@ def test_both_ends_and_a_control_variate_lessen_the_error():
     assert 0.9 < incremental / firing < 1.1
     assert error(order="incremental", estimator="bidirectional") < 0.92 * incremental
     assert error(order="regular", control_variate=True) < 0.85 * firing
-    assert error(order="regular", control_variate=True, estimator="bidirectional") < 0.75 * firing
+    assert error(order="regular", control_variate=True, estimator="bidirectional") < 0.9 * firing
 
 
 def test_backs_that_let_lines_pass_have_no_second_end():

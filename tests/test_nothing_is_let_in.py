@@ -231,7 +231,7 @@ def test_characters_that_are_none(tmp_path):
 
 # ---- names ---------------------------------------------------------------------------------------------------------------
 
-NAMES = ["two words", "it's \"quoted\"", "100 %s %d", "-rf", "Größe 壁", "a\nb", "[red]x[/red]", "x\x1b[2J\x07y", "=1+1", "{0}"]
+NAMES = ["two words", 'it\'s "quoted"', "100 %s %d", "-rf", "Größe 壁", "a\nb", "[red]x[/red]", "x\x1b[2J\x07y", "=1+1", "{0}"]
 
 
 @pytest.mark.filterwarnings("ignore::radiosity.RadiosityWarning")

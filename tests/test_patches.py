@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import radiosity as rd
 from radiosity.patches import cells
 from radiosity.scene.model import Back
+from radiosity.scene.paint import Paint
 
 TRIANGLE = rd.Scene.from_arrays([(0, 0, 0), (3, 0, 1), (1, 2, 0)], [(0, 1, 2)], 0.5, 1.0)
 PARALLELOGRAM = rd.Scene.from_arrays([(0, 0, 0), (3, 0, 1), (4, 2, 1), (1, 2, 0)], [(0, 1, 2, 3)], 0.5, 1.0)
@@ -126,6 +127,35 @@ def test_a_size_that_divides_an_edge_is_met_exactly():
     square = rd.Scene.from_arrays([(0, 0, 0), (0.3, 0, 0), (0.3, 0.7, 0), (0, 0.7, 0)], [(0, 1, 2, 3)], 0.5, 1.0)
     patches = rd.subdivide(square, size=0.1)
     assert (patches.columns[0], patches.rows[0]) == (3, 7)
+    over = [(n, size) for n in range(1, 60) for size in (0.1, 0.07, 0.3, 1e-3, 1 / 3) if (n * size + 5.0 - 5.0) / size > n]
+    assert len(over) > 20  # quotients that rounding leaves above the whole number
+    for n, size in over:
+        edge = n * size + 5.0  # as far from zero as rooms are
+        scene = rd.Scene.from_arrays([(5, 5, 0), (edge, 5, 0), (edge, edge, 0), (5, edge, 0)], [(0, 1, 2, 3)], 0.5, 1.0)
+        patches = rd.subdivide(scene, size=size)
+        assert (patches.columns[0], patches.rows[0]) == (n, n)
+
+
+@pytest.mark.parametrize("cells", [1, 2, 5])
+@pytest.mark.parametrize("scene", [TRIANGLE, PARALLELOGRAM], ids=["triangle", "parallelogram"])
+def test_the_mean_of_a_linear_paint_is_its_value_in_the_middle(scene, cells):
+    """Exactly, in upright and inverted cells, on either side; of an image that is linear likewise."""
+    slope, base = np.array([0.05, 0.03, 0.02]), 0.2
+    colour = (base + scene.vertices[np.where(scene.faces >= 0, scene.faces, 0)] @ slope)[..., None].astype(np.float32)
+    none = np.full(1, -1, np.int32)
+    paint = Paint((), none, np.zeros((1, 4, 2), np.float32), colour)
+    sides = replace(scene, back=np.array([Back.RADIATES], np.uint8), reflectance_paint=paint, emission_paint=paint)
+    patches = rd.subdivide(sides, cells=cells)
+    expected = base + patches.centroid @ slope
+    np.testing.assert_allclose(patches.reflectance[:, 0], 0.5 * expected, rtol=1e-6)
+    np.testing.assert_allclose(patches.emission[:, 0], expected, rtol=1e-6)
+
+
+def test_the_hash_tells_cuts_apart():
+    ones = np.ones(1, np.int32)
+    cuts = [rd.Patches(PARALLELOGRAM, a * ones, b * ones) for a, b in ((1, 1), (1, 2), (2, 1), (2, 2), (1, 4))]
+    assert len({cut.hash for cut in cuts}) == len(cuts)
+    assert rd.Patches(PARALLELOGRAM, 2 * ones, ones).hash == cuts[2].hash
 
 
 @pytest.mark.parametrize("name", ["room", "cornell-box", "labyrinth"])

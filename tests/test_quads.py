@@ -56,6 +56,28 @@ def test_what_is_no_pair_stays_apart():
     assert scene_of(part(faces=HALVES[:1]), part(faces=HALVES[1:])).n_faces == 1
 
 
+def test_halves_that_follow_each_other_come_before_those_of_the_longer_diagonal():
+    """Three triangles in a row: the middle one fits either neighbour, and better the first, by its longer diagonal."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [0.3, 1, 0], [1.3, 1, 0], [2, 0, 0], [9, 9, 0], [9, 8, 0], [8, 8, 0]])
+    first, middle, last, apart = [0, 1, 2], [1, 3, 2], [1, 4, 3], [5, 6, 7]
+    for faces, kept in (
+        ([first, apart, middle, last], last),  # the last follows in the file
+        ([last, apart, middle, first], first),
+        ([first, apart, last, apart, middle], first),  # none follows
+    ):
+        scene = scene_of(part(points, faces))
+        (quad,) = scene.faces[scene.is_quad]
+        joined = {tuple(p) for p in np.round(scene.vertices[quad], 9).tolist()}
+        assert joined == {tuple(p) for p in points[sorted({*middle, *kept})].tolist()}
+
+
+def test_backs_that_are_too_bright_are_told_and_brought_down_as_fronts_are():
+    bright = Material((0.5,), back_reflectance=(0.99,))
+    with pytest.warns(RadiosityWarning, match=r"reflectance above 0\.95 brought down to it \(at most 0\.99\): 's'"):
+        scene = scene_of(part(material=bright))
+    assert (scene.reflectance.tolist(), scene.back_reflectance.tolist()) == ([[0.5]], [[0.95]])
+
+
 def test_vertices_of_their_own_are_welded():
     scene = scene_of(part(SQUARE[HALVES].reshape(-1, 3), np.arange(6).reshape(2, 3)))
     assert scene.is_quad.tolist() == [True]

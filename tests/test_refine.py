@@ -1,5 +1,7 @@
 """Discretisation error apart from sampling error."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import radiosity as rd
 from radiosity.cli.app import run as command
 from radiosity.engine import run
 from radiosity.patches.nesting import halved, parents
+from radiosity.solution.refinement import RefineCheck
 
 
 @pytest.mark.parametrize(("name", "cells"), [("room", 3), ("cornell-box", 2)])
@@ -27,6 +30,33 @@ def test_backs_have_parents_of_their_own():
     parent = parents(fine, coarse)
     assert np.array_equal(coarse.is_back[parent], fine.is_back)
     assert (np.bincount(parent) == 4).all()
+
+
+def test_estimates_have_no_bias(random):
+    """Of a known field and independent noise on 10 000 patches: squared errors of means and within patches, within 5 standard
+    errors of the mean over patches. What patches of one coarse one share is told from what each has for itself."""
+    side = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+    coarse = rd.subdivide(rd.Scene.from_arrays(side, [[0, 1, 2, 3]], 0.5, 0.0), cells=100)
+    fine, slope = halved(coarse), 3.0
+    parent = parents(fine, coarse)
+    shared, own, before = 0.02, 0.03, 0.05  # noise of a coarse patch's children together, of each of them, and of the coarse run
+    value = 5 + slope * fine.centroid[:, 0]
+    value += shared * random.normal(size=len(coarse))[parent] + own * random.normal(size=len(fine))
+    error = np.sqrt(shared**2 + own**2)
+    moved = 0.04  # how much means change when patches are halved: a half of the error, as errors fall with the patch size
+    solved = [
+        SimpleNamespace(patches=patches, radiosity=values[:, None], standard_error=np.full((len(patches), 1), noise))
+        for patches, values, noise in (
+            (coarse, 5 + slope * coarse.centroid[:, 0] - moved + before * random.normal(size=len(coarse)), before),
+            (fine, value, error),
+        )
+    ]
+    known = np.full((len(coarse), 1), np.sqrt(shared**2 + own**2 / 4))
+    check = RefineCheck(solved[0], solved[1], parent, known)
+    within = slope**2 * 0.01**2 / 12  # of a linear field over a patch of a hundredth
+    for found, expected in ((check.square_of_means, (2 * moved) ** 2), (check.square_within, within)):
+        assert abs(found.mean() - expected) < 5 * found.std() / 100
+        assert found.std() / 100 < 0.05 * max(expected, own**2)  # precise enough to tell
 
 
 def test_a_furnace_has_no_discretisation_error():
@@ -86,3 +116,23 @@ def test_on_the_command_line(tmp_path, capsys):
     assert len(lines) == 1 + 1 + 9
     assert command(["solve", "room", "--refine-check", "--resume", str(out)]) == 2
     assert "--resume" in capsys.readouterr().err
+
+
+@pytest.mark.filterwarnings("ignore:.*quanta for.*patches")
+@pytest.mark.parametrize(("quanta", "known"), [(20, False), (20_000, True)])
+def test_what_no_line_tells_is_a_question_mark(quanta, known):
+    """Of a lamp, a plate far above it, and one beside it that no light reaches."""
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 9), (0, 1, 9), (1, 1, 9), (1, 0, 9)]
+    corners += [(5, 0, 0), (6, 0, 0), (6, 1, 0), (5, 1, 0)]
+    scene = rd.Scene.from_arrays(corners, np.arange(12).reshape(3, 4), [0, 0.2, 0.5], [1.0, 0, 0], surface=range(3),
+                                 names=["lamp", "far", "never"])  # fmt: skip
+    found = rd.refine_check(rd.subdivide(scene, cells=1), quanta=quanta, replicates=2)
+    assert (found.coarse.arrivals[1] > 0) == known
+    text, rows = found.report(), {row["surface"]: row for row in found.table()}
+    assert "nan" not in text
+    assert text.splitlines()[-1] == "?: unknown, since nothing is reflected there, or no line landed there"
+    assert np.isnan(rows["never"]["sampling"])
+    assert np.isnan(rows["never"]["discretisation"])
+    assert rows["lamp"]["sampling"] == 0  # black: its radiosity is its own light
+    assert np.isnan(rows["the whole scene"]["sampling"]) != known
+    assert np.isnan(rows["far"]["sampling"]) != known

@@ -144,11 +144,14 @@ def test_a_scene_combined_with_nothing_or_with_itself_is_there_whole():
     plain = {"reflectance_paint": None, "emission_paint": None}
     same(replace(scene, **plain), replace(alone, **plain), "scene")
     renamed = replace(scene, names=tuple(f"other {name}" for name in scene.names))
+    for which in ("reflectance_paint", "emission_paint"):
+        one = getattr(renamed, which)
+        renamed = replace(renamed, **{which: replace(one, images=tuple(1 - image / 2 for image in one.images))})
     twice = combine([scene, renamed], source="", photometric=True, scale=1.0)
     n = scene.n_faces
     one, other = (rd.subdivide(twice.take(np.arange(k, k + n)), cells=2) for k in (0, n))
-    expected = rd.subdivide(scene, cells=2)
-    for patches in (one, other):
+    for patches, alike in ((one, scene), (other, renamed)):
+        expected = rd.subdivide(alike, cells=2)
         for name in ("corners", "normal", "area", "reflectance", "emission", "is_back"):
             same(getattr(expected, name), getattr(patches, name), name)
     assert twice.names == (*scene.names, *(f"other {name}" for name in scene.names))

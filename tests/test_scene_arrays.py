@@ -125,6 +125,18 @@ def test_degenerate_faces_are_left_out_with_one_warning():
     assert scene.names == ("a", "b", "c")
 
 
+@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1.0, 1e6, 1e12])
+def test_size_alone_makes_no_face_degenerate(scale):
+    """What is too thin is so beside where it lies: one part in a million of the scene stays, one in a hundred million goes."""
+    points = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 1e-6, 0), (0.5, 1e-8, 0)]) * scale
+    thin, thinner = (0, 1, 4, -1), (0, 1, 5, -1)
+    scene = build(vertices=points, faces=[(0, 1, 2, 3), thin], surface=[0, 0], names=["a"])
+    assert scene.n_faces == 2
+    with pytest.warns(rd.RadiosityWarning, match=r"1 face without area left out \(first: face 1"):
+        scene = build(vertices=points, faces=[(0, 1, 2, 3), thinner], surface=[0, 0], names=["a"])
+    assert scene.n_faces == 1
+
+
 def test_a_parallelogram_stays_one_face():
     scene = build(faces=[(0, 1, 2, 3)])
     assert scene.n_faces == 1
@@ -132,9 +144,12 @@ def test_a_parallelogram_stays_one_face():
     assert scene.area[0] == 1
 
 
+@pytest.mark.parametrize("begin", range(4))
 @pytest.mark.parametrize("apex", [(3, 2, 0), (0.2, 0.2, 0)], ids=["convex", "concave"])
-def test_another_quadrilateral_becomes_two_triangles(apex):
-    scene = build(vertices=[(0, 0, 0), (1, 0, 0), apex, (0, 1, 0)], faces=[(0, 1, 2, 3)], reflectance=[0.25])
+def test_another_quadrilateral_becomes_two_triangles(apex, begin):
+    """Whichever corner comes first: the reflex one may be any of the four."""
+    faces = [np.roll([0, 1, 2, 3], begin)]
+    scene = build(vertices=[(0, 0, 0), (1, 0, 0), apex, (0, 1, 0)], faces=faces, reflectance=[0.25])
     assert scene.n_faces == 2
     assert not scene.is_quad.any()
     assert (scene.normal == [0, 0, 1]).all()

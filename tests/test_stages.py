@@ -59,15 +59,15 @@ def told_errors(patches, method, **options) -> tuple[rd.Solution, list[float]]:
 @pytest.mark.parametrize("name", LINES)
 def test_stages_that_are_read_change_nothing(name):
     """The error after each stage is that of the stage, and the result that of its replay, which nobody looked at."""
-    patches, method, options = grey()[1].patches, LINES[name], {"replicates": 2, "seed": 4}
-    rung = budget.first_rung(method.order, 2, np.ones(len(patches)) / len(patches))
+    patches, method, options = grey()[1].patches, LINES[name], {"replicates": 4, "seed": 4}
+    rung = budget.first_rung(method.order, 4, np.ones(len(patches)) / len(patches))
     solution, errors = told_errors(patches, method, quanta=4 * rung, **options)
     assert len(errors) == 3
     for stage, error in enumerate(errors):
         alone = rd.solve(patches, method, quanta=rung << stage, **options)
         assert alone.error == error
     assert_equal(solution, alone)
-    target = 0.9 * errors[1]  # met after the second stage
+    target = min(0.9 * errors[1], 0.9)  # met after the second stage
     reached = rd.solve(patches, method, error=target, **options)
     assert reached.error <= target
     assert reached.quanta > 2 * rung

@@ -17,6 +17,7 @@ CUBE = ("low", "high", "south", "north", "west", "east")
 SHAPES = (("half",), ("low",), ("low", "high"), ("half", "sail"), ("low", "high", "sail"), CUBE, CUBE, (*CUBE, "table"),
           (*CUBE, "table", "sail"))  # fmt: skip
 BUILT_IN = ("room", "cornell-box", "labyrinth", "labyrinth-0.9")
+GREY, WHITE = "0.5 0.5 0.5", "3 3 3"
 BACKS = ("absorbs", "radiates", "passes")
 SUFFIXES = (".glb", ".ply", ".vtp", ".csv", ".png", ".exr")
 QUANTITIES = ("radiosity", "irradiance", "standard_error", "irradiance_standard_error", "relative_error")
@@ -68,19 +69,32 @@ def _scene(random: Random) -> tuple[dict[str, str], str]:
         return {}, random.choice(BUILT_IN)
     names = random.choice(SHAPES)
     lamp, grey = random.choice(names), random.random() < 0.6
+    bands = [_bands(random, grey, most) for most in (0.9, 0.94, 9.0)]
+    if random.random() < 0.15:
+        return scene_files(names, lamp, None, *bands), "a.obj"
+    backs = {"*": random.choice(BACKS)} | ({"*/lamp": random.choice(BACKS)} if random.random() < 0.5 else {})
+    return scene_files(names, lamp, backs, *bands), "a.toml"
+
+
+def scene_files(names, lamp: str, backs: dict[str, str] | None, lit=GREY, wall=GREY, light=WHITE) -> dict[str, str]:
+    """A scene of some of the `FACES`, as texts by name of file.
+
+    Args:
+        lamp: the face that emits.
+        backs: of surfaces (FACE/lamp and FACE/wall) by pattern, in ``a.toml``; None: no such file, and ``a.obj`` alone.
+        lit, wall, light: reflectance of the lamp and of the other faces, and emission; three numbers each.
+    """
     lines = ["mtllib a.mtl"]
     for name in names:
         corners = FACES[name].split(", ")
         lines += [f"o {name}", *(f"v {corner}" for corner in corners), f"usemtl {'lamp' if name == lamp else 'wall'}"]
         lines += ["f " + " ".join(str(i - len(corners)) for i in range(len(corners)))]
-    lit, wall, light = (_bands(random, grey, most) for most in (0.9, 0.94, 9.0))
     mtl = f"newmtl lamp\nKd {lit}\nKe {light}\nnewmtl wall\nKd {wall}\n"
     files = {"a.obj": "\n".join(lines) + "\n", "a.mtl": mtl}
-    if random.random() < 0.15:
-        return files, "a.obj"
-    backs = {"*": random.choice(BACKS)} | ({"*/lamp": random.choice(BACKS)} if random.random() < 0.5 else {})
+    if backs is None:
+        return files
     surfaces = [f'[[surface]]\nname = "{name}"\nback = "{back}"\n' for name, back in backs.items()]
-    return files | {"a.toml": 'geometry = ["a.obj"]\n' + "".join(surfaces)}, "a.toml"
+    return files | {"a.toml": 'geometry = ["a.obj"]\n' + "".join(surfaces)}
 
 
 def _bands(random: Random, grey: bool, most: float) -> str:

@@ -55,7 +55,7 @@ def finish(keeper, solution, outputs, *, named: bool, resume: Path | None) -> st
     """All outputs are written: remove what is not needed any more, or return the file to go on from."""
     if keeper is None:
         return None
-    path, stopped = keeper.path, solution.status == "interrupted"
+    path, stopped = keeper.path, solution.status in ("interrupted", "not reached")
     elsewhere = not named and any(output.suffix.lower() == ".npz" for output in outputs)
     if stopped and not elsewhere:
         return str(path) if keeper.written else None

@@ -1,11 +1,17 @@
 """Output files: refused before the run where they cannot be written, and none lost because of another."""
 
 import tempfile
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from ..errors import OutputError, RadiosityError, printable
 from .streams import tell
+
+PICTURES = (".png", ".exr")
+Tasks = Iterable[tuple[Any, Callable[[], object]]]  # names or paths, and what to do
 
 
 def check(paths) -> None:
@@ -26,27 +32,45 @@ def check(paths) -> None:
         check_writable(path)
 
 
-def write(solution, paths, *, exposure: float | None = None, checkpoint: Path | None = None) -> None:
-    """Write each output. Where one fails the others are written all the same; then its error is raised.
+def write(solution, paths, *, exposure: float | None = None, checkpoint: Path | None = None, also: Tasks = ()) -> None:
+    """Do what is asked ``also`` and write each output, pictures last: they need most of what may fail, a back end and libraries.
+    Where one fails the others are written all the same; then its error is raised.
 
     Raises:
         OutputError: at least one file could not be written. The solution has then been saved as NPZ, as ``checkpoint`` or in a
             new folder, if there is any place for it.
     """
-    failures, saved = [], False
-    for path in paths:
-        try:
-            solution.export(path, exposure=exposure)
-        except RadiosityError as error:
-            failures.append(str(error))
-        except Exception as error:  # one output must not take the others with it
-            failures.append(f"{path}: {type(error).__name__}: {error}")
-        else:
-            saved |= Path(path).suffix.lower() == ".npz"
-            tell(f"wrote {printable(path)}")
+    in_order = sorted(paths, key=lambda path: Path(path).suffix.lower() in PICTURES)
+    failures = attempt([*also, *((path, partial(_export, solution, path, exposure)) for path in in_order)])
     if failures:
+        saved = any(Path(path).suffix.lower() == ".npz" and path not in failures for path in paths)
         kept = "" if saved else f"; {_rescue(solution, checkpoint)}"
-        raise OutputError("; ".join(failures) + kept)
+        raise OutputError("; ".join(told(failures)) + kept)
+
+
+def attempt(tasks: Tasks) -> dict[Any, Exception]:
+    """Do each task, whether or not those before it failed; the errors by the names of the tasks."""
+    failures = {}
+    for name, task in tasks:
+        try:
+            task()
+        except Exception as error:  # one must not take the others with it
+            failures[name] = error
+    return failures
+
+
+def told(failures: dict[Any, Exception]) -> list[str]:
+    """What went wrong, each once."""
+    texts = [
+        str(error) if isinstance(error, RadiosityError) else f"{name}: {type(error).__name__}: {error}"
+        for name, error in failures.items()
+    ]
+    return list(dict.fromkeys(texts))
+
+
+def _export(solution, path, exposure: float | None) -> None:
+    solution.export(path, exposure=exposure)
+    tell(f"wrote {printable(path)}")
 
 
 def _rescue(solution, checkpoint: Path | None) -> str:

@@ -1,5 +1,6 @@
 """``radiosity render``"""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -90,12 +91,19 @@ def render(
 
     loaded = rd.load_solution(solution)
     view = _view(loaded.patches.scene, camera, origin, target, up, fov)
-    for path in output:
+
+    def written(path: Path) -> None:
         draw(
             loaded, path, camera=view, width=width, height=height, exposure=exposure, smooth=smooth, quantity=quantity,
             band=band, false_color=false_color, range=interval, log=log, color_map=color_map or "viridis",
         )  # fmt: skip
         tell(f"wrote {printable(path)}")
+
+    failures = outputs.attempt((path, partial(written, path)) for path in output)
+    if len(failures) == 1:
+        raise next(iter(failures.values()))
+    if failures:
+        raise OutputError("; ".join(outputs.told(failures)))
 
 
 def _view(scene, number: int | None, origin: str | None, target: str | None, up: str | None, fov: float | None):

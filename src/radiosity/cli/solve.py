@@ -1,5 +1,6 @@
 """``radiosity solve``"""
 
+from functools import partial
 from pathlib import Path
 
 from ..errors import MethodError
@@ -8,6 +9,7 @@ from .options import Chosen, Count, DeviceName, Flag, Length, Outputs, Seconds, 
 from .streams import say, tell
 
 DEFAULT_RAYS = 10_000_000
+NOT_REACHED = 3  # exit status: results are there, above the error asked for
 
 
 def solve(
@@ -60,6 +62,9 @@ def solve(
 ) -> int:
     """Solve a scene, print a report and write the outputs.
 
+    Exit status: 0 when all went well, 1 failed, 2 wrong input, 3 the error asked for was not reached (results are written), 128
+    and the signal's number after an interruption.
+
     Parameters
     ----------
     scene
@@ -72,7 +77,9 @@ def solve(
     seconds
         Or: for how long to trace, such as 60, 5min or 1h.
     error
-        Or: until the relative error is below this, such as 1% or 0.01; in 95 % of runs the true error is.
+        Or: until the relative error is below this, such as 1% or 0.01; in 95 % of runs the true error is. With --rays, --seconds
+        or both it goes no further than these; where it ends above the error, or where too few lines landed to tell it, the status
+        is "not reached" and the exit status 3. Without a limit the counters are one, at 4 billion lines for each replicate.
     error_of
         Whose error: surface:NAME, or surface:PATTERN. Default: the whole scene's.
     quanta
@@ -159,8 +166,11 @@ def solve(
     """
     asked = {"rays": rays, "seconds": seconds, "error": error, "quanta": quanta}
     given = [f"--{name}" for name, value in asked.items() if value is not None]
-    if len(given) > 1:
-        raise MethodError(f"give one of --rays, --seconds, --error and --quanta, not {' and '.join(given)}")
+    if len(given) > 1 and (error is None or quanta is not None):
+        raise MethodError(
+            f"give one of --rays, --seconds, --error and --quanta, not {' and '.join(given)}; only --error goes with --rays or "
+            "--seconds, as its limit"
+        )
     if refine_check and (resume is not None or checkpoint is not None):
         raise MethodError("--refine-check solves anew on two meshes; it cannot --resume a run, and keeps no --checkpoint")
     tables = [path.with_suffix(".refine.csv") for path in output if path.suffix.lower() == ".csv"] if refine_check else []
@@ -199,12 +209,11 @@ def solve(
                 solution = checked.coarse
             else:
                 solution = rd.solve(patches, chosen, **options, resume=before, checkpoint=keeper)
-        tell(solution.report())
+        also: list = [("the report", lambda: tell(solution.report()))]
         if checked is not None:
-            tell(f"\n{checked.report()}")
-            for path in tables:
-                checked.export(path)
-        outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path)
+            also += [("the refine check's report", lambda: tell(f"\n{checked.report()}"))]
+            also += [(path, partial(checked.export, path)) for path in tables]
+        outputs.write(solution, output, exposure=exposure, checkpoint=None if keeper is None else keeper.path, also=also)
     except KeyboardInterrupt:
         if keeper is None or not keeper.written:
             raise
@@ -213,5 +222,8 @@ def solve(
         return interrupts.status()
     left = checkpoints.finish(keeper, solution, output, named=checkpoint is not None, resume=resume)
     if left is not None:
-        say("interrupted", f"stopped before the end; --resume {left} goes on from there")
-    return interrupts.status() if solution.status == "interrupted" else 0
+        say(solution.status, f"stopped before the end; --resume {left} goes on from there")
+    if solution.status == "interrupted":
+        return interrupts.status()
+    ends = [solution.status] if checked is None else [checked.coarse.status, checked.fine.status]
+    return NOT_REACHED if "not reached" in ends else 0

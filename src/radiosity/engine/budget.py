@@ -17,7 +17,7 @@ BASELINE_RUNGS = {"full-matrix": 1, "progressive": 64, "hierarchical": 1}  # the
 
 @dataclass(frozen=True)
 class Budget:
-    """Exactly one of the four is not None.
+    """Exactly one of the four is not None; but an error may have a limit: rays, seconds or both.
 
     Attributes:
         rays: lines in all, replicates together.
@@ -26,7 +26,7 @@ class Budget:
         quanta: N of each replicate.
 
     Raises:
-        MethodError: none or several given, or a value that makes no sense.
+        MethodError: none or too many given, or a value that makes no sense.
     """
 
     rays: float | None = None
@@ -36,9 +36,17 @@ class Budget:
 
     def __post_init__(self):
         given = {name: value for name, value in vars(self).items() if value is not None}
-        if len(given) != 1:
-            raise MethodError(f"give exactly one of rays, seconds, error and quanta (given: {', '.join(given) or 'none'})")
-        name, value = next(iter(given.items()))
+        if not given or (len(given) > 1 and ("error" not in given or "quanta" in given)):
+            raise MethodError(
+                f"give exactly one of rays, seconds, error and quanta (given: {', '.join(given) or 'none'}); only an error may "
+                "have rays or seconds beside it, as its limit"
+            )
+        for name, value in given.items():
+            self._check(name, value)
+            object.__setattr__(self, name, int(value) if name in ("rays", "quanta") else float(value))  # numpy's become Python's
+
+    @staticmethod
+    def _check(name: str, value) -> None:
         try:
             good = not isinstance(value, bool) and math.isfinite(value) and value > 0
         except TypeError:
@@ -49,7 +57,10 @@ class Budget:
             raise MethodError(f"error is {value:g}; give a relative error below 1 (0.01 or, on the command line, 1%)")
         if name in ("rays", "quanta") and (value != int(value) or value < 1):
             raise MethodError(f"{name} is {value!r}; it must be a whole number of 1 or more")
-        object.__setattr__(self, name, int(value) if name in ("rays", "quanta") else float(value))  # numpy's become Python's
+
+    def allows(self, lines: float, seconds: float) -> bool:
+        """So many lines and so much time are within the limits of an error."""
+        return (self.rays is None or lines <= self.rays) and (self.seconds is None or seconds <= self.seconds)
 
     def check(self, replicates: int) -> None:
         """Refuse what 32-bit counters could not hold, before anything is traced.
@@ -96,8 +107,8 @@ def on_ladder(quanta: int, first: int) -> bool:
 
 @dataclass(frozen=True)
 class Progressed:
-    """What is known after a stage: quanta of each replicate, lines of all, seconds, what the error may be (or NaN), and the slope
-    at which it falls with lines."""
+    """What is known after a stage: quanta of each replicate, lines of all, seconds, what the error may be (NaN: it cannot be told
+    yet), and the slope at which it falls with lines."""
 
     quanta: int
     lines: int
@@ -117,8 +128,8 @@ def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, mos
     if replay and not on_ladder(at.quanta, first):
         return None
     rung = rung_after(at.quanta, first)
-    wanted = _wanted(budget, replicates, rung, at, replay)
-    if wanted is None or wanted <= at.quanta * 1.01:
+    wanted = _wanted(budget, rung, at, replay)
+    if wanted <= at.quanta * 1.01:
         return None
     target = min(rung, wanted)
     if at.lines / replicates * target / at.quanta > most:
@@ -126,16 +137,26 @@ def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, mos
     return target
 
 
-def _wanted(budget: Budget, replicates: int, rung: int, at: Progressed, replay: bool) -> int | None:
+def _wanted(budget: Budget, rung: int, at: Progressed, replay: bool) -> int:
+    """The least of what each part of the budget wants."""
     if budget.quanta is not None:
         return int(budget.quanta)
+    wanted = []
     if budget.rays is not None:
-        return round(budget.rays * at.quanta / at.lines) if at.lines else rung  # nothing was hit yet: try more
+        wanted.append(round(budget.rays * at.quanta / at.lines) if at.lines else rung)  # nothing was hit yet: try more
     if budget.seconds is not None:
         left = budget.seconds - at.seconds
         rate = max(at.lines, 1) / max(at.stage_seconds, 1e-9) / 2  # a stage fires about half of all lines so far
-        return round(at.quanta * (1 + 0.9 * left * rate / max(at.lines, 1))) if left > 0 else None
-    if math.isnan(at.error) or at.error <= (budget.error or 0):
-        return None
-    aim = (AIM_ONCE if replay else AIM) * (budget.error or 0)
+        wanted.append(round(at.quanta * (1 + 0.9 * left * rate / max(at.lines, 1))) if left > 0 else 0)
+    if budget.error is not None:
+        wanted.append(_for_error(budget.error, rung, at, replay))
+    return min(wanted)
+
+
+def _for_error(error: float, rung: int, at: Progressed, replay: bool) -> int:
+    if at.error <= error:
+        return 0
+    if math.isnan(at.error):
+        return rung  # more lines may tell
+    aim = (AIM_ONCE if replay else AIM) * error
     return max(math.ceil(at.quanta * (at.error / aim) ** (1 / at.slope)), math.ceil(LEAST_STEP * at.quanta))

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..patches import subdivide
 from ..scene.model import Scene
+from .turn import turn
 
 CHUNK = 1 << 21
 
@@ -28,6 +29,7 @@ class Hits:
     distance: np.ndarray
 
 
+@turn()
 def first_hits(scene: Scene, origins: np.ndarray, directions: np.ndarray, device: str = "auto") -> Hits:
     """The first face that each line meets; backs that let lines pass are passed.
 

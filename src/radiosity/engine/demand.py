@@ -17,6 +17,7 @@ from .matrix.process import LIMIT
 
 FACE = 800  # bytes, of the tree and the records of hits
 REACHED = 100  # of a cell within a kernel, while planes are fitted; 76 to 100 were measured, and 12 are kept
+TURNS = 12  # of a patch in a replicate, and 8 more in each group of bands: what steps in turns keep apart
 PAIR = 24  # of a pair of patches that is counted, while counts are merged
 
 
@@ -57,6 +58,8 @@ def demand(method: Method, patches: Patches, groups: int, replicates: int, rays:
     fixed = one.fixed * max(1.0, (os.cpu_count() or 1) / 4)  # launches grow with the cores
     total = fixed + FACE * patches.scene.n_faces + n * (one.patch + one.band * len(patches.scene.bands))
     total += n * replicates * (one.replicate + one.group * groups)
+    if method.estimator == "bidirectional":
+        total += n * replicates * (TURNS + 8 * groups)
     if method.reconstruction == "local-linear":
         first = replicates * first_stage(replicates, n)
         total += REACHED * _cells_reached(patches, min(first, rays or first))

@@ -6,7 +6,7 @@ from typing import Any
 import drjit as dr
 
 from ..method.lines.local import hemisphere, triangle
-from .geometry import COLUMN_BITS, INVERTED, QUAD, Geometry
+from .geometry import COLUMN_BITS, INVERTED, OFFSET, QUAD, Geometry
 
 MASK = (1 << COLUMN_BITS) - 1
 BACK = 1 << 31  # of a face number: its back
@@ -56,7 +56,7 @@ def position(geometry: Geometry, place, x, y):
 @dataclass(frozen=True)
 class Frame:
     """Of a face on the side that lines leave from, see `Geometry.face_records`: origin, edges of a cell, tangents, normal, which
-    points away from the side where ``side`` is -1, and what lies between the face and the lines' origins."""
+    points away from the side where ``side`` is -1, and the least distance of the lines' origins from the face."""
 
     origin: Any
     first: Any
@@ -75,10 +75,20 @@ class Frame:
         block = dr.gather(types.Array44f, geometry.face_records, face & (BACK - 1))  # one read of 16 words, not four of four
         words = [block[i // 4][i % 4] for i in range(16)]
         origin, first, second, normal, tangent = (types.Array3f(*words[at : at + 3]) for at in range(0, 15, 3))
-        return Frame(origin, first, second, tangent, dr.cross(normal, tangent), normal, side, normal * (words[15] * side))
+        return Frame(origin, first, second, tangent, dr.cross(normal, tangent), normal, side, words[15])
 
     def leave(self, s, t, numbers):
         """Origin and cosine distributed direction of a line from a point of the face, coordinates in cells."""
         dx, dy, dz = hemisphere(numbers[0], numbers[1])
         direction = self.tangent * dx + self.bitangent * dy + self.normal * (dz * self.side)
-        return self.origin + self.first * s + self.second * t + self.offset, direction
+        return before(self.origin + self.first * s + self.second * t, self.normal * self.side, self.offset), direction
+
+
+def before(point, normal, least):
+    """Where lines go on in front of a point of a face: some ulps of the numbers there away, so that no rounding leads back.
+
+    Args:
+        normal: of unit length, towards the side where lines go on. least: the face's plane offset.
+    """
+    size = dr.maximum(dr.maximum(dr.abs(point[0]), dr.abs(point[1])), dr.abs(point[2]))
+    return point + normal * dr.maximum(least, size * OFFSET)

@@ -139,9 +139,7 @@ class Engine:
             counts = self._count(read, arrivals, total, largest)
             dr.eval(total, largest, *([counts] if keep else []), *([arrivals] if self.bands is not None else []))
             if self.bands is not None:
-                self.bands.weigh(self, piece, places, arrivals)
-        if self.bands is not None:
-            self.bands.quanta_before = self.quanta
+                self.bands.weigh(self, piece, places, arrivals, counts)
         lines = int(total[0])
         return (Sweep(numbers, low, size, lines, counts if keep else None), int(largest[0])) if lines else (None, 0)
 
@@ -241,6 +239,10 @@ class Engine:
 
     def _land(self, origin, direction, replicate, coherent: bool, active):
         return self.slot(land(self.geometry, origin, direction, coherent=coherent, active=active), replicate)
+
+    def land_in(self, line, replicate, active):
+        """The slot of ``arrivals`` where lines land, from their origins and directions."""
+        return self._land(*line, replicate, False, active)
 
     def _replicate(self, number):
         return self.types.UInt32(0) if self.replicates == 1 else self.replicate(number)

@@ -1,15 +1,18 @@
 """The firing engine as a process: discrete walks of local lines, in any order."""
 
+from functools import cached_property
+
 import numpy as np
 
 from ..method.order import run as fire_all
-from ..solution.books import Books, exact_sum, exact_totals
+from ..solution.books import Books, exact_sum, exact_totals, signed_totals
 from . import state as counters
 from .bands import QUANTUM
 from .firing import Engine
 from .problem import Problem
 from .process import AbstractProcess, AbstractTally, State, Swept
 from .quanta import Source
+from .residue_walks import LONGER, Sent, send, starts
 
 
 class Firing(AbstractProcess):
@@ -28,6 +31,7 @@ class Firing(AbstractProcess):
         return self.engine.bands is None
 
     def advance(self, quanta: int, swept: Swept) -> None:
+        self.tally.forget()
         if quanta != self.engine.quanta:
             self.engine.set_quanta(quanta)
         fire_all(self.method.order, self.engine, swept)
@@ -39,43 +43,74 @@ class Firing(AbstractProcess):
         counters.restore(self.engine, state)
 
     def unfinished(self, state: State) -> bool:
-        return "before" in state
+        return "within" in state
 
-    @property
+    @cached_property
     def tally(self) -> "Arrivals":
-        return Arrivals()
+        return Arrivals(self.engine, self.problem)
 
 
 class Arrivals(AbstractTally):
-    """Arrivals, each a quantum; or the power of bands that they brought."""
+    """Arrivals, each a quantum, or the power of bands that they brought; and what the residue brings (contract 12), which is sent
+    on where results are read."""
 
     settles = True
 
+    def __init__(self, engine: Engine, problem: Problem):
+        self.engine, self.problem = engine, problem
+        self.forget()
+
+    def forget(self) -> None:
+        """Let go of what was read."""
+        self._state: State | None = None
+        self._sent: Sent | None = None
+
+    def sent(self, state: State) -> Sent:
+        """What the residue of a state brings."""
+        if self._sent is None or self._state is not state:
+            self.forget()  # first, for the sake of memory
+            self._state, self._sent = state, send(self.engine, self.problem, state)
+        return self._sent
+
     def lines(self, problem: Problem, state: State) -> int:
-        return int(state["fired"].sum(dtype=np.uint64))
+        return self.swept_lines(problem, state) + self.sent(state).lines
+
+    def swept_lines(self, problem: Problem, state: State) -> int:
+        return exact_sum(state["fired"])
+
+    def about_lines(self, problem: Problem, state: State) -> float:
+        fired, begun = exact_sum(state["fired"]), starts(self.engine, problem, state)
+        packets = self.engine.replicates * int(state["quanta"])
+        of_one = fired / max(packets - begun.net, packets / 2)  # what is fired lacks those of the residue
+        return fired + LONGER * len(begun.line) * of_one
 
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
         return state["arrivals"].sum(axis=0, dtype=np.int64)
 
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        unit = problem.source.power / int(state["quanta"])
+        unit = problem.source.power / int(state["quanta"]) / QUANTUM
+        landed = self.sent(state).landed[..., group]
         if "received" in state:
-            return state["received"][..., group], unit / QUANTUM
-        return state["arrivals"], unit
+            return state["received"][..., group].astype(np.int64) + landed, unit
+        return state["arrivals"] * np.int64(QUANTUM) + landed, unit
 
     def books(self, problem: Problem, state: State, group: int) -> dict:
         source, groups, quanta = problem.source, problem.groups, int(state["quanta"])
         replicates = len(state["arrivals"])
         if "received" not in state:
-            counts, missed, fired, unit = state["arrivals"], state["missed"], exact_sum(state["fired"]), 1
-            emitted = source.emitted_in_all(quanta) * replicates
+            counts, missed, fired, unit = state["arrivals"], state["missed"], exact_sum(state["fired"]), QUANTUM
+            emitted = source.emitted_in_all(quanta) * replicates * unit
         else:
-            counts, missed, unit = state["received"][..., group], state["received_missed"][..., group], QUANTUM
+            counts, missed, unit = state["received"][..., group], state["received_missed"][..., group], 1
             fired = exact_sum(state["fired_power"][group])
             share = groups.emission[:, group] * problem.patches.area / source.power
             emitted = round(float(share.sum()) * quanta * QUANTUM) * replicates << 32
         rho = Source.fixed(groups.reflectance[:, group])
-        arrived, reflected = exact_totals(counts, rho)
-        watts = source.power / quanta / unit / 2**32 / replicates
-        escaped, lost = (exact_sum(x) << 32 for x in missed)
+        arrived, reflected = (total * unit for total in exact_totals(counts, rho))
+        sent = self.sent(state)
+        more = signed_totals(sent.landed[..., group], rho)
+        arrived, reflected = arrived + more[0], reflected + more[1]
+        escaped, lost = (exact_sum(x) * unit + int(y.sum()) << 32 for x, y in zip(missed, sent.missed[..., group], strict=True))
+        fired = fired * unit + sent.fired[group]
+        watts = source.power / quanta / QUANTUM / 2**32 / replicates
         return Books(emitted, fired << 32, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()

@@ -99,6 +99,14 @@ class AbstractTally(ABC):
     def lines(self, problem: Problem, state: State) -> int:
         """Lines of all replicates, as the paper counts them: a local line 1, a span of a global line 2."""
 
+    def about_lines(self, problem: Problem, state: State) -> float:
+        """The same where it is quick to tell, else an estimate."""
+        return self.lines(problem, state)
+
+    def swept_lines(self, problem: Problem, state: State) -> int:
+        """The same without lines that are traced where results are read."""
+        return self.lines(problem, state)
+
     @abstractmethod
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
         """(n_patches,) int64: lines that landed on each patch, replicates together."""
@@ -106,6 +114,14 @@ class AbstractTally(ABC):
     @abstractmethod
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
         """(replicates, n_patches) values of a group of bands, and their unit: irradiance times area is value times unit."""
+
+    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+        """W or lm that one line more from the lights would bring where it lands, to the irradiance times area of a replicate: one
+        number, or (n_patches,). It is what is known of patches where none landed. Default: the largest share that a group has in
+        a quantum."""
+        largest = problem.groups.emission.max(axis=1)
+        share = problem.groups.emission[:, group] / np.where(largest > 0, largest, 1)
+        return float(share.max()) * problem.source.power / max(int(state["quanta"]), 1)
 
     @abstractmethod
     def books(self, problem: Problem, state: State, group: int) -> dict:
@@ -119,6 +135,14 @@ class AbstractBiasedTally(AbstractTally):
     def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
         """(n_patches,) the size of the bias of the values' mean, in the unit of `irradiance`; NaN where unknown. Stated standard
         errors hold it."""
+
+
+class AbstractMeanTally(AbstractBiasedTally):
+    """A tally of means over the lines of each patch; patches without lines take those of their face (`unmet`)."""
+
+    @abstractmethod
+    def measured(self, problem: Problem, state: State) -> np.ndarray:
+        """(replicates, n_patches): lines that each patch's value is the mean of."""
 
 
 def make(geometry: Geometry, problem: Problem, method: "Method | Baseline", seed: int, replicates: int) -> AbstractProcess:

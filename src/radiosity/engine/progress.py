@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from .budget import DONE, Budget
+from .turn import aside
 
 SLOPE = 0.6  # of the error against lines, as measured with low discrepancy numbers
 LAST = 4  # stages that a run's own slope is taken from
@@ -21,7 +22,7 @@ class Progress:
 
     Attributes:
         stage: how many stages are complete.
-        rays: lines traced so far, replicates together.
+        rays: lines of sweeps so far, replicates together; those that send the residue on come where results are read.
         rays_per_second: since the first sweep began.
         error: relative error after the last complete stage, NaN where unknown.
         fraction: of the budget, 0 to 1, or None where it cannot be told yet.
@@ -59,10 +60,12 @@ class Teller:
         """Tracing begins, with lines of an earlier run done."""
         self.tracing_since, self.lines, self.lines_before = time.perf_counter(), lines, lines
 
-    def complete(self, lines: int, quanta: int, error: float, margin: float = 1.0) -> None:
-        """A stage is complete; the error may be ``margin`` times what is stated."""
+    def complete(self, lines: int, quanta: int, error: float, margin: float = 1.0, swept: int | None = None) -> None:
+        """A stage is complete; the error may be ``margin`` times what is stated (NaN: nobody knows). ``swept`` of its lines were
+        told, or else all."""
+        swept = lines if swept is None else swept
         self.bound = error * margin
-        self.stage, self.lines, self.error, self.lines_a_quantum = self.stage + 1, lines, error, lines / quanta
+        self.stage, self.lines, self.error, self.lines_a_quantum = self.stage + 1, swept, error, swept / quanta
         if error > 0 and lines > 0:
             self.known.append((math.log2(lines), math.log2(error)))
 
@@ -84,32 +87,38 @@ class Teller:
             return
         tracing = time.perf_counter() - self.tracing_since
         rate = (self.lines - self.lines_before) / tracing if tracing > 0 else 0.0
-        whole = self._expected_lines()
-        if self.budget.seconds is not None:
-            fraction, left = self.elapsed / self.budget.seconds, self.budget.seconds - self.elapsed
-        else:
-            fraction = self.lines / whole if whole else None
-            left = (whole - self.lines) / rate if whole and rate else None
-        self.listener(
-            Progress(
-                self.stage,
-                self.lines,
-                rate,
-                self.error,
-                None if fraction is None else min(max(fraction, 0.0), 1.0),
-                None if left is None else max(left, 0.0),
-                message,
-            )
+        fraction, left = self._ahead(rate)
+        moment = Progress(
+            self.stage,
+            self.lines,
+            rate,
+            self.error,
+            None if fraction is None else min(max(fraction, 0.0), 1.0),
+            None if left is None else max(left, 0.0),
+            message,
         )
+        with aside():
+            self.listener(moment)
+
+    def _ahead(self, rate: float) -> tuple[float | None, float | None]:
+        """The fraction that is done, and the seconds left: of an error with a limit, by what comes first."""
+        fractions, lefts = [], []
+        if self.budget.seconds is not None:
+            fractions.append(self.elapsed / self.budget.seconds)
+            lefts.append(self.budget.seconds - self.elapsed)
+        for whole in (self.budget.rays, self._expected_lines()):
+            if whole:
+                fractions.append(self.lines / whole)
+                lefts += [(whole - self.lines) / rate] if rate else []
+        return max(fractions, default=None), min(lefts, default=None)
 
     def _expected_lines(self) -> float | None:
-        if self.budget.rays is not None:
-            return self.budget.rays
+        """Of a run to so many quanta, or to an error, once something is known of it."""
         if self.budget.quanta == DONE:
             return None
         if self.budget.quanta is not None:
             return self.lines_a_quantum * self.budget.quanta or None
-        if self.budget.error is None or not self.error > 0:
+        if self.budget.error is None or not self.bound > 0:
             return None
         return max(self.lines, self.lines * (self.bound / self.budget.error) ** (1 / self.slope))
 

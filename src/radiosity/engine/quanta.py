@@ -16,6 +16,7 @@ from ..pieces import pieces
 
 ONE = 2.0**32
 LIMIT = 2**32 - 1  # of every counter
+RESIDUE, RESIDUE_LINES = 6, 7  # purposes of streams: where lines begin that send the residue on, and their numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +81,8 @@ class Source:
 
 
 def stream(seed: int, replicate: int, purpose: int) -> np.random.SeedSequence:
-    """An independent stream of a replicate: 0 for phases, 1 for numbers. The number of replicates does not matter."""
+    """An independent stream of a replicate: 0 for phases, 1 for numbers, others by their name. The number of replicates does not
+    matter."""
     return np.random.SeedSequence([seed, replicate, purpose])
 
 

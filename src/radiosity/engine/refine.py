@@ -18,6 +18,7 @@ from ..solution.model import Solution
 from ..solution.refinement import RefineCheck
 from .baseline_budget import cut_for
 from .memory import limited
+from .turn import turn
 
 if TYPE_CHECKING:
     from .run import Run
@@ -52,7 +53,7 @@ def refine_check(
     parent = parents(fine, coarse)
     more = {k: 4 * v for k, v in options.items() if k in ("rays", "quanta") and v is not None}
     seed = options.get("seed", 0)
-    with limited(memory):
+    with limited(memory), turn():
         one = _finished(prepared(coarse, chosen, **options))
         second = prepared(fine, chosen, **(options | more | {"seed": seed + APART}))
         second.also = lambda stage: stage.sums(parent, len(coarse))

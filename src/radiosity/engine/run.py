@@ -8,27 +8,34 @@ from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
-from ..errors import MethodError, RadiosityWarning
+from ..errors import DeviceError, MethodError, RadiosityWarning
 from ..method import Baseline, Method
 from ..patches import Patches
-from ..solution.model import Solution
+from ..solution.model import NOT_REACHED, Solution
 from ..solution.without_results import without_results
-from . import demand
+from . import demand, unmet
 from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .device import choose, give_back_memory
-from .geometry import Geometry
+from .geometry import TRACING, Geometry
 from .problem import Problem
-from .process import AbstractProcess, State, make
+from .process import AbstractMeanTally, AbstractProcess, State, make
 from .progress import Interrupted, Listener, Stop, Teller
+from .shortfall import warn_of_more, warn_of_target
 from .snapshot import Snapshot
 from .state import check_same
-from .target import rows_of
+from .target import nothing_before_lights, rows_of
 from .trial import few_quanta
+from .turn import turn
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
+LOST_HITS = (
+    "the energy balance does not close: hits were lost while another thread of this process ran kernels of Dr.Jit or Mitsuba "
+    "(runs of radiosity wait for each other). Solve again while nothing else uses them, or in a process of its own; a checkpoint "
+    "of this run is of no use"
+)
 ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
 LARGE = 1 << 19  # counters: before results are read, memory that sweeps took is given back, which costs some milliseconds
 PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
@@ -65,7 +72,7 @@ class Run:
 
     def solve(self) -> Solution:
         """Stage after stage until the budget is used up, or Ctrl-C."""
-        with self.stop.listening():
+        with turn(), self.stop.listening():
             return self._stages()
 
     def _stages(self) -> Solution:
@@ -83,7 +90,7 @@ class Run:
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
-        self.teller.begin(0 if self.resume is None else process.tally.lines(self.problem, process.capture()))
+        self.teller.begin(0 if self.resume is None else process.tally.swept_lines(self.problem, process.capture()))
         status, pending, steps = "complete", {}, [target]
         while target:
             started = time.perf_counter()
@@ -93,18 +100,19 @@ class Run:
             except Interrupted as reason:
                 status, pending = str(reason), process.capture()
                 break
-            if self.replicates * len(self.patches) > LARGE:
+            large = self.replicates * len(self.patches) > LARGE
+            if large:
                 give_back_memory()
-            snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture(), self.also)
+            snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture(), self.replicates, self.also)
             known = self.replicates > 1 and self._error_matters
             error = snapshot.error(self.rows) if known else math.nan
-            margin = snapshot.margin(self.rows) if known and self.budget.error is not None else 1.0
-            lines = snapshot.lines
-            self.teller.complete(lines, target, error, margin)
+            margin = self._margin(snapshot)
+            lines = snapshot.lines if known or large else round(snapshot.about_lines)
+            self.teller.complete(lines, target, error, margin, process.tally.swept_lines(self.problem, snapshot.state))
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
                 break
-            if snapshot.done:
+            if snapshot.done or self._no_light(snapshot):
                 break
             stage, slope = time.perf_counter() - started, self.teller.slope
             at = Progressed(target, lines, self.teller.elapsed, stage, error * margin, slope)
@@ -116,15 +124,15 @@ class Run:
                 continue
             target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
             steps = [target]
-            if target and self.replicates > 1:
+            if target and large and self.replicates > 1:
                 snapshot.settle()
         if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
             raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
         if self.snapshot is None:
             solution = self._so_far(status, pending)
         else:
-            if status == "complete" and not self._reached(self.snapshot):
-                status = COUNTERS_FULL
+            if status in ("complete", COUNTERS_FULL) and not self._reached(self.snapshot):
+                status = COUNTERS_FULL if self.budget.error is None else NOT_REACHED
             solution = self._solution(self.snapshot, status, pending)
         if self.checkpoint is not None:
             self.checkpoint.end(solution)
@@ -146,8 +154,12 @@ class Run:
         return without_results(self.patches, self.replicates, seconds, status, self._provenance(), state)
 
     def _missed(self, at: Progressed) -> bool:
-        """The stage was to be the last, and its error is above what was asked for."""
-        return self.budget.error is not None and at.error > self.budget.error and not on_ladder(at.quanta, self.rung)
+        """The stage was to be the last, and its error is above what was asked for; the limit leaves room for another run."""
+        more = 2 * rung_after(at.quanta, self.rung) / at.quanta
+        return (
+            self.budget.error is not None and not at.error <= self.budget.error and not on_ladder(at.quanta, self.rung)
+            and self.budget.allows(at.lines * more / 2, at.seconds + at.stage_seconds * more)
+        )  # fmt: skip
 
     def _climb(self, quanta: int) -> list[int]:
         """The rungs up to the one above N: from N itself no run goes on to the bits of a longer one, so another one begins."""
@@ -157,14 +169,24 @@ class Run:
         return rungs
 
     def _reached(self, snapshot: Snapshot) -> bool:
-        """The budget was used up; else the counters were. Where nothing is received there is no error to wait for."""
-        if snapshot.done:
+        """The error was reached, or another budget used up; else the counters were."""
+        if snapshot.done or self._no_light(snapshot):
             return True
         if self.budget.error is not None:
-            return not self.teller.bound > self.budget.error
+            return self.teller.bound <= self.budget.error
         if self.budget.quanta is not None:
             return snapshot.quanta >= self.budget.quanta
         return self.budget.rays is None or snapshot.lines >= 0.5 * self.budget.rays
+
+    def _margin(self, snapshot: Snapshot) -> float:
+        """How many times the stated error the true one may be, where it is to be reached; NaN where too few lines landed."""
+        if self.budget.error is None:
+            return 1.0
+        return snapshot.margin(self.rows) if snapshot.judged(self.rows) else math.nan
+
+    def _no_light(self, snapshot: Snapshot) -> bool:
+        """No patch can receive anything, and there is no error to wait for."""
+        return self.budget.error is not None and not snapshot.irradiance[0].any() and nothing_before_lights(self.patches)
 
     def _process(self, problem: Problem, replicates: int) -> AbstractProcess:
         return make(self.geometry, problem, self.method, self.seed, replicates)
@@ -205,12 +227,18 @@ class Run:
             raise KeyboardInterrupt
 
     def _solution(self, snapshot: Snapshot, status: str, pending) -> Solution:
+        if self.resume is None:
+            warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
+        if status == NOT_REACHED:
+            warn_of_target(self, snapshot)
+        if isinstance(snapshot.tally, AbstractMeanTally):
+            unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
         ends = snapshot.lines / self.replicates / len(self.patches)
         global_factors = self.method.machine == "matrix" and self.method.lines != "local"
         if global_factors and ends < ENDS_ENOUGH:
             warnings.warn(
                 f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over that "
-                "number, and not in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
+                "number, and in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
                 RadiosityWarning,
                 stacklevel=5,
             )
@@ -219,6 +247,8 @@ class Run:
         return self._read(snapshot, status, pending or snapshot.state)
 
     def _read(self, snapshot: Snapshot, status: str, state: State) -> Solution:
+        if any(book["closes"] is False for book in snapshot.books):
+            raise DeviceError(LOST_HITS)
         mean, error = snapshot.irradiance
         return Solution(
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
@@ -234,7 +264,7 @@ class Run:
         return {
             "scene": self.patches.scene.hash, "source": self.patches.scene.source, "method": str(self.method),
             "choices": asdict(self.method), "seed": self.seed, "replicates": self.replicates, "device": self.device.name,
-            "patches": len(self.patches), "cut": self.patches.hash,
+            "patches": len(self.patches), "cut": self.patches.hash, "tracing": TRACING,
             "budget": self._budget,
             "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }  # fmt: skip

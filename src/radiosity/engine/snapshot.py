@@ -9,7 +9,7 @@ import numpy as np
 
 from ..pieces import pieces
 from ..solution.errors import inner_products, margin, mean_and_error, relative_error
-from ..solution.intervals import least_error
+from ..solution.intervals import FEW, by_luck, least_error, usual_power
 from .problem import Problem
 from .process import AbstractBiasedTally, AbstractTally, State
 
@@ -21,6 +21,7 @@ class Snapshot:
     problem: Problem
     tally: AbstractTally
     state: State
+    replicates: int = 1
     also: Callable[["Snapshot"], Any] | None = None
 
     def settle(self) -> None:
@@ -44,6 +45,11 @@ class Snapshot:
         return self.tally.lines(self.problem, self.state)
 
     @cached_property
+    def about_lines(self) -> float:
+        """See `AbstractTally.about_lines`."""
+        return self.tally.about_lines(self.problem, self.state)
+
+    @cached_property
     def arrivals(self) -> np.ndarray:
         return self.tally.arrivals(self.problem, self.state)
 
@@ -56,9 +62,18 @@ class Snapshot:
             bands = np.flatnonzero(groups.index == group)
             for part, one, its_error in self._irradiance(group):
                 mean[part, bands], error[part, bands] = (x[:, None] * groups.scale[bands] for x in (one, its_error))
-        if self.tally.counts_landings:
-            error = least_error(mean, error, self.arrivals, self.problem.patches.area)
+        some = any(by_luck(mean[part], error[part]).any() for part in pieces(len(mean)))
+        if some and self.tally.counts_landings:
+            usual = usual_power(mean, self.arrivals, self.problem.patches.area, self.line)
+            error = least_error(mean, error, self.arrivals, self.problem.patches.area, usual, self.replicates)
         return mean, error
+
+    @cached_property
+    def line(self) -> np.ndarray:
+        """(n_bands,) or (n_patches, n_bands) W or lm that a line would bring to the mean of replicates: `AbstractTally.line`."""
+        groups = self.problem.groups
+        lines = [np.asarray(self.tally.line(self.problem, self.state, group)) for group in range(groups.n_groups)]
+        return np.stack(lines, axis=-1)[..., groups.index] * groups.scale / self.replicates
 
     @cached_property
     def surface_power(self) -> np.ndarray:
@@ -105,6 +120,23 @@ class Snapshot:
         """See `Solution.error`; of some patches."""
         patches = self.problem.patches
         return relative_error(*(value[rows] for value in (patches.reflectance, *self.irradiance, patches.area)))
+
+    def judged(self, rows: np.ndarray | slice = slice(None)) -> bool:
+        """The error of some patches is known well enough to stop there: what makes it up comes from `FEW` lines or more.
+
+        The relative variance of an error that n lines tell goes with 1 / n. So the sum of squared errors s_i of patches that n_i
+        lines reached is known as well as that of a patch which (sum s)^2 / sum (s^2 / n) of them did. Lines are counted as those
+        from the lights that would bring as much power, where these are fewer; the least error where none landed as one.
+        """
+        patches, (mean, error) = self.problem.patches, self.irradiance
+        area, rho, error = patches.area[rows, None], patches.reflectance[rows], error[rows]
+        power, line = mean[rows] * area, np.broadcast_to(self.line, mean.shape)[rows]
+        lines = np.minimum(np.divide(power, line, out=np.full(power.shape, np.inf), where=line > 0), self.arrivals[rows, None])
+        square = area * ((rho if rho.any() else 1.0) * error) ** 2
+        known = square.sum(axis=0) > 0
+        share = square[:, known] / square[:, known].sum(axis=0)
+        told = np.where(lines > 0, lines, 1.0)[:, known]
+        return bool(known.any() and (FEW * (share**2 / told).sum(axis=0) <= 1 + 1e-9).all())
 
     def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
         """How many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""

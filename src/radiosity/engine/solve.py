@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ..errors import MethodError
 from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
+from ..scene.contact_findings import tell
 from ..scene.model import Scene
 from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
@@ -14,6 +15,7 @@ from .budget import Budget
 from .checkpoint import Checkpoint
 from .memory import limited
 from .progress import Listener
+from .turn import turn
 
 if TYPE_CHECKING:
     from .run import Run
@@ -48,7 +50,9 @@ def solve(
         rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
             scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run bit
-            for bit.
+            for bit. An error alone may have a limit beside it, rays, seconds or both. Where it is not reached within that, or
+            within what counters hold (2^32 lines for each replicate), or where too few lines landed to tell it, the status is
+            "not reached" and a warning says what is known.
         error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead.
         replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
         seed: with the same inputs, the same bits.
@@ -66,14 +70,15 @@ def solve(
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
-        unfinished stage are kept for ``resume``.
+        unfinished stage are kept for ``resume``. Of several threads one solves at a time; the others wait for it to end.
 
     Raises:
         SceneError: nothing emits. MethodError: a choice or budget that makes no sense, a solution that cannot be resumed, or
-            more memory than the run may take. OutputError: no checkpoint can be written there. DeviceError: nothing to run on.
+            more memory than the run may take. OutputError: no checkpoint can be written there. DeviceError: nothing to run on,
+            or hits were lost, since another thread ran kernels of Dr.Jit or Mitsuba.
             KeyboardInterrupt: Ctrl-C before the first stage was complete; a checkpoint has been written.
     """
-    with limited(memory):
+    with limited(memory), turn():
         return prepared(
             scene, resolve(method, **choices), rays=rays, seconds=seconds, error=error, quanta=quanta, replicates=replicates,
             seed=seed, device=device, progress=progress, resume=resume, error_of=error_of, checkpoint=checkpoint,
@@ -106,6 +111,7 @@ def prepared(
     if error_of is not None and error is None:
         raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
     keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
+    tell(scene.scene)
     from .run import Run
 
     return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper, error_of)

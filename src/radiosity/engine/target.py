@@ -1,4 +1,4 @@
-"""Whose error a run is to reach."""
+"""Whose error a run is to reach, and whether there is any."""
 
 import difflib
 from fnmatch import fnmatchcase
@@ -10,6 +10,8 @@ from ..patches import Patches
 
 KIND = "surface:"
 SHOWN = 8
+PAIRS = 1e8  # of lights and vertices: more are not looked at
+FLAT = 1e-9  # of the scene's size: vertices no further in front of a light's plane lie in it
 
 
 def rows_of(patches: Patches, name: str) -> np.ndarray:
@@ -27,3 +29,16 @@ def rows_of(patches: Patches, name: str) -> np.ndarray:
         close = difflib.get_close_matches(wanted, names, SHOWN, 0.5) or names[:SHOWN]
         raise MethodError(f"no surface is called '{wanted}'; there are {len(names)}, such as {', '.join(close)}")
     return rows
+
+
+def nothing_before_lights(patches: Patches) -> bool:
+    """Nothing lies in front of any light, so that no line can land: known for certain where it is said, by the vertices."""
+    scene = patches.scene
+    lit = patches.emission.any(axis=1)
+    normal, point = patches.normal[lit], patches.centroid[lit]
+    vertices = scene.vertices[np.unique(scene.faces[scene.faces >= 0])]
+    planes = np.unique(np.column_stack([normal, (normal * point).sum(axis=1)]), axis=0)
+    if len(planes) * len(vertices) > PAIRS:
+        return False
+    tolerance = FLAT * np.ptp(vertices, axis=0).max()
+    return all((vertices @ plane[:3] - plane[3]).max() <= tolerance for plane in planes)

@@ -1,7 +1,8 @@
 """The ray caster's tree over the faces of a scene.
 
-It holds whole faces (a parallelogram as two triangles). Coordinates are moved to the scene's centre in double precision and
-scaled by a power of two before they become single, so that a scene's place and size do not matter.
+It holds whole faces (a parallelogram as two triangles). Coordinates are moved to the scene's centre, a median, in double
+precision and scaled by a power of two before they become single, so that a scene's place and size, and what lies far away, do
+not matter.
 """
 
 from dataclasses import dataclass
@@ -45,9 +46,8 @@ def tree(scene: Scene, device: Device) -> Tree:
 
 
 def _build(scene: Scene, device: Device) -> Tree:
-    low, high = scene.bounds
-    centre = (low + high) / 2
-    scale = 2.0 ** (REACH - np.ceil(np.log2(max((high - low).max() / 2, 1e-300))))
+    centre = scene.centre
+    scale = 2.0 ** (REACH - np.ceil(np.log2(max(scene.reach, 1e-300))))
     vertices = ((scene.vertices - centre) * scale).astype(np.float32)
     triangles, _ = primitives(scene)
     with entered(device) as mi:

@@ -21,7 +21,7 @@ def few_quanta(rays: float, replicates: int, process: AbstractProcess, tried: Sw
     each, patches = rays / replicates, len(process.problem.patches)
     trial = max(min(math.ceil(each), LEAST_QUANTA), min(int(each) // 8, MOST))
     process.advance(trial, tried)
-    lines = process.tally.lines(process.problem, process.capture())
+    lines = process.tally.about_lines(process.problem, process.capture())
     found = max(1, round(trial * each / max(lines, 1)))
     enough = ENOUGH * math.sqrt(patches)
     if found < enough:

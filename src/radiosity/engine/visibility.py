@@ -20,6 +20,7 @@ from .device import upload
 from .geometry import INSET, OFFSET, Geometry
 from .lanes import CHUNK
 from .lines import land
+from .turn import turn
 
 MOST = (1 << 16) - 1  # rays of a pair
 WORDS = 10  # of a polygon on the device: origin, two edges, offset
@@ -50,6 +51,7 @@ class Polygons:
         return Polygons(self.corners[rows], self.face[rows])
 
 
+@turn()
 def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int = 16, seed: int = 0) -> np.ndarray:
     """(m,) float64 in [0, 1]: share of what goes from ``one`` to ``other`` that meets nothing on its way, for m pairs.
 
@@ -124,8 +126,9 @@ def _point(types, records, pair, is_triangle, x, y):
 
 def _records(geometry: Geometry, polygons: Polygons) -> np.ndarray:
     """(m, WORDS) float32 in the caster's coordinates, drawn in from the edges as whole faces are (`Geometry.face_records`)."""
-    tree, offset = geometry.tree, geometry.frames[3][polygons.face]
+    tree = geometry.tree
     points = (polygons.corners - tree.centre) * tree.scale
+    offset = geometry.offset(polygons.face, points)
     origin, first, second = points[:, 0], points[:, 1] - points[:, 0], points[:, 3] - points[:, 0]
     flat = _is_triangle(polygons) == 1
     area = np.maximum(np.linalg.norm(np.cross(first, second), axis=1), 1e-300)

@@ -6,10 +6,11 @@ import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
 from .model import Scene
+from .precision import EPSILON
 
-RESOLUTION = 4 * float(np.finfo(np.float32).eps)  # of the distance from the scene's centre: what the ray caster can tell apart
+RESOLUTION = 4 * EPSILON  # of the distance from the scene's centre: what the ray caster can tell apart
 
-# Twice a face's area over the square of half the scene's extent: where the caster's scene reaches to 2^20 (engine/tree.py),
+# Twice a face's area over the square of the scene's reach: where the caster's scene reaches to 2^20 (engine/tree.py),
 # smaller faces are so close to what Embree can divide by, seen along a line, that places of hits would be wrong.
 SMALLEST = 4e-27
 
@@ -45,6 +46,5 @@ def without_area(scene: Scene) -> np.ndarray:
     longest = np.max([np.linalg.norm(e, axis=1) for e in (first, second, second - first)], axis=0)
     doubled = np.linalg.norm(np.cross(first, second), axis=1)
     height = doubled / np.where(longest > 0, longest, 1)
-    centre, half = scene.bounds.mean(axis=0), np.ptp(scene.bounds, axis=0).max() / 2
-    reach = np.abs(scene.vertices[scene.faces[:, :3]] - centre).max(axis=(1, 2))
-    return (height <= RESOLUTION * reach) | (doubled <= SMALLEST * half**2)
+    reach = np.abs(scene.vertices[scene.faces[:, :3]] - scene.centre).max(axis=(1, 2))
+    return (height <= RESOLUTION * reach) | (doubled <= SMALLEST * scene.reach**2)

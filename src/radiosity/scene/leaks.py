@@ -6,11 +6,12 @@ from functools import cached_property
 import numpy as np
 
 from .model import Back, Scene
+from .precision import ulp
 
 WALKS = 20_000
 BOUNCES = 8
 PER_EMITTER = 512  # lines from each side of each emitting surface
-ULPS = 64  # origins stand off their face by so many units in the last place of the largest coordinate, single precision
+ULPS = 64  # origins stand off their face by so many units in the last place where they are, single precision
 NEAR = 0.1  # of the square root of the emitting face's area: closer than this is the surface that carries the lamp
 SEEN, ESCAPED, LOST = 0, 1, 2
 
@@ -117,8 +118,8 @@ def _trace(scene: Scene, face, back, place, generator, device: str):
     across = np.cross(normal, tangent)
     x, y, z = radius * np.cos(turn), radius * np.sin(turn), np.sqrt(1 - radius**2)
     direction = x[:, None] * tangent + y[:, None] * across + z[:, None] * normal
-    offset = ULPS * np.finfo(np.float32).eps * float(np.ptp(scene.bounds, axis=0).max()) / 2
-    start = origin + place[0][:, None] * first + place[1][:, None] * second + offset * normal
+    start = origin + place[0][:, None] * first + place[1][:, None] * second
+    start += ULPS * ulp(scene, face, start)[:, None] * normal
     hits = first_hits(scene, start, direction, device=device)
     dead_back = ~hits.front & (scene.back[hits.face] != Back.RADIATES)
     fate = np.where(hits.face < 0, ESCAPED, np.where(dead_back, LOST, SEEN))

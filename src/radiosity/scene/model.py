@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from .camera import Camera
 from .paint import Paint
+from .precision import median_centre, plane_reach
 
 
 class Back(IntEnum):
@@ -153,6 +154,22 @@ class Scene:
         """(2, 3) lowest and highest coordinates, metres."""
         used = self.vertices[np.unique(self.faces[self.faces >= 0])]
         return np.stack([used.min(axis=0), used.max(axis=0)])
+
+    @cached_property
+    def centre(self) -> np.ndarray:
+        """(3,) metres: where coordinates are measured from in single precision, see `scene.precision`."""
+        return median_centre(self)
+
+    @cached_property
+    def reach(self) -> float:
+        """Metres: the largest coordinate of a face about the centre."""
+        return float(np.abs(self.bounds - self.centre).max())
+
+    @cached_property
+    def plane_reach(self) -> np.ndarray:
+        """(n_faces,) metres, see `scene.precision.plane_reach`."""
+        corners = self.vertices[np.where(self.faces < 0, self.faces[:, :1], self.faces)] - self.centre
+        return plane_reach(self.normal, corners)
 
     @cached_property
     def hash(self) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 
 from .model import Scene
 
-WELD = 1e-6  # of the scene's largest extent: vertices that are closer are one
+WELD = 2e-6  # of the median vertex's largest coordinate about the centre: vertices that are closer are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,11 +27,12 @@ class OpenEdges:
 def weld(scene: Scene) -> np.ndarray:
     """(n_faces, 4) int64: corners by number of the welded vertex, -1 where a face has no fourth."""
     used = np.unique(scene.faces[scene.faces >= 0])
-    low, high = scene.bounds
-    step = WELD * float((high - low).max())
-    cells = np.round((scene.vertices[used] - low) / step)
+    places = scene.vertices[used] - scene.bounds[0]
+    # a median, so that an object far away welds no room together; of a flat scene's middle the whole
+    size = float(np.median(np.abs(scene.vertices[used] - scene.centre).max(axis=1))) or scene.reach
+    cells = np.round(places / (WELD * size))
     # vertices on either side of a rounding border meet on one of two grids, half a step apart
-    shifted = np.floor((scene.vertices[used] - low) / step)
+    shifted = np.floor(places / (WELD * size))
     number = _joined(_numbered(cells), _numbered(shifted))
     table = np.full(len(scene.vertices) + 1, -1)
     table[used] = number

@@ -60,6 +60,17 @@ def exact_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
     return total, weighted
 
 
+def signed_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
+    """As `exact_totals`, of signed integers whose columns' sums 64 bits hold."""
+    total = weighted = 0
+    for part in pieces(rows.shape[1]):
+        column = rows[:, part].sum(axis=0, keepdims=True)
+        for sign in (1, -1):
+            one = exact_totals(np.maximum(sign * column, 0).astype(np.uint64), weight[part])
+            total, weighted = total + sign * one[0], weighted + sign * one[1]
+    return total, weighted
+
+
 def exact_dot(long: np.ndarray, short: np.ndarray) -> int:
     """Sum of uint64 times uint32 without rounding or overflow, by 16-bit limbs."""
     long, short = np.asarray(long, np.uint64).ravel(), np.asarray(short, np.uint64).ravel()

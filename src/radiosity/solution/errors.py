@@ -65,7 +65,7 @@ def inner_products(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 def relative_error(reflectance: np.ndarray, irradiance: np.ndarray, error: np.ndarray, area: np.ndarray) -> float:
     """Area-weighted RMS of the error of B - E over that of B - E, the largest of the bands, of the irradiance where nothing
-    reflects; NaN where unknown.
+    reflects; NaN where unknown, as where nothing landed in a band that has an error.
 
     Args:
         reflectance, irradiance, error: (n_patches, n_bands), the last one of the irradiance.
@@ -77,7 +77,7 @@ def relative_error(reflectance: np.ndarray, irradiance: np.ndarray, error: np.nd
             rho = weight[part]
             bottom += area[part] @ (rho * irradiance[part]) ** 2
             top += area[part] @ np.where(rho == 0, 0.0, rho * error[part]) ** 2
-        lit = bottom > 0
-        if lit.any():
-            return float((np.sqrt(top[lit]) / np.sqrt(bottom[lit])).max())
+        lit, blind = bottom > 0, (bottom == 0) & (top > 0)
+        if lit.any() or blind.any():
+            return float("nan") if blind.any() else float((np.sqrt(top[lit]) / np.sqrt(bottom[lit])).max())
     return float("nan")

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..errors import MethodError
 from ..pieces import pieces
-from .errors import mean_and_error
 
 FEW = 30  # arrivals, all replicates together: Student's intervals of patches with fewer are too narrow (docs/errors.md)
+ROUNDING = 1e-13  # relative, of sums over replicates
 QUANTITIES = ("radiosity", "irradiance")
 
 
@@ -32,9 +32,24 @@ def student(level: float, replicates: int) -> float:
     return float(t.ppf(0.5 + level / 2, replicates - 1))
 
 
+def power_of_a_line(emission: np.ndarray, area: np.ndarray, lines: float) -> np.ndarray:
+    """(n_bands,) W or lm that each of ``lines`` lines from the lights carries at most, to the mean of replicates.
+
+    Args:
+        emission: (n_patches, n_bands). area: (n_patches,) m².
+        lines: replicates together: their number times the quanta of each.
+    """
+    total, share = 0.0, np.zeros(emission.shape[1])
+    for part in pieces(len(area)):
+        largest = emission[part].max(axis=1)
+        total += float(largest @ area[part])
+        share = np.maximum(share, (emission[part] / np.where(largest > 0, largest, 1)[:, None]).max(axis=0))
+    return share * (total / max(lines, 1))
+
+
 def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, usual=None) -> np.ndarray:
-    """(n_patches, n_bands) W or lm that a line brings to a patch, in the mean of replicates: of its own lines, or of the scene's
-    where none landed.
+    """(n_patches, n_bands) W or lm that a line brings to a patch, in the mean of replicates: of its own lines, or the usual one
+    where none brought any.
 
     Args:
         irradiance: (n_patches, n_bands). arrivals: (n_patches,), replicates together. area: (n_patches,) m².
@@ -46,104 +61,118 @@ def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.n
     return np.where(own > 0, own, usual)
 
 
-def usual_power(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """(n_bands,) W or lm that a line brings to any patch."""
+def usual_power(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, line: np.ndarray | float = 0.0) -> np.ndarray:
+    """(n_bands,) W or lm that a line brings to any patch; at least ``line``, the power of a line, (n_bands,) or (n_patches,
+    n_bands), which is known where none landed. Shaped as the larger of both."""
     total = np.zeros(irradiance.shape[1])
     for part in pieces(len(area)):
         total += (irradiance[part] * area[part, None]).sum(axis=0)
-    return total / max(int(arrivals.sum()), 1)
+    return np.maximum(total / max(int(arrivals.sum()), 1), line)
 
 
 def cluster(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
     """(n_bands,) lines that come together: the variance of arrivals over their number, on patches that few reached; 1 at
     least."""
     here = (arrivals > 0) & (arrivals < FEW)
-    if not here.any():
-        return np.ones(irradiance.shape[1])
-    usual = usual_power(irradiance, arrivals, area)
-    one = power_of_an_arrival(irradiance[here], arrivals[here], area[here], usual)
-    relative = np.divide(error[here] * area[here, None], one, out=np.zeros_like(one), where=one > 0)
-    return np.maximum((relative**2).sum(axis=0) / arrivals[here].sum(), 1)
+    power, count = irradiance[here] * area[here, None], arrivals[here, None]
+    relative = np.divide(error[here] * area[here, None] * count, power, out=np.zeros_like(power), where=power > 0)
+    return np.maximum((relative**2).sum(axis=0) / max(int(count.sum()), 1), 1)
 
 
-def irradiance_bound(
-    irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, level: float, cluster: np.ndarray | float = 1.0
-) -> np.ndarray:
-    """(n_patches, n_bands) what the irradiance does not exceed, with a probability of ``level``, by the distribution of
-    arrivals alone: rough where many landed, and all that is known where none did. Arguments as of `power_of_an_arrival`."""
+def count_bounds(count: np.ndarray, level: float, cluster: np.ndarray | float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """Garwood's lower and upper limit of the mean of a number of arrivals, each held with a probability of ``level``: of no
+    arrivals 0 and -ln(1 - level)."""
     from scipy.stats import chi2
 
-    most = cluster * chi2.ppf(level, 2 * (arrivals[:, None] / cluster + 1)) / 2
-    return most * power_of_an_arrival(irradiance, arrivals, area) / area[:, None]
+    groups = np.asarray(count / cluster, np.float64)
+    low = np.where(groups > 0, chi2.ppf(1 - level, 2 * np.maximum(groups, 1e-9)), 0.0)
+    return cluster * low / 2, cluster * chi2.ppf(level, 2 * (groups + 1)) / 2
 
 
-def least_error(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """(n_patches, n_bands) standard error, where it is zero since few lines landed and all replicates agree by chance: that of
-    Poisson's arrivals, and of one arrival where there was none. It is written over."""
-    usual = usual_power(irradiance, arrivals, area)
+def irradiance_bounds(
+    irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, level: float,
+    cluster: np.ndarray | float = 1.0, usual: np.ndarray | None = None,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """(n_patches, n_bands) each: what the irradiance does not fall below and does not exceed, each with a probability of
+    ``level``, by the distribution of arrivals alone: rough where many landed, and all that is known where none did. Where lines
+    brought nothing they count as none. Arguments as of `power_of_an_arrival`; ``usual`` may have a row for each patch."""
+    power = power_of_an_arrival(irradiance, arrivals, area, usual) / area[:, None]
+    low, high = count_bounds(np.where(irradiance > 0, arrivals[:, None], 0), level, cluster)
+    return low * power, high * power
+
+
+def by_luck(mean: np.ndarray, error: np.ndarray) -> np.ndarray:
+    """Where all replicates agree, up to rounding."""
+    return error <= ROUNDING * np.abs(mean)
+
+
+def least_error(
+    irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray,
+    usual: np.ndarray | None = None, replicates: int = 1,
+) -> np.ndarray:  # fmt: skip
+    """(n_patches, n_bands) standard error, where it is zero since all replicates agree by chance. It is written over.
+
+    Where few lines landed it is that of Poisson's arrivals, and of one arrival where none landed or brought anything. Where many
+    did it is what whole lines leave open: R replicates of equal counts know each of them to a line, uniformly, and their mean to
+    a line over sqrt(12 R).
+
+    Args:
+        usual: see `usual_power`; (n_bands,) or (n_patches, n_bands).
+        replicates: R.
+    """
+    usual = usual_power(irradiance, arrivals, area) if usual is None else usual
+    usual = np.broadcast_to(usual, irradiance.shape)
     for part in pieces(len(area)):
-        count, lucky = arrivals[part], (error[part] == 0) & (arrivals[part] < FEW)[:, None]
+        lucky = by_luck(irradiance[part], error[part])
         if not lucky.any():
             continue
-        spread = power_of_an_arrival(irradiance[part], count, area[part], usual)
-        spread *= (np.sqrt(np.maximum(count, 1)) / area[part])[:, None]
-        np.copyto(error[part], spread, where=lucky)
+        count = np.where(irradiance[part] > 0, arrivals[part, None], 0)
+        lines = np.where(count < FEW, np.sqrt(np.maximum(count, 1)), np.sqrt(replicates / 12))
+        spread = power_of_an_arrival(irradiance[part], arrivals[part], area[part], usual[part]) * lines
+        np.copyto(error[part], spread / area[part, None], where=lucky)
     return error
 
 
 def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     """See `Solution.interval`."""
-    _known(quantity)
-    mean, few = solution.irradiance, solution.few
-    half = student(level, solution.replicates) * solution.irradiance_standard_error
+    check(quantity)
+    mean, error, area = solution.irradiance, solution.irradiance_standard_error, solution.patches.area
+    shown = np.where(error > 0, error, np.nan) if solution.by_baseline else error  # factors that agree say nothing of their error
+    half = student(level, solution.replicates) * shown
     low, high = np.maximum(mean - half, 0), mean + half
-    counted = (mean, solution.arrivals, solution.patches.area)
-    together = cluster(mean, solution.irradiance_standard_error, *counted[1:])
-    bound = irradiance_bound(*counted, 0.5 + level / 2, together)
-    high = np.where(few[:, None], np.maximum(high, bound), high)  # NaN stays
+    few = solution.few[:, None] | (mean == 0)
+    if few.any() and not solution.by_baseline:
+        usual = np.where(mean == 0, power_of_none(solution), usual_power(mean, solution.arrivals, area))
+        together = cluster(mean, error, solution.arrivals, area)
+        bounds = irradiance_bounds(mean, solution.arrivals, area, 0.5 + level / 2, together, usual)
+        low, high = widened(low, high, few, *bounds, mean if solution.signed else None)
     if quantity == "irradiance":
         return low, high
     emission, rho = solution.patches.emission, solution.patches.reflectance
     return tuple(np.where(rho == 0, emission, emission + rho * end) for end in (low, high))
 
 
-def of_surfaces(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """See `Solution.surface_interval`."""
-    return _of_means(solution, level, quantity, lambda power: power)
+def power_of_none(solution) -> np.ndarray:
+    """(n_patches, n_bands) W or lm that a line would have brought to patches that received nothing: what their standard error
+    takes it for, or (files of older versions have a zero there) what the usual one or one from the lights does. Of others no
+    matter what."""
+    patches, mean = solution.patches, solution.irradiance
+    one = solution.irradiance_standard_error * patches.area[:, None]
+    line = power_of_a_line(patches.emission, patches.area, solution.quanta * solution.replicates)
+    return np.where(one > 0, one, usual_power(mean, solution.arrivals, patches.area, line))
 
 
-def of_scene(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """See `Solution.scene_interval`."""
-    low, high = _of_means(solution, level, quantity, lambda power: power.sum(axis=-2, keepdims=True))
-    return low[0], high[0]
+def widened(low, high, few, least, most, signed=None) -> tuple[np.ndarray, np.ndarray]:
+    """Intervals that go to ``least`` and ``most`` where few lines landed; NaN stays. Where lines take power away as well (the
+    mean is ``signed``) their number bounds how far the mean is off, to both sides."""
+    if signed is not None:
+        least, most = np.maximum(signed - most, 0), signed + most
+    return np.where(few, np.minimum(low, least), low), np.where(few, np.maximum(high, most), high)
 
 
-def _of_means(solution, level: float, quantity: str, together) -> tuple[np.ndarray, np.ndarray]:
-    """(k, n_bands) each: intervals of area means over k sets of surfaces, NaN where unknown.
-
-    Each replicate has its own mean over a set, so what patches have in common does not narrow the interval.
-
-    Args:
-        together: sums (..., n_surfaces, n_bands) over the surfaces of each set, to (..., k, n_bands).
+def check(quantity: str) -> None:
+    """Raises:
+    MethodError: no such quantity.
     """
-    _known(quantity)
-    patches, n = solution.patches, len(solution.patches.scene.names)
-    area = together(np.bincount(patches.surface, patches.area, n)[:, None])
-    area = np.where(area > 0, area, np.nan)  # no patches, no mean
-    if solution.surface_power is None:
-        unknown = np.full((len(area), patches.emission.shape[1]), np.nan)
-        return unknown, unknown
-    received, reflected = together(solution.surface_power) / area  # (replicates, k, n_bands)
-    mean, error = mean_and_error(received if quantity == "irradiance" else reflected)
-    half = student(level, solution.replicates) * error
-    low, high = np.maximum(mean - half, 0), mean + half
-    if quantity == "radiosity":
-        emitted = [np.bincount(patches.surface, patches.area * band, n) for band in patches.emission.T]
-        emitted = together(np.stack(emitted, axis=1)) / area
-        low, high = low + emitted, high + emitted
-    return low, high
-
-
-def _known(quantity: str) -> None:
     if quantity not in QUANTITIES:
         raise MethodError(f"quantity '{quantity}' has no interval; known are {', '.join(QUANTITIES)}")

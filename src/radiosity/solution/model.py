@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from ..patches.model import Patches
-from . import intervals
+from . import intervals, means
 from .errors import relative_error
+
+NOT_REACHED = "not reached"  # the status of runs that ended above the error they were to reach, or could not tell it
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +31,8 @@ class Solution:
         escaped: (n_bands,) float64, power that left the scene, W or lm.
         books: one dict a band: emitted, rounding, absorbed, escaped, lost (W or lm); and closes (bool): their sums agree
             to the last unit as whole numbers, before they became powers.
-        status: "complete", "interrupted" or a reason for the early end.
+        status: "complete", "interrupted", "not reached" (the error asked for, within its limit or what counters hold) or a reason
+            for the early end.
         provenance: scene hash, method, seed, versions.
         state: integers of the run, to go on from.
         surface_power: (2, replicates, n_surfaces, n_bands) float64, W or lm: what the patches of each surface receive, and of it
@@ -80,6 +83,11 @@ class Solution:
         return (self.arrivals < intervals.FEW) & (not self.by_baseline)
 
     @property
+    def signed(self) -> bool:
+        """Lines take power away as well as bring it: there was a control variate."""
+        return bool(self.provenance.get("choices", {}).get("control_variate"))
+
+    @property
     def by_baseline(self) -> bool:
         """It was solved by a method that forms the matrix."""
         return "scheme" in self.provenance.get("choices", {})
@@ -99,11 +107,11 @@ class Solution:
 
     def surface_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
         """As `interval`, of the area mean over each surface, (n_surfaces, n_bands) each."""
-        return intervals.of_surfaces(self, level, quantity)
+        return means.of_surfaces(self, level, quantity)
 
     def scene_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
         """As `interval`, of the area mean over the whole scene, (n_bands,) each."""
-        return intervals.of_scene(self, level, quantity)
+        return means.of_scene(self, level, quantity)
 
     @cached_property
     def error(self) -> float:
@@ -112,6 +120,8 @@ class Solution:
         return self._relative(slice(None))
 
     def _relative(self, rows: np.ndarray | slice) -> float:
+        if self.by_baseline and not self.irradiance_standard_error[rows].any():
+            return float("nan")
         values = (self.patches.reflectance, self.irradiance, self.irradiance_standard_error, self.patches.area)
         return relative_error(*(value[rows] for value in values))
 

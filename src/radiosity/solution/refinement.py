@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from .model import Solution
+from .percent import UNKNOWN, percent
 
 MOST_ROWS = 24
 ORDER = 1.0  # of the change of patch means in the patch size, see docs/errors.md
@@ -78,7 +79,8 @@ class RefineCheck:
         patches, area = self.coarse.patches, self.coarse.patches.area[here]
         size = np.sqrt(area @ (self.coarse.radiosity - patches.emission)[here] ** 2)
         usual = np.sqrt(area @ self.coarse.radiosity[here] ** 2)
-        size = np.where(size > 0, size, np.where(usual > 0, usual, np.nan))
+        black = ~(patches.reflectance[here] > 0).any(axis=0)  # others reflect something, whose size no line tells
+        size = np.where(size > 0, size, np.where((usual > 0) & black, usual, np.nan))
 
         def relative(square: np.ndarray) -> float:
             return _largest(np.sqrt(np.maximum(area @ square[here], 0)) / size)
@@ -100,11 +102,13 @@ class RefineCheck:
         lines = [f"refine check: {len(self.fine.patches)} patches against {len(self.coarse.patches)}", head]
         for row in shown:
             lines.append(
-                f"{row['surface'][:32]:<{max(width, 29)}} {row['sampling']:>9.2%} {row['discretisation']:>12.2%} "
-                f"{row['within']:>8.2%} {row['change']:>+11.2%}"
+                f"{row['surface'][:32]:<{max(width, 29)}} {percent(row['sampling']):>9} {percent(row['discretisation']):>12} "
+                f"{percent(row['within']):>8} {percent(row['change'], '+.2%'):>11}"
             )
         if len(rows) > MOST_ROWS:
             lines.append(f"... and {len(rows) - MOST_ROWS} more surfaces (export a .csv for all)")
+        if any(f" {UNKNOWN} " in f"{line} " for line in lines[2:]):
+            lines.append(f"{UNKNOWN}: unknown, since nothing is reflected there, or no line landed there")
         return "\n".join(lines)
 
     def export(self, path) -> None:

@@ -2,10 +2,9 @@
 
 import math
 
-import numpy as np
-
 from ..errors import printable
 from .intervals import FEW
+from .percent import UNKNOWN, number, percent
 
 MOST_ROWS = 24
 
@@ -13,16 +12,16 @@ MOST_ROWS = 24
 def report(solution) -> str:
     """Lines, time, error, books and the surfaces with the largest radiant power."""
     scene, unit = solution.patches.scene, solution.patches.scene.power_unit
-    rate = solution.rays / solution.seconds if solution.seconds > 0 else math.nan
+    rate = solution.rays / solution.seconds / 1e6 if solution.seconds > 0 else math.nan
     error = _error(solution)
     unvisited = int((solution.arrivals == 0).sum())
     lines = [
         f"scene     {printable(scene.source)}: {scene.n_faces} faces, {len(scene.names)} surfaces, "
         f"{len(solution.patches)} patches",
         f"method    {solution.provenance['method']}, seed {solution.provenance['seed']}",
-        f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({rate / 1e6:.1f} million a second), {_counted(solution)}",
+        f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({number(rate, '.1f')} million a second), {_counted(solution)}",
         f"error     {error}",
-        f"status    {solution.status}",
+        f"status    {_status(solution)}",
     ]
     few = int(solution.few.sum())
     if few:
@@ -32,8 +31,9 @@ def report(solution) -> str:
         label = f"power [{name}]" if len(scene.bands) > 1 else "power"
         closed = {True: "closes exactly", False: "DOES NOT CLOSE", None: "rounding is what does not balance"}[book["closes"]]
         lines.append(
-            f"{label}: emitted {book['emitted']:.6g} {unit} + rounding {book['rounding']:.3g} = absorbed {book['absorbed']:.6g} "
-            f"+ escaped {book['escaped']:.4g} + lost on backs {book['lost']:.4g} ({closed})"
+            f"{label}: emitted {number(book['emitted'], '.6g')} {unit} + rounding {number(book['rounding'], '.3g')} = "
+            f"absorbed {number(book['absorbed'], '.6g')} + escaped {number(book['escaped'])} + lost on backs "
+            f"{number(book['lost'])} ({closed})"
         )
     return "\n".join([*lines, "", *_surfaces(solution)])
 
@@ -52,10 +52,20 @@ def _error(solution) -> str:
         return "unknown: it is that of the form factors, which replicates do not show"
     if solution.replicates < 2:
         return "unknown (one replicate; from 2 on there are errors)"
-    if np.isnan(solution.error):
-        return "none: no line landed anywhere"
+    if not solution.irradiance.any():
+        return "unknown: no line landed anywhere"
+    if not math.isfinite(solution.error):
+        return "unknown: no line landed where light would be reflected" + (" in some band" if len(solution.bands) > 1 else "")
     reflected = (solution.patches.reflectance * solution.irradiance).any()
-    return f"{solution.error:.2%} of the {'reflected light' if reflected else 'irradiance (nothing is reflected)'}"
+    return f"{percent(solution.error)} of the {'reflected light' if reflected else 'irradiance (nothing is reflected)'}"
+
+
+def _status(solution) -> str:
+    from .model import NOT_REACHED
+
+    if solution.status != NOT_REACHED:
+        return solution.status
+    return f"{NOT_REACHED}: the error asked for was {100 * solution.provenance['budget']['error']:.3g}%"
 
 
 def _surfaces(solution) -> list[str]:
@@ -71,12 +81,24 @@ def _surfaces(solution) -> list[str]:
     result = [about, title]
     for row in rows[:MOST_ROWS]:
         values = [row[f"radiosity{t}"] for t in tails] + [row[f"irradiance{t}"] for t in tails]
-        error, sure = ("?" if np.isnan(row[key]) else f"{row[key]:.2%}" for key in ("error", "interval"))
+        error, sure = (percent(row[key]) for key in ("error", "interval"))
         result.append(
             f"{printable(row['surface'])[:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
-            + " ".join(f"{v:>9.4g}" for v in values)
+            + " ".join(f"{number(v):>9}" for v in values)
             + f" {sure:>7} {error:>7}"
         )
     if len(rows) > MOST_ROWS:
         result.append(f"... and {len(rows) - MOST_ROWS} more surfaces (export a .csv for all)")
+    if any(line.rstrip().endswith(UNKNOWN) or f" {UNKNOWN} " in line for line in result[2:]):
+        result.append(f"{UNKNOWN}: unknown, {_why(solution)}")
     return result
+
+
+def _why(solution) -> str:
+    if solution.quanta == 0:
+        return "since no stage is complete yet"
+    if solution.by_baseline:
+        return "since replicates do not show the error of form factors"
+    if solution.replicates < 2:
+        return "since errors need 2 replicates or more"
+    return "since no line landed there" if solution.surface_power is not None else "since none landed there, or the file is old"

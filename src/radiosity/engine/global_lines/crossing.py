@@ -1,6 +1,6 @@
 """In a kernel: the next face on a line, what it shows to either side, and where the line goes on behind it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -8,9 +8,10 @@ import drjit as dr
 import numpy as np
 
 from ...scene.model import Back
+from ..departure import before
 from ..device import upload
 from ..geometry import Geometry
-from ..lines import _hit, patch_of
+from ..lines import both_sides, patch_of
 from .hull import nothing_beyond
 
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `firing`: no patch has these numbers
@@ -54,13 +55,11 @@ class Crossings:
 
     @cached_property
     def records(self):
-        """(n_faces * 16,) Float: origin, edges, the step from the plane to the point where lines go on in front of it, and
-        whether there is nothing in front and behind."""
-        origin, first, second, offset = self.geometry.frames
-        cross = np.cross(first, second)
-        step = cross / np.linalg.norm(cross, axis=1, keepdims=True) * offset[:, None]
-        free = nothing_beyond(self.geometry)
-        record = np.concatenate([origin, first, second, step, free, np.zeros_like(free)], axis=1)
+        """(n_faces * 16,) Float: origin, edges, normal, whether there is nothing in front and behind, and the plane's offset."""
+        geometry = self.geometry
+        origin, first, second = geometry.frames
+        free, least = nothing_beyond(geometry), geometry.plane_offsets[:, None]
+        record = np.concatenate([origin, first, second, geometry.normals, free, least, np.zeros_like(least)], axis=1)
         return upload(self.geometry.device.types.Float, record.astype(np.float32))
 
     def next(self, origin, direction, active, *, coherent: bool = False) -> Crossing:
@@ -71,15 +70,15 @@ class Crossings:
         """
         geometry = self.geometry
         types = geometry.device.types
-        hit, _ = _hit(geometry, origin, direction, coherent, active)
+        hit, turned = both_sides(geometry, origin, direction, coherent, active)
         near = patch_of(geometry, hit, LOST, ESCAPED)
-        turned = replace(hit, front=~hit.front)
         far = patch_of(geometry, turned, LOST, ESCAPED)
         face = dr.gather(types.UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
         block = dr.gather(types.Array44f, self.records, face, hit.valid)
         words = [block[i // 4][i % 4] for i in range(16)]
-        corner, first, second, step = (types.Array3f(*words[at : at + 3]) for at in range(0, 12, 3))
-        onward = corner + first * dr.clip(hit.u, 0, 1) + second * dr.clip(hit.v, 0, 1) + dr.select(hit.front, -step, step)
+        corner, first, second, normal = (types.Array3f(*words[at : at + 3]) for at in range(0, 12, 3))
+        place = corner + first * dr.clip(hit.u, 0, 1) + second * dr.clip(hit.v, 0, 1)
+        onward = before(place, dr.select(hit.front, -normal, normal), words[14])
         free = hit.valid & (dr.select(hit.front, words[13], words[12]) > 0)
         return Crossing(
             hit.valid, near, far, hit.back(Back.PASSES), turned.back(Back.PASSES), dr.select(hit.valid, onward, origin), free

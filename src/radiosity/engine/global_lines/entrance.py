@@ -11,6 +11,7 @@ import drjit as dr
 import numpy as np
 
 from ...scene.model import Back
+from ..departure import before
 from ..device import upload
 from ..geometry import COLUMN_BITS, QUAD
 from ..lines import Landing, patch_of
@@ -38,7 +39,8 @@ class Entrance:
     def faces(self) -> np.ndarray:
         """(6, CELLS, CELLS) uint32: for each axis the low and the high side, the face that holds a cell's centre."""
         geometry = self.crossings.geometry
-        origin, first, second, offset = geometry.frames
+        origin, first, second = geometry.frames
+        offset = geometry.offset(np.arange(len(origin)), origin)
         quad, back = geometry.scene.is_quad, geometry.scene.back
         table = np.full((6, CELLS, CELLS), NONE, np.uint32)
         inward = np.cross(first, second)
@@ -48,6 +50,8 @@ class Entrance:
                 plane = (self.high if high else self.low)[axis]
                 flat = (np.abs(origin[:, axis] - plane) <= offset) & (first[:, axis] == 0) & (second[:, axis] == 0)
                 flat &= (back != Back.RADIATES) & ((inward[:, axis] < 0) == bool(high))
+                if geometry.ties is not None:
+                    flat &= ~geometry.ties.flagged  # what lines meet first there is found by the line
                 for face in np.flatnonzero(flat):
                     _paint(table[2 * axis + high], face, *(x[face][[b, c]] for x in (origin, first, second)), quad[face],
                            self.low[[b, c]], self.high[[b, c]])  # fmt: skip
@@ -88,7 +92,7 @@ class Entrance:
         there = face != NONE
         block = dr.gather(types.Array44f, self.crossings.records, face, there)
         words = [block[i // 4][i % 4] for i in range(16)]
-        corner, first, second, step = (types.Array3f(*words[at : at + 3]) for at in range(0, 12, 3))
+        corner, first, second, normal = (types.Array3f(*words[at : at + 3]) for at in range(0, 12, 3))
         # coordinates of the point on the face, by the edges' dual basis
         aa, ab, bb = dr.dot(first, first), dr.dot(first, second), dr.dot(second, second)
         along = point - corner
@@ -99,7 +103,7 @@ class Entrance:
         inside = (u > INSIDE) & (v > INSIDE) & (dr.select((packed & QUAD) != 0, dr.maximum(u, v), u + v) < 1 - INSIDE)
         front = dr.full(types.Bool, True, dr.width(u))
         hit = Landing(there & inside, face, u, v, front, Float(0), number, packed)
-        return hit.valid, patch_of(geometry, hit, LOST, ESCAPED), corner + first * u + second * v + step
+        return hit.valid, patch_of(geometry, hit, LOST, ESCAPED), before(corner + first * u + second * v, normal, words[14])
 
 
 def _paint(table, face, origin, first, second, quad, low, high) -> None:

@@ -2,25 +2,24 @@
 
 import numpy as np
 
-from ..geometry import EPSILON, Geometry
+from ...scene.precision import EPSILON
+from ..geometry import OFFSET, Geometry
 
 DIRECTIONS = 96  # the farthest vertices of so many directions sort out nearly all faces inside
 MOST = 1 << 28  # products of faces and vertices: where more would be asked for, no side is known to be free
 FEW = 1 << 22  # of them at a time
-BESIDE = 4 * EPSILON  # of the largest coordinate: vertices this little in front of a plane lie in it
+BESIDE = 4 * EPSILON  # of a vertex's largest coordinate: vertices this little in front of a plane lie in it
 
 
 def nothing_beyond(geometry: Geometry) -> np.ndarray:
     """(n_faces, 2) bool: no vertex of the scene lies in front of the face; or behind it."""
     vertices = geometry.tree.vertices.astype(np.float64)
     vertices = vertices[np.unique(geometry.scene.faces[geometry.scene.faces >= 0])]
-    origin, first, second, _ = geometry.frames
-    normal = np.cross(first, second)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    origin, normal = geometry.frames[0], geometry.normals
     free = np.zeros((len(origin), 2), bool)
     extreme = vertices[np.unique(np.argmax(_sphere(DIRECTIONS) @ vertices.T, axis=1))]
     for side, outward in enumerate((normal, -normal)):
-        height = np.einsum("ij,ij->i", outward, origin) + BESIDE * np.abs(vertices).max()
+        height = np.einsum("ij,ij->i", outward, origin) + geometry.plane_offsets * (BESIDE / OFFSET)
         rows = np.flatnonzero(_highest(outward, extreme) <= height)
         if len(rows) * len(vertices) <= MOST:
             free[rows, side] = _highest(outward[rows], vertices) <= height[rows]
@@ -28,12 +27,12 @@ def nothing_beyond(geometry: Geometry) -> np.ndarray:
 
 
 def _highest(normals: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """The largest height of the points above a plane through the origin, for each normal."""
-    result = np.full(len(normals), -np.inf)
+    """The largest height of the points above a plane through the origin, for each normal, less what they are rounded by."""
+    result, rounded = np.full(len(normals), -np.inf), BESIDE * np.abs(points).max(axis=1)
     at_once = max(1, FEW // max(len(points), 1))
     for start in range(0, len(normals), at_once):
         rows = slice(start, start + at_once)
-        result[rows] = (normals[rows] @ points.T).max(axis=1)
+        result[rows] = (normals[rows] @ points.T - rounded).max(axis=1)
     return result
 
 

@@ -33,6 +33,11 @@ class Landed(AbstractTally):
             return state["landed"][group], watts
         return state["landed"][group] * watts + first_shot.landed(problem, state, group)[0], 1.0
 
+    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+        """What the brightest light sends along a span."""
+        emitted = problem.groups.emission[:, group] * problem.patches.area / state["ends_per_line"]
+        return float(emitted.max()) / max(int(state["lines_done"]), 1)
+
     def books(self, problem: Problem, state: State, group: int) -> dict:
         counts, lines = state["landed"][group], int(state["lines_done"])
         replicates = len(counts)

@@ -4,7 +4,8 @@ import numpy as np
 
 from ...solution.books import by_difference
 from ..problem import Problem
-from ..process import AbstractTally, State
+from ..process import AbstractMeanTally, State
+from ..unmet import bias, means, sides
 from . import first_shot
 
 UNIT = 2.0**-34  # of a group's largest emission: what radiosity is rounded to, so that its sums are whole numbers
@@ -15,7 +16,7 @@ def units(problem: Problem) -> np.ndarray:
     return problem.groups.emission.max(axis=0) * UNIT
 
 
-class Pooled(AbstractTally):
+class Pooled(AbstractMeanTally):
     """Means over span ends, after a first shot where there was one."""
 
     def lines(self, problem: Problem, state: State) -> int:
@@ -25,11 +26,26 @@ class Pooled(AbstractTally):
         return _pooled(problem, state["ends"], state).sum(axis=0) + first_shot.arrivals(state)
 
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        received, ends = (_pooled(problem, values, state) for values in (state["received"][group], state["ends"]))
-        power = received / np.maximum(ends, 1) * (problem.patches.area * units(problem)[group])
+        power = self._pooled(problem, state, group)
         if first_shot.PREFIX + "fired" in state:
             power = power + first_shot.landed(problem, state, group)[0]
         return power, 1.0
+
+    def _pooled(self, problem: Problem, state: State, group: int) -> np.ndarray:
+        """(replicates, n_patches) W or lm, without what a first shot brought."""
+        received, ends = _pooled(problem, state["received"][group], state), self.measured(problem, state)
+        return means(received, ends, sides(problem.patches)) * (problem.patches.area * units(problem)[group])
+
+    def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
+        return bias(self._pooled(problem, state, group), self.measured(problem, state))
+
+    def measured(self, problem: Problem, state: State) -> np.ndarray:
+        return _pooled(problem, state["ends"], state)
+
+    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+        """Of a patch's ends one sees the brightest light."""
+        ends = _pooled(problem, state["ends"], state)
+        return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(ends.mean(axis=0), 1)
 
     def books(self, problem: Problem, state: State, group: int) -> dict:
         """Escaped or lost is, of what a patch sends, the share of its ends that see nothing, or an absorbing back."""

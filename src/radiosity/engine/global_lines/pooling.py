@@ -9,6 +9,7 @@ import numpy as np
 
 from ...errors import MethodError
 from ..process import AbstractProcess, State, Swept
+from ..unmet import means, sides
 from . import first_shot
 from .ends import Ends, of_lines
 from .first_shot import FirstShot
@@ -57,7 +58,7 @@ class Pooling(AbstractProcess):
         self._quanta, self.done = 0, 0
         self.rho, self.emission = (np.tile(x.T, self.halves) for x in (groups.reflectance, groups.emission))
         self.direct = np.zeros((self.n_groups, total)) if self.shot is not None else None
-        self.units = units(self.problem)
+        self.units, self.sides = units(self.problem), sides(self.problem.patches)
         self.carried, self.recent = (np.zeros((self.n_groups, total)) for _ in range(2))
         self.fresh, self.received = (np.zeros((self.n_groups, total), np.int64) for _ in range(2))
         self.recent_ends = np.zeros(total)
@@ -107,20 +108,25 @@ class Pooling(AbstractProcess):
         its memory to forget that."""
         ends = Ends.of(self._drawn(0, min(self.memory, max(1, WARM // self.halves // self.iteration)) * self.iteration), self.n)
         self.recent_ends = ends.number(self.recent_ends.size).astype(float)
-        known, area = np.maximum(self.recent_ends, 1), np.tile(self.geometry.patches.area, self.halves)
+        area = np.tile(self.geometry.patches.area, self.halves)
         # of each group: the total power that a radiosity in proportion to reflectance would still have to send and absorb
-        balance = ((self.rho - self.rho * (ends.received(self.rho) / known)) @ area)[:, None]
+        balance = ((self.rho - self.rho * self._mean(ends.received(self.rho))) @ area)[:, None]
         settled = SETTLED * (1 - np.average(self.rho, axis=1, weights=area))
         self.carried = self.source.copy()
         for _ in range(SWEEPS):
             self.recent = ends.received(self.carried)
-            change = self.source + self.rho * (self.recent / known) - self.carried
+            change = self.source + self.rho * self._mean(self.recent) - self.carried
             # and as much of it as makes the power balance, at once: what is left to the sweeps is how it is spread
             change += self.rho * ((change @ area)[:, None] / np.maximum(balance, 1e-300))
             self.carried = self.carried + change
             if (np.abs(change) @ area <= settled * (self.carried @ area)).all():
                 break
         self.carried = np.round(self.carried)
+
+    def _mean(self, received: np.ndarray) -> np.ndarray:
+        """(n_groups, halves * n_patches): of sums over the recent ends; patches without any take what their face has."""
+        shape = (self.n_groups, self.halves, self.n)
+        return means(received.reshape(shape), self.recent_ends.reshape(shape[1:]), self.sides).reshape(received.shape)
 
     def _drawn(self, first: int, count: int) -> list[Pairs]:
         """Spans of each half of each replicate."""
@@ -149,7 +155,7 @@ class Pooling(AbstractProcess):
                 self.recent += self.fresh
                 self.recent_ends += self.fresh_ends
                 self.fresh[:], self.fresh_ends[:] = 0, 0
-                self.carried = np.round(self.source + self.rho * (self.recent / np.maximum(self.recent_ends, 1e-9)))
+                self.carried = np.round(self.source + self.rho * self._mean(self.recent))
                 kept = 1 - 1 / max(self.memory, (self.done + at) // step // SHARE)
                 self.recent *= kept
                 self.recent_ends *= kept

@@ -15,10 +15,12 @@ from ...method.lines import LINES
 from ...method.lines.global_lines import by_disc, by_two_points, of_bundle
 from ...method.model import Method
 from ...method.numbers import ready
+from ...scene.precision import EPSILON
 from .. import quanta as contract
 from ..device import upload
-from ..geometry import EPSILON, Geometry
+from ..geometry import Geometry
 from ..tree import REACH
+from ..turn import turn
 from .chords import MARGIN, crossing_box, walk
 from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 from .entrance import Entrance
@@ -70,6 +72,7 @@ class Spans:
         if self.method.lines not in LINES or self.method.lines == "local":
             raise MethodError(f"lines '{self.method.lines}' have no spans; take {', '.join(k for k in LINES if k != 'local')}")
 
+    @turn()
     def draw(self, replicate: int, first: int, count: int) -> Pairs:
         """Spans of the lines ``first`` to below ``first + count`` (from 0) of a replicate.
 
@@ -108,8 +111,14 @@ class Spans:
 
     @cached_property
     def radius(self) -> float:
-        """Of the ball about the scene's centre, in the caster's units."""
-        return float(np.float32(np.linalg.norm(self._vertices, axis=1).max() * (1 + 8 * EPSILON)))
+        """Of the ball about the middle of the scene's box, in the caster's units."""
+        distance = np.linalg.norm(self._vertices - self.middle, axis=1).max()
+        return float(np.float32(distance * (1 + 8 * EPSILON)))
+
+    @cached_property
+    def middle(self) -> np.ndarray:
+        """(3,) of that ball."""
+        return self._bounds.mean(axis=0)
 
     @cached_property
     def crossings(self) -> Crossings:
@@ -168,12 +177,14 @@ class Spans:
         types = self.geometry.device.types
         radius = dr.opaque(types.Float, self.radius)
         if self.method.lines == "global":
-            return by_two_points(points(begin + lane), radius, types.Array3f)
-        if self.method.lines == "global-disc":
-            return by_disc(points(begin + lane), radius, types.Array3f)
-        number = begin + lane - 1
-        bits = self.bundle.bit_length() - 1
-        return of_bundle(points((number >> bits) + 1), number & (self.bundle - 1), bits // 2, radius, types.Array3f)
+            point, direction = by_two_points(points(begin + lane), radius, types.Array3f)
+        elif self.method.lines == "global-disc":
+            point, direction = by_disc(points(begin + lane), radius, types.Array3f)
+        else:
+            number, bits = begin + lane - 1, self.bundle.bit_length() - 1
+            numbers, cell = points((number >> bits) + 1), number & (self.bundle - 1)
+            point, direction = of_bundle(numbers, cell, bits // 2, radius, types.Array3f)
+        return point + types.Array3f(*(dr.opaque(types.Float, float(x)) for x in self.middle)), direction
 
     @cached_property
     def _vertices(self) -> np.ndarray:

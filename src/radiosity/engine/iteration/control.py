@@ -35,12 +35,11 @@ class Control:
         """Fire ``lines`` of each replicate, evenly over all area and at least one a patch, to see which are missed."""
         exchange, types = self.exchange, self.exchange.types
         counts = dr.maximum(exchange.counts(types.UInt64(exchange.area * dr.opaque(types.Float64, float(lines) * LINE))), 1)
-        exchange.step += 1
         slots, groups, replicates = exchange.shooter.slots, exchange.groups, exchange.replicates
         carried = np.zeros((slots, groups), np.float32)
         carried[-2 * replicates : -replicates], carried[-replicates:] = 1, LINE
         ends = Ends(dr.opaque(types.Float, 0.5, slots), upload(types.Float, carried))
-        fired = exchange.shooter.shoot(counts, ends=ends)
+        fired = exchange.shoot(counts, ends=ends)
         seen = np.array(exchange.patches(exchange.shooter.received)).reshape(replicates, exchange.n, groups)[..., 0]
         self.missed += [seen % LINE, seen >> BITS]
         self.probed += np.array(counts, np.int64).reshape(replicates, exchange.n)

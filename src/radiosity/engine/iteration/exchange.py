@@ -18,6 +18,7 @@ from .shooter import Ends, Shooter
 BITS = 30
 LINE = 2**BITS  # fixed point units of one expected line
 ROUNDING = 2  # a stream of its own, see `quanta.stream`
+TURNS = 2  # sequences that steps take in turn where both ends of a line score (docs/iterations.md)
 
 
 class Exchange:
@@ -32,14 +33,18 @@ class Exchange:
         rho: (total * groups,) Float64, reflectance as the integers of the firing engine have it.
         emitted: (total * groups,) Float64, E_i A_i over Phi.
         step: how many steps were made: each has rounding offsets of its own.
+        turns: sequences of points that steps take in turn; a warm-up has others, so many too.
+        first: of the sequences that are taken now.
     """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int):
         groups = problem.groups
         self.seed, self.replicates, self.groups = seed, replicates, groups.n_groups
-        self.shooter = Shooter(geometry, problem.source, method, seed, replicates, self.groups)
-        self.types, self.n, self.total = self.shooter.types, len(problem.patches), self.shooter.total
         self.two_ended = method.estimator == "bidirectional"
+        self.turns, self.first = TURNS if self.two_ended else 1, 0
+        sequences = self.turns * (2 if self.two_ended and method.warm_up else 1)
+        self.shooter = Shooter(geometry, problem.source, method, seed, replicates, self.groups, sequences)
+        self.types, self.n, self.total = self.shooter.types, len(problem.patches), self.shooter.total
         self.areas = problem.patches.area / problem.patches.area.sum()
         self.area = self._tiled(self.areas[:, None])
         self.rho = self._tiled(Source.fixed(groups.reflectance) * 2.0**-32)
@@ -89,6 +94,24 @@ class Exchange:
         dr.eval(counts)
         return counts
 
+    @property
+    def turn(self) -> int:
+        """Which of the sequences that are taken now the next step takes."""
+        return self.step % self.turns
+
+    def begin_warm_up(self) -> None:
+        """Take sequences that no later step takes, where steps take several."""
+        self.first = self.turns if self.turns > 1 else 0
+
+    def end_warm_up(self) -> None:
+        self.first = 0
+
+    def shoot(self, counts, weights=None, ends: Ends | None = None) -> int:
+        """The step's lines, see `Shooter.shoot`."""
+        self.shooter.take(self.first + self.turn)
+        self.step += 1
+        return self.shooter.shoot(counts, weights, ends)
+
     def _stream(self, replicate: int) -> np.random.SeedSequence:
         return np.random.SeedSequence([self.seed, replicate, ROUNDING], spawn_key=(self.step,))
 
@@ -105,10 +128,9 @@ class Exchange:
         """
         types = self.types
         counts = self.counts(expected)
-        self.step += 1
         mean = types.Float64(expected) * (1.0 / LINE)
         if self.two_ended:
-            return self.shooter.shoot(counts, ends=self._ends(power, mean)), None
+            return self.shoot(counts, ends=self._ends(power, mean)), None
         # a patch that surely fires shares its power out among its lines; one that may not fire sends it with its probability
         lines = dr.select(expected >= LINE, types.Float64(counts), mean)
         weights = types.Int(dr.round(power / self.by_patch(dr.select(lines > 0, lines, 1.0))))
@@ -116,7 +138,7 @@ class Exchange:
         left = types.Int64(weights) * types.Int64(self.by_patch(counts))
         dr.eval(left)
         fired = np.array(left).reshape(self.replicates, self.n, self.groups).sum(axis=1)
-        return self.shooter.shoot(counts, weights), fired
+        return self.shoot(counts, weights), fired
 
     def _ends(self, power, mean) -> Ends:
         types = self.types

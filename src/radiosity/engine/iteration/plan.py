@@ -38,12 +38,20 @@ class Plan:
 
     def lines(self) -> int:
         """Of the next iteration: one a patch at least, then a share of all so far, so that between L and 2 L lines there are
-        enough iterations for an error of the source to die out, and few enough to be cheap."""
+        enough iterations for an error of the source to die out, and few enough to be cheap. A stage that the start used up gets
+        one iteration more, of the lines that it was to leave."""
         if self.starting:
             return self.start_lines
         wanted = max(self.n, FEWEST, self.summed // min(max(8, round(4 / (1 - self.mean))), 128))
         left = self.quanta - self.done
+        if left <= 0:  # the start took the whole first stage
+            return max(self.quanta - self.quanta // START, 1)
         return left if left < 1.5 * wanted else wanted
+
+    @property
+    def over(self) -> bool:
+        """The stage is complete: its lines are traced, and an iteration is in the mean."""
+        return self.done >= self.quanta and self.summed > 0
 
     def count_iteration(self, lines: int) -> bool:
         """An iteration is done; whether it is part of the result."""

@@ -52,7 +52,8 @@ class Iteration(AbstractProcess):
 
     def restore(self, state: State) -> None:
         shape = (self.replicates, self.exchange.n)
-        if "progress" not in state or "fired" not in state or state["fired"].shape != shape:
+        counters = {"progress", "fired"} | ({"fired_apart"} if self.exchange.turns > 1 else set())
+        if counters - set(state) or state["fired"].shape != shape:
             raise MethodError("the solution to go on from lacks the counters of its iterations, or has other sizes; start anew")
         self.exchange.shooter.restore(state)
         self.exchange.step = int(state["step"])
@@ -63,7 +64,8 @@ class Iteration(AbstractProcess):
     def unfinished(self, state: State) -> bool:
         if "unsent" in state:
             return bool(state["unsent"].any())
-        return int(state["progress"][1]) < int(state["progress"][0])
+        quanta, done, summed = (int(x) for x in state["progress"][:3])
+        return done < quanta or summed == 0
 
     @property
     def tally(self) -> IterationTally:

@@ -5,6 +5,10 @@ control variate by N_k / T_k^2, T_k being the power sent, since that is what the
 its weight in the result too, but never with less than 1/2: a source that remembers all would keep the error of its first
 iterations, which falls as slowly as L^-(1-lambda) with all lines L (docs/iterations.md).
 
+Where both ends score, iterations take two sequences in turn, and there are two sources: iterations of one sequence send what
+those of the other received. What is sent then does not depend on the points that it is sent along. Each source hears of every
+other iteration only, so it forgets more of what it had.
+
 Iterations begin at the light alone, whose image is too dark by lambda^k after k of them. With ``warm_up`` they begin at an
 incremental solution instead, which has no bias, and neither have they (Bekaert 1999). Without it, the first iterations, until
 lambda^k is 1/10 000 or less, are a start-up that the result leaves out (RenderPark has such an option).
@@ -21,7 +25,7 @@ from .exchange import LINE, Exchange
 from .incremental import Incremental
 from .plan import START, Plan
 
-FORGET = 0.5  # least weight of the last iteration in the source
+FORGET = {1: 1 / 2, 2: 7 / 8}  # least weight of an iteration in the source that takes it, by turns
 UNIT = 2.0**27  # of received power: the mean of what a line carries
 TOTAL = 2.0**58  # of sums of power: Phi / (1 - rho_max)
 
@@ -31,7 +35,7 @@ class Regular:
 
     Attributes:
         received: (slots * groups,) Float64, the mean of R_k over Phi.
-        source: (total * groups,) Float64, A over Phi.
+        sources: (total * groups,) Float64 each, A over Phi: for each turn, of what steps of the other turn received.
         weights: (replicates,) float64, the sum of the weights of all R_k in the mean.
         constants: (replicates, groups) float64, the mean of beta_k.
         plan: how many lines are fired when.
@@ -44,14 +48,14 @@ class Regular:
         self.total = TOTAL * (1 - float(rho.max()))
         self.warm = Incremental(exchange, problem, None) if warm_up else None
         self.received = upload(types.Float64, np.zeros(exchange.shooter.slots * exchange.groups))
-        self.source = upload(types.Float64, np.zeros(exchange.total * exchange.groups))
+        self.sources = [upload(types.Float64, np.zeros(exchange.total * exchange.groups)) for _ in range(exchange.turns)]
         self.weights, self.constants = np.zeros(exchange.replicates), np.zeros((exchange.replicates, exchange.groups))
 
     def advance(self, quanta: int, swept: Swept) -> None:
         """Iterate until a replicate has traced N lines."""
         if quanta > self.plan.quanta:
             self._begin(quanta)
-        while self.plan.done < quanta:
+        while not self.plan.over:
             swept(self._next())
 
     @property
@@ -62,6 +66,7 @@ class Regular:
         plan = self.plan
         if plan.quanta == 0 and self.warm is not None:
             plan.starting = 1
+            self.exchange.begin_warm_up()
             self.warm.begin(max(round(quanta / START * (1 - plan.mean)), 1))
         plan.begin(quanta, probes=self.control is not None)
 
@@ -83,9 +88,11 @@ class Regular:
         types, plan = self.exchange.types, self.plan
         lines = round(warm.quanta / (1 - plan.mean))  # not the lines traced: these depend on the solution
         self.received = types.Float64(warm.received) * warm.scale
-        self.source = self.exchange.patches(self.received)
-        dr.eval(self.source, self.received)
-        sent = self._sent(self._largest(self.exchange.emitted + self.exchange.rho * self.source))
+        self.exchange.end_warm_up()
+        source = self.exchange.patches(self.received)
+        dr.eval(source, self.received)
+        self.sources = [source] * self.exchange.turns
+        sent = self._sent(self._largest(self.exchange.emitted + self.exchange.rho * source))
         self.weights = self._weight(lines, sent)
         plan.starting, plan.done, plan.summed = 0, plan.done + lines, lines
 
@@ -105,8 +112,8 @@ class Regular:
         return np.full(len(sent), float(lines)) if self.control is None else lines / sent**2
 
     def _iterate(self, lines: int) -> int:
-        exchange, control, types = self.exchange, self.control, self.exchange.types
-        power = exchange.emitted + exchange.rho * self.source
+        exchange, control, types, turn = self.exchange, self.control, self.exchange.types, self.exchange.turn
+        power = exchange.emitted + exchange.rho * self.sources[turn]
         if control is not None:
             if self.plan.count & (self.plan.count - 1) == 0:  # a median costs a sort
                 control.adapt(power)
@@ -125,13 +132,15 @@ class Regular:
             self.received = dr.lerp(self.received, arrived, exchange.by_slot(weight))
             if control is not None:
                 self.constants += weight[:, None] * (control.beta - self.constants)
-        fresh = self.exchange.patches(arrived) + (0 if control is None else control.received())
-        self.source = dr.lerp(self.source, fresh, exchange.by_patch(exchange.by_replicate(np.maximum(weight, FORGET))))
-        dr.eval(self.source, self.received)
+        fresh = exchange.patches(arrived) + (0 if control is None else control.received())
+        other = (turn + 1) % exchange.turns
+        taken = exchange.by_patch(exchange.by_replicate(np.maximum(weight, FORGET[exchange.turns])))
+        self.sources[other] = dr.lerp(self.sources[other], fresh, taken)
+        dr.eval(self.sources[other], self.received)
         return fired
 
     def capture(self) -> State:
-        state = {"received": np.array(self.received), "source": np.array(self.source), "scale": np.array(1.0)}
+        state = {"received": np.array(self.received), "source": np.concatenate(self.sources), "scale": np.array(1.0)}
         state |= {"constants": self.constants.copy(), "weights": self.weights.copy()}
         state["progress"] = self.plan.capture()
         if self.warm is not None and self.plan.starting:
@@ -141,7 +150,9 @@ class Regular:
     def restore(self, state: State) -> None:
         types = self.exchange.types
         self.plan.restore(state["progress"])
-        self.received, self.source = (upload(types.Float64, state[key]) for key in ("received", "source"))
+        self.received = upload(types.Float64, state["received"])
+        self.sources = [upload(types.Float64, part) for part in np.split(state["source"], self.exchange.turns)]
         self.constants, self.weights = state["constants"].copy(), state["weights"].copy()
         if self.warm is not None and self.plan.starting:
+            self.exchange.begin_warm_up()
             self.warm.restore({key.removeprefix("warm_"): value for key, value in state.items() if key.startswith("warm_")})

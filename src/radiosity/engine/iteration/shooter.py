@@ -1,6 +1,7 @@
 """Patch i fires c_i lines that carry what they are told to: the primitive that iterations are made of.
 
-The k-th line of a patch is a function of (seed, replicate, patch, k), counted over the whole run, as in contract 2. What is
+The k-th line of a patch is a function of (seed, replicate, patch, k), counted over the whole run, as in contract 2; where there
+are several sequences, each counts its own lines and has points of its own, independent of the others'. What is
 received is summed in 64-bit fixed point, so no sum depends on an order or on threads. Numbers of patches and slots are those
 of `firing`: replicate r of patch i is r n + i; then two slots a replicate, for lines escaped and lines lost.
 """
@@ -18,7 +19,9 @@ from ..firing import FEW, Engine
 from ..geometry import Geometry
 from ..landings import DENSE
 from ..lanes import Batch, Chunk
-from ..quanta import Source
+from ..quanta import Source, stream
+
+SEQUENCE = 8  # purpose of the streams of sequences after the first (`quanta.stream`)
 
 Pairs = Callable[[np.ndarray, np.ndarray], None]
 
@@ -44,11 +47,25 @@ class Shooter:
         received: (slots * n_groups,) Int64, of the last shot, group g of slot s at s * n_groups + g.
     """
 
-    def __init__(self, geometry: Geometry, source: Source, method: Method, seed: int, replicates: int, n_groups: int):
+    def __init__(
+        self, geometry: Geometry, source: Source, method: Method, seed: int, replicates: int, n_groups: int, sequences: int = 1
+    ):
         self.engine = Engine(geometry, source, method, seed, replicates)
         self.types, self.total, self.groups = self.engine.types, self.engine.total, n_groups
         self.slots = self.total + 2 * replicates
         self.received = dr.opaque(self.types.Int64, 0, self.slots * n_groups) if n_groups else None
+        self.sequence, self._randomisations, self._fired = 0, [self.engine.randomisation], [self.engine.fired]
+        for more in range(1, sequences):
+            streams = [np.random.SeedSequence(stream(seed, r, SEQUENCE).entropy, spawn_key=(more,)) for r in range(replicates)]
+            drawn = [self.engine.numbers.randomisation(one) for one in streams]
+            self._randomisations.append(upload(self.types.UInt32, np.array(drawn, np.uint32)))
+            self._fired.append(dr.opaque(self.types.UInt32, 0, self.total))
+
+    def take(self, sequence: int) -> None:
+        """Fire lines of this sequence from now on."""
+        self._fired[self.sequence] = self.engine.fired
+        self.engine.fired, self.engine.randomisation = self._fired[sequence], self._randomisations[sequence]
+        self.sequence = sequence
 
     def shoot(self, counts, weights=None, ends: Ends | None = None, pairs: Pairs | None = None) -> int:
         """Fire, and return how many lines that were.
@@ -104,11 +121,17 @@ class Shooter:
         dr.scatter_add(self.received, value, index, active=real, mode=mode)
 
     def capture(self) -> dict[str, np.ndarray]:
-        """arrivals and fired (replicates, n_patches), missed (2, replicates)."""
+        """arrivals and fired (replicates, n_patches), missed (2, replicates); where there are several sequences
+        fired_apart, (sequences, replicates, n_patches), of which fired is the sum."""
         arrivals, fired, missed = self.engine.counters()
-        return {"arrivals": arrivals, "fired": fired, "missed": missed}
+        if len(self._fired) == 1:
+            return {"arrivals": arrivals, "fired": fired, "missed": missed}
+        self.take(self.sequence)
+        apart = np.stack([np.array(column).reshape(fired.shape) for column in self._fired])
+        return {"arrivals": arrivals, "fired": apart.sum(axis=0, dtype=np.uint32), "missed": missed, "fired_apart": apart}
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Put captured counters back."""
         self.engine.arrivals = upload(self.types.UInt32, np.concatenate([state["arrivals"].ravel(), state["missed"].ravel()]))
-        self.engine.fired = upload(self.types.UInt32, state["fired"])
+        self._fired = [upload(self.types.UInt32, column) for column in state.get("fired_apart", state["fired"][None])]
+        self.engine.fired = self._fired[self.sequence]

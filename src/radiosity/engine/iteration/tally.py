@@ -23,6 +23,10 @@ class IterationTally(AbstractTally):
         values, _ = _received(problem, state, group)
         return values, problem.source.power
 
+    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+        """Of the lines traced, of which few-lined stages have more than quanta."""
+        return super().line(problem, state | {"quanta": self.lines(problem, state) // len(state["fired"])}, group)
+
     def books(self, problem: Problem, state: State, group: int) -> dict:
         if "left" in state:
             return _exact(problem, state, group)

@@ -88,7 +88,8 @@ class Hemicube:
         across = np.cross(normal, tangent)
         angle = self._angles(patches)[numbers] if self.turned else np.zeros(len(numbers))
         cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
-        origin = (patches.centroid[numbers] - tree.centre) * tree.scale + normal * geometry.frames[3][face][:, None]
+        origin = (patches.centroid[numbers] - tree.centre) * tree.scale
+        origin += normal * geometry.offset(face, origin)[:, None]
         return np.concatenate([origin, cosine * tangent + sine * across, cosine * across - sine * tangent, normal], axis=1)
 
     def _angles(self, patches: Patches) -> np.ndarray:

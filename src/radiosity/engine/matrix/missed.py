@@ -10,10 +10,12 @@ from ..geometry import Geometry
 from ..lanes import CHUNK
 from ..lines import land, local_line, patch_of
 from ..quanta import stream
+from ..turn import turn
 
 PURPOSE = 5  # of the stream (`quanta.stream`)
 
 
+@turn()
 def missed(geometry: Geometry, lines: int = 1024, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """Shares escaped and lost, (n_patches,) float64 each, exactly zero where no line tells of any.
 

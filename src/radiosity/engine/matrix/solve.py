@@ -33,14 +33,33 @@ def of_both_ways(keys: np.ndarray, counts: np.ndarray, n: int, area: np.ndarray)
     return restored(of_rows(keys, counts, n), area, np.bincount(rows, weights=counts, minlength=n) / area, SCALINGS)
 
 
-def irradiance(factors: Factors, emission: np.ndarray, reflectance: np.ndarray) -> np.ndarray:
-    """(n,) H = F B where B = E + rho H, by Jacobi iterations, each at most rho_max of the last change."""
+def irradiance(factors: Factors, emission: np.ndarray, reflectance: np.ndarray, filled=lambda received: received) -> np.ndarray:
+    """(n,) H = F B where B = E + rho H, by Jacobi iterations, each at most rho_max of the last change.
+
+    Args:
+        filled: (n,) irradiance to the same with values for patches whose rows are empty.
+    """
     received = np.zeros(len(emission))
     bound = float(reflectance.max(initial=0.0))
     steps = 2 + (math.ceil(math.log(TOLERANCE * (1 - bound)) / math.log(bound)) if bound > 0 else 0)
     for _ in range(steps):
-        new = factors.gather(emission + reflectance * received)
+        new = filled(factors.gather(emission + reflectance * received))
         change, received = np.abs(new - received).max(), new
         if change * bound <= TOLERANCE * (1 - bound) * received.max(initial=0.0):
             break
     return received
+
+
+def of_own_light(factors: Factors, lines: np.ndarray, emission: np.ndarray, reflectance: np.ndarray, received: np.ndarray):
+    """(n,) how much too high irradiance is in the mean, where n_ij and n_ji are the same spans: a patch that many spans lead away
+    from gets back its light by as many. To the first order in one over the lines, Var(n_ij) being n_i F_ij,
+
+        E[F_ij F_ji] - F_ij F_ji = Var(n_ij) / (n_i n_j) = F_ij / n_j,
+
+    so that patch i receives sum_j F_ij rho_j B_i / n_j too much, and all patches what is reflected of that.
+
+    Args:
+        lines: (n,) of each row.
+    """
+    own = (emission + reflectance * received) * factors.gather(reflectance / np.maximum(lines, 1))
+    return own + irradiance(factors, reflectance * own, reflectance)

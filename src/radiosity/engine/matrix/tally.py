@@ -7,13 +7,14 @@ import numpy as np
 
 from ...solution.books import by_difference
 from ..problem import Problem
-from ..process import AbstractTally, State
+from ..process import AbstractMeanTally, State
+from ..unmet import bias, means, sides
 from .counts import WORD, split
 from .factors import Factors
-from .solve import irradiance, of_both_ways, of_rows
+from .solve import irradiance, of_both_ways, of_own_light, of_rows
 
 
-class MatrixTally(AbstractTally):
+class MatrixTally(AbstractMeanTally):
     """Reads counts; the last state's results are kept, since they are asked for more than once.
 
     Attributes:
@@ -36,30 +37,54 @@ class MatrixTally(AbstractTally):
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
         return self._solved(problem, state, group)[0], 1.0
 
+    def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
+        """Of spans: what patches without any were given, and what patches get back of their own light, `solve.of_own_light`."""
+        values, _, own = self._solved(problem, state, group)
+        return bias(values, self.measured(problem, state)) + own.mean(axis=0)
+
+    def measured(self, problem: Problem, state: State) -> np.ndarray:
+        rows, _ = split(state["keys"])
+        shape = (int(state["replicates"]), len(problem.patches))
+        return np.bincount(rows, weights=state["counts"], minlength=shape[0] * shape[1]).reshape(shape)
+
+    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+        """Of a patch's lines one meets the brightest light."""
+        n, (rows, _) = len(problem.patches), split(state["keys"])
+        each = np.bincount(rows % n, weights=state["counts"], minlength=n) / int(state["replicates"])
+        return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(each, 1)
+
     def books(self, problem: Problem, state: State, group: int) -> dict:
-        values, missed = self._solved(problem, state, group)
+        values, missed, _ = self._solved(problem, state, group)
         emitted = float(problem.groups.emission[:, group] @ problem.patches.area)
         absorbed = float(values.mean(axis=0) @ (1 - problem.groups.reflectance[:, group]))
         return by_difference(emitted, absorbed, *(float(x) for x in missed.mean(axis=0)))
 
-    def _solved(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, np.ndarray]:
-        """Power received, (replicates, n_patches), and escaped and lost, (replicates, 2)."""
+    def _solved(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Power received, (replicates, n_patches), escaped and lost, (replicates, 2), and how much too high the first may be."""
         if self._last[0] is not state["keys"]:
             self._last = state["keys"], self._all(problem, state)
         return self._last[1][group]
 
     def _all(self, problem: Problem, state: State) -> dict:
-        groups, area = problem.groups, problem.patches.area
-        found = {group: ([], []) for group in range(groups.n_groups)}
-        for factors in replicate_factors(problem, state, both_ways=self.both_ways):
+        groups, area, side = problem.groups, problem.patches.area, sides(problem.patches)
+        found = {group: ([], [], []) for group in range(groups.n_groups)}
+        measured = self.measured(problem, state)
+        for lines, factors in zip(measured, replicate_factors(problem, state, both_ways=self.both_ways), strict=True):
             seen = factors.sent(area) if self.directed else factors
-            for group, (values, missed) in found.items():
+            fill = not self.directed and not lines.all()  # there, patches receive by lines of others
+
+            def filled(received, lines=lines, fill=fill):
+                return means(received * lines, lines, side) if fill else received
+
+            for group, (values, missed, own) in found.items():
                 emission, rho = groups.emission[:, group], groups.reflectance[:, group]
-                received = irradiance(seen, emission, rho)
+                received = irradiance(seen, emission, rho, filled)
                 power = area * (emission + rho * received)
                 values.append(area * received)
                 missed.append([factors.escaped @ power, factors.lost @ power])
-        return {group: (np.array(values), np.array(missed)) for group, (values, missed) in found.items()}
+                none = np.zeros(len(area))
+                own.append(none if self.both_ways else area * of_own_light(seen, lines, emission, rho, received))
+        return {group: tuple(np.array(column) for column in columns) for group, columns in found.items()}
 
 
 def replicate_factors(problem: Problem, state: State, *, both_ways: bool) -> Iterator[Factors]:

@@ -19,7 +19,8 @@ from ..device import frozen, upload
 from ..firing import Engine
 from ..lanes import Batch, Chunk
 from ..problem import Problem
-from ..process import AbstractTally, State
+from ..process import AbstractMeanTally, State
+from ..unmet import bias, means, sides
 from .births import Births
 from .flock import Flock, Legs
 from .launches import AbstractLaunches
@@ -126,7 +127,7 @@ class Gathering(AbstractLaunches):
         return GatheringTally()
 
 
-class GatheringTally(AbstractTally):
+class GatheringTally(AbstractMeanTally):
     """Means of the radiosity met."""
 
     def lines(self, problem: Problem, state: State) -> int:
@@ -136,8 +137,19 @@ class GatheringTally(AbstractTally):
         return state["fired"].sum(axis=0, dtype=np.int64)  # a patch is measured by the lines that leave it
 
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        mean = state["met"][..., group] / np.maximum(state["fired"], 1)
+        mean = means(state["met"][..., group], self.measured(problem, state), sides(problem.patches))
         return mean * problem.patches.area, float(problem.groups.emission[:, group].max()) / UNIT
+
+    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+        """Of a patch's lines one meets the brightest light."""
+        brightest, each = problem.groups.emission[:, group].max(), state["fired"].sum(axis=0) / len(state["fired"])
+        return brightest * problem.patches.area / np.maximum(each, 1)
+
+    def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
+        return bias(self.irradiance(problem, state, group)[0], self.measured(problem, state))
+
+    def measured(self, problem: Problem, state: State) -> np.ndarray:
+        return state["fired"]
 
     def books(self, problem: Problem, state: State, group: int) -> dict:
         values, unit = self.irradiance(problem, state, group)

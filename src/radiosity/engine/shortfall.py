@@ -1,0 +1,45 @@
+"""What is told at the end of a run that traced far more lines than it was asked for, or did not reach its error."""
+
+import math
+import warnings
+from typing import TYPE_CHECKING
+
+from ..errors import RadiosityWarning
+from ..patches import Patches
+from .budget import Budget
+from .snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from .run import Run
+
+MORE = 2.0  # times the lines asked for
+
+
+def warn_of_more(lines: int, budget: Budget, replicates: int, patches: Patches) -> None:
+    """Tell of a first stage, than which there is none smaller, that took more than `MORE` times the lines asked for."""
+    if budget.rays is not None and lines > MORE * budget.rays:
+        warnings.warn(
+            f"{lines:,} lines were traced, {lines / budget.rays:.3g} times the {budget.rays:,} asked for: the smallest stage of "
+            f"this method with {replicates} replicates of {len(patches):,} patches takes that many; take fewer replicates, "
+            "larger patches or more lines",
+            RadiosityWarning,
+            stacklevel=6,
+        )
+
+
+def warn_of_target(run: "Run", snapshot: Snapshot) -> None:
+    """Tell of an error that was not reached: what is known of it, and what ended the run."""
+    budget, whose = run.budget, run.error_of or "the scene"
+    if math.isnan(run.teller.bound):
+        landed = int(snapshot.arrivals[run.rows].sum())
+        known = f"after {snapshot.lines:,} lines it cannot be told yet ({landed:,} lines landed there)"
+    else:
+        known = f"after {snapshot.lines:,} lines it is {run.teller.bound:.2%} or less in 95 % of runs"
+    limits = [f"{name}={value:g}" for name, value in (("rays", budget.rays), ("seconds", budget.seconds)) if value is not None]
+    full = "counters are full: take more replicates"
+    why = f"the limit was {', '.join(limits)}, or {full}" if limits else full
+    warnings.warn(
+        f"the error {100 * (budget.error or 0):.3g}% of {whose} was not reached: {known}; {why}",
+        RadiosityWarning,
+        stacklevel=6,
+    )

@@ -1,0 +1,83 @@
+"""What the study computes from errors: slopes, ratios, deviations and coverages, of numbers that are known."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import radiosity as rd
+from radiosity.lab import calibration, contest, measure, slopes
+
+
+def test_a_slope_is_that_of_the_last_two_decades():
+    """Steeper at the start, which does not count; each replicate has a slope of its own, and the interval is Student's."""
+    lines = 2.0 ** np.arange(10, 24)
+    last = lines >= lines[-1] / 100
+    own = np.array([-0.5, -0.6, -0.75])
+    errors = 7 * lines ** own[:, None]
+    errors[:, ~last] = 7 * lines[~last] ** -3.0
+    found = slopes.fit(lines, errors)
+    assert found.value == pytest.approx(own.mean(), rel=1e-12)
+    assert found.half == pytest.approx(stats.t.ppf(0.975, 2) * own.std(ddof=1) / np.sqrt(3), rel=1e-12)
+    assert (found.low, found.high) == (found.value - found.half, found.value + found.half)
+    assert last.sum() == 7
+    assert not last[-8]
+    assert np.isnan(slopes.fit(lines[-2:], errors[:, -2:]).value)  # two points tell nothing
+
+
+def test_errors_of_zero_are_left_out_of_slopes():
+    lines = 2.0 ** np.arange(10, 20)
+    errors = np.tile(lines**-0.5, (2, 1))
+    errors[1, -1] = 0.0
+    assert slopes.fit(lines, errors).value == pytest.approx(-0.5)
+
+
+def test_ratios_are_of_the_last_rung_the_first_over_the_second():
+    one, other = np.array([[9.0, 2.0], [9.0, 8.0]]), np.array([[9.0, 1.0], [9.0, 1.0], [9.0, 1.0]])
+    value, factor = slopes.ratio(one, other)
+    assert value == pytest.approx(4.0)  # the geometric mean of 2 and 8
+    spread = np.log(one[:, -1]).std(ddof=1) / np.sqrt(2)
+    assert factor == pytest.approx(np.exp(stats.t.ppf(0.975, 3) * spread))
+    assert slopes.ratio(other, one)[0] == pytest.approx(1 / 4)
+    assert slopes.mean_error(np.array([[3.0, 1.0], [4.0, 1.0]])) == pytest.approx([np.sqrt(12.5), 1.0])
+
+
+def test_deviations_are_relative_to_the_reflected_light():
+    area, emission = np.array([1.0, 3.0]), np.array([[0.0], [10.0]])
+    case = SimpleNamespace(patches=SimpleNamespace(area=area, emission=emission))
+    truth, found = np.array([2.0, 11.0]), np.array([[2.5, 11.0], [2.0, 12.0]])
+    absolute = measure.deviations(case, found, truth, absolute=True)
+    assert absolute[0] == pytest.approx([0.5 * np.sqrt(1 / 4), np.sqrt(3 / 4)])  # weighted by area
+    assert absolute[1] == pytest.approx([0.5 * np.sqrt(1 / 2), np.sqrt(1 / 2)])  # and plain
+    relative = measure.deviations(case, found, truth, absolute=False)
+    assert relative[0] == pytest.approx(absolute[0] / np.sqrt((1 * 2.0**2 + 3 * 1.0**2) / 4))
+    assert relative[1] == pytest.approx(absolute[1] / np.sqrt((2.0**2 + 1.0**2) / 2))
+
+
+def test_errors_of_a_contest_are_the_worst_band_s():
+    area, truth = np.array([1.0, 3.0]), np.array([[1.0, 2.0], [1.0, 2.0]])
+    found = truth + np.array([[0.0, 0.2], [0.03, 0.0]])
+    bands = [np.sqrt(3 * 0.03**2 / 4), np.sqrt(0.2**2 / (4 * 2.0**2))]
+    assert contest._error(found, truth, area) == pytest.approx(max(bands))
+    assert contest._error(found[:, ::-1], truth[:, ::-1], area) == pytest.approx(max(bands))
+
+
+def test_coverage_and_its_error_are_over_runs(monkeypatch):
+    """Of made-up radiosities: normal about the truth in each replicate. The share of patches covered varies from run to run."""
+    patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
+    random, n, seeds = np.random.Generator(np.random.Philox(3)), len(patches), 200
+    values = 5 + random.normal(size=(seeds * calibration.REPLICATES, n))
+    monkeypatch.setattr(calibration, "radiosity", lambda *_: values)
+    arm = SimpleNamespace(name="made up", method=rd.Method())
+    case = SimpleNamespace(patches=patches, name="labyrinth")
+    found = calibration.coverage(arm, case, np.full(n, 5.0), 0, lines=10, seeds=seeds)
+    runs = values.reshape(seeds, calibration.REPLICATES, n)
+    apart = np.abs(runs.mean(axis=1) - 5) / (runs.std(axis=1, ddof=1) / np.sqrt(calibration.REPLICATES))
+    for level, (share, error) in zip(calibration.LEVELS, found.covered, strict=True):
+        inside = (apart <= stats.t.ppf(0.5 + level / 2, calibration.REPLICATES - 1)).mean(axis=1)
+        assert share == pytest.approx(inside.mean(), rel=1e-12)
+        assert error == pytest.approx(inside.std(ddof=1) / np.sqrt(seeds), rel=1e-12)
+        assert abs(share - level) < 5 * error
+    assert found.rms == pytest.approx(1 / np.sqrt(calibration.REPLICATES), rel=0.02)
+    assert found.visited == 1
