@@ -248,7 +248,7 @@ def held(closed, quanta: int, runs: int) -> np.ndarray:
 
 
 def test_a_sensor_that_half_a_line_reaches(closed):
-    """At 92 %, 40 runs would hold 33 or fewer with a probability of 3 %; 50 % of runs held before there was a bound."""
+    """At 92 %, 40 runs would hold 33 or fewer with a probability of 3 %. In more than half of them no line lands."""
     assert (held(closed, 218, 40) > 33 / 40).all()
 
 
