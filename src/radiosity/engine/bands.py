@@ -68,9 +68,10 @@ class BandTally:
         groups: the bands.
         received: UInt64, group g of slot s (see `firing`) at s * n_groups + g.
         sent: UInt64, what lines have carried away from patch numbers, likewise.
-        arrivals_before: UInt32, of patch numbers, as they were at the last sweep.
+        arrivals_before: UInt32, of patch numbers, as they were at the last sweep; None between stages.
         fired: UInt64, power that left replicate r along lines, at g * replicates + r.
-        weights: UInt32, of group g, what each line of the i-th patch of a sweep carries, at i * n_groups + g.
+        weights: UInt32, of group g, what each line of the i-th patch of a sweep carries, at i * n_groups + g; None between
+            stages.
     """
 
     def __init__(self, engine, groups: BandGroups):
@@ -80,15 +81,21 @@ class BandTally:
         self.rhos = [upload(types.UInt32, Source.fixed(groups.reflectance[:, g])) for g in range(self.n)]
         self.received = dr.opaque(types.UInt64, 0, (engine.total + 2 * engine.replicates) * self.n)
         self.sent = dr.opaque(types.UInt64, 0, engine.total * self.n)
-        self.arrivals_before = dr.opaque(types.UInt32, 0, engine.total)
         self.fired = dr.opaque(types.UInt64, 0, self.n * engine.replicates)
-        self.weights = dr.opaque(types.UInt32, 0, engine.total * self.n)
+        self.weights = self.arrivals_before = None
+
+    def rest(self) -> None:
+        """Between stages: let go of what only sweeps use."""
+        self.weights = self.arrivals_before = None
 
     def weigh(self, engine, numbers, places, arrivals, counts) -> None:
         """Before a sweep: what each line of the patches ``numbers`` carries, of each group, to ``places`` in ``weights``; in the
         end what ``counts`` of them take away, and ``arrivals`` now. No expression may still wait to read the arrays that are
         written here, or Dr.Jit copies them whole."""
         types = engine.types
+        if self.weights is None:
+            self.weights = dr.opaque(types.UInt32, 0, engine.total * self.n)
+            self.arrivals_before = dr.opaque(types.UInt32, 0, engine.total)
         self._weigh(engine, numbers, places, arrivals)
         dr.eval(self.weights)
         dr.scatter(self.arrivals_before, arrivals, numbers)

@@ -117,6 +117,8 @@ class Engine:
         numbers = self.candidates()
         sweep, largest = self._sweep(numbers, 0, self.total if numbers is None else dr.width(numbers))
         self.owes = sweep is not None
+        if not self.owes and self.bands is not None:
+            self.bands.rest()
         return sweep, largest
 
     def due_between(self, low: int, high: int) -> tuple[Sweep | None, int]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..method.numbers import WORDS
 from ..method.numbers.random import philox
+from ..pieces import pieces
 from . import quanta as contract
 from .bands import QUANTUM
 from .blocks import shared
@@ -27,16 +28,16 @@ LONGER = 1.6  # times as many lines as chance alone would take, 1.5 to 1.7 where
 
 @dataclass(frozen=True, eq=False)
 class Sent:
-    """What residues brought, signed, in 64-bit fixed point: `QUANTUM` to a quantum.
+    """What residues bring to what landed, which may be less than nothing, in 64-bit fixed point: `QUANTUM` to a quantum.
 
     Attributes:
-        landed: (replicates, n_patches, n_groups) int64.
-        missed: (2, replicates, n_groups) int64, escaped and lost.
-        fired: n_groups whole numbers, what left patches along lines, of all replicates.
-        lines: of all replicates.
+        received: (replicates, n_patches, n_groups) int64, both together.
+        missed: (2, replicates, n_groups) int64, escaped and lost, of the residue alone.
+        fired: n_groups whole numbers, what of the residue left patches along lines, of all replicates.
+        lines: of the residue, of all replicates.
     """
 
-    landed: np.ndarray
+    received: np.ndarray
     missed: np.ndarray
     fired: list[int]
     lines: int
@@ -60,9 +61,15 @@ def send(engine, problem: Problem, state: State) -> Sent:
     tally = dr.zeros(engine.types.Int64, (engine.total + 2 * engine.replicates) * n_groups)
     dr.eval(tally)
     fired, lines = _walk(engine, begun, tally) if len(begun.line) else ([0] * n_groups, 0)
-    flat = frozen(tally).reshape(-1, n_groups)
-    landed = flat[: engine.total].reshape(engine.replicates, engine.n, n_groups)
-    return Sent(landed, flat[engine.total :].reshape(2, engine.replicates, n_groups), fired, lines)
+    flat = frozen(tally).reshape(-1, n_groups)  # nobody else holds it: hits are added where it lies, which takes no memory
+    received = flat[: engine.total].reshape(engine.replicates, engine.n, n_groups)
+    for replicate, row in enumerate(received):
+        for part in pieces(engine.n):
+            if "received" in state:
+                row[part] += state["received"][replicate, part].astype(np.int64)
+            else:
+                row[part] += (state["arrivals"][replicate, part] * np.int64(QUANTUM))[:, None]
+    return Sent(received, flat[engine.total :].reshape(2, engine.replicates, n_groups), fired, lines)
 
 
 def _walk(engine, begun: Starts, tally) -> tuple[list[int], int]:
