@@ -51,10 +51,11 @@ def _rays(engine: Engine, lines: int):
     types = engine.types
     engine.set_quanta(lines)
     sweep, largest = engine.due()
+    bits = engine.numbers.bits_for(largest)
     parts, total = [], 0
     for chunk in (chunk for batch in engine.batches(sweep) for chunk in batch.chunks(types)):
         number, index, record = chunk.read(types)
-        points = engine.points(number, index, dr.zeros(types.UInt32, chunk.width), engine.numbers.bits_for(largest))
+        points = engine.points(number, index, dr.zeros(types.UInt32, chunk.width), record, bits)
         ray = local_line(engine.geometry, record, points)
         dr.eval(ray)
         parts.append(ray)

@@ -218,6 +218,42 @@ def test_habits_are_named_once(tmp_path):
     assert "'square'" in text
 
 
+@pytest.mark.parametrize(
+    ("finish", "glossy"),
+    [
+        ({}, False),
+        ({"metallicFactor": 0, "roughnessFactor": 0.29}, True),
+        ({"metallicFactor": 0, "roughnessFactor": 0.3}, False),
+        ({"metallicFactor": 0.1}, True),
+        ({"metallicFactor": 0, "roughnessFactor": 0.1, "metallicRoughnessTexture": {}}, False),  # of a texture, which is not read
+        ({"metallicRoughnessTexture": {}}, True),  # the default of such materials is metal
+        ({"metallicFactor": 0, "metallicRoughnessTexture": {}}, False),
+    ],
+    ids=str,
+)
+def test_what_counts_as_not_diffuse(tmp_path, recwarn, finish, glossy):
+    colour = {"baseColorFactor": [0.5, 0.5, 0.5, 1]}
+    one(tmp_path, {"name": "m", "pbrMetallicRoughness": colour | finish})
+    assert ["not diffuse" in str(warning.message) for warning in recwarn] == [True] * glossy
+
+
+def test_interleaved_values_are_read_with_their_stride(tmp_path):
+    """Positions and colours side by side in one view, as most programs write them."""
+    gltf = Gltf()
+    rows = np.concatenate([np.array(SQUARE, "<f4"), np.tile(np.array([0.1, 0.2, 0.3], "<f4"), (4, 1))], axis=1)
+    view = gltf.view(rows.tobytes())
+    gltf.tree["bufferViews"][view]["byteStride"] = 24
+    for offset in (0, 12):
+        info = {"bufferView": view, "byteOffset": offset, "componentType": 5126, "count": 4, "type": "VEC3"}
+        gltf.tree["accessors"].append(info)
+    primitive = {"attributes": {"POSITION": 0, "COLOR_0": 1}, "indices": gltf.accessor(np.ravel(HALVES), "u2")}
+    gltf.tree["meshes"].append({"primitives": [primitive]})
+    gltf.node(mesh=0)
+    scene = rd.load_scene(gltf.write(tmp_path / "i.glb"))
+    assert scene.area.tolist() == [1]
+    np.testing.assert_allclose(rd.subdivide(scene, cells=1).reflectance[0], [0.1, 0.2, 0.3], rtol=1e-6)
+
+
 def test_vertex_colours_without_a_material(tmp_path):
     gltf = Gltf()
     gltf.node(mesh=gltf.mesh(attributes={"COLOR_0": gltf.accessor([[0.1, 0.2, 0.3]] * 4)}))

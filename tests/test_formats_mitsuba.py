@@ -108,6 +108,15 @@ def test_what_is_not_diffuse_goes_by_its_diffuse_albedo(load, bsdf, albedo):
     assert only(scene)[0] == [pytest.approx(albedo)]
 
 
+@pytest.mark.parametrize("order", [1, -1])
+def test_one_side_that_is_not_diffuse_is_named(load, order):
+    plastic = '<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.3"/></bsdf>'
+    sides = "".join((WHITE, plastic)[::order])
+    with pytest.warns(rd.RadiosityWarning, match="not diffuse.*'rectangle'"):
+        scene = load(QUAD.format(f'<bsdf type="twosided">{sides}</bsdf>'))
+    assert only(scene)[:2] == tuple([[pytest.approx(0.7)], [pytest.approx(0.3)]][::order])
+
+
 def test_a_blend_of_diffuse_ones_is_diffuse(load):
     dark = '<bsdf type="diffuse"><rgb name="reflectance" value="0.1"/></bsdf>'
     scene = load(QUAD.format(f'<bsdf type="blendbsdf"><float name="weight" value="0.25"/>{dark}{WHITE}</bsdf>'))

@@ -101,6 +101,26 @@ def test_texture(load, tmp_path):
     np.testing.assert_allclose(rd.subdivide(plain, cells=1).reflectance, mean, rtol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("move", "left", "right"),
+    [
+        ("", 50, 200),
+        ("-s 0.5 1 1", 50, 50),  # the left half of the image on the whole face
+        ("-s 0.5 1 1 -o 0.5 0 0", 200, 200),  # scaled, then moved: the right half
+        ("-o 0.5 0 0 -s 0.5 1 1", 200, 200),  # in whatever order they are written
+        ("-o 0.5 0 0", 200, 50),
+        ("-s -1 1 1", 200, 50),
+    ],
+)
+def test_textures_are_scaled_and_then_moved(load, tmp_path, move, left, right):
+    (tmp_path / "t.png").write_bytes(png(np.kron([[[50] * 3, [200] * 3]], np.ones((8, 8, 1)))))
+    text = SQUARE + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n" + KNOWN + "f 1/1 2/2 3/3 4/4\n"
+    patches = rd.subdivide(load(text, f"newmtl grey\nKd 1 1 1\nmap_Kd {move} t.png\n"), cells=4)
+    for place, value in ((3 / 8, left), (5 / 8, right)):
+        here = np.abs(patches.centroid[:, 0] - place) < 0.01
+        assert patches.reflectance[here].mean() == pytest.approx(((value / 255 + 0.055) / 1.055) ** 2.4, rel=0.3)
+
+
 def test_lost_texture_and_library(load, tmp_path):
     text = SQUARE + "vt 0 0\n" + KNOWN + "f 1/1 2/1 3/1 4/1\n"
     with pytest.warns(RadiosityWarning, match=r"textures that cannot be read.*C:\\pictures\\no\.png"):

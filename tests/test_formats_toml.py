@@ -84,6 +84,25 @@ def test_power_is_spread_over_all_radiating_area(load):
     np.testing.assert_allclose(scene.emission[1:], 20)  # three sides of 1 m²
 
 
+@pytest.mark.parametrize(
+    ("later", "exitance"), [("emission = 7", 7), ("radiance = 2", 2 * np.pi), ("power = 3", 1), ("sides = 2", 20)]
+)
+def test_a_later_entry_takes_the_place_of_a_power(load, later, exitance):
+    """Of whatever kind it is; the lamp has 1.5 m² on each of two sides, and one that gives no light leaves the power."""
+    scene = load(f"""
+        geometry = [{{file = "lamp.stl", unit = "cm", scale = 1.224744871391589}}]
+        [[surface]]
+        name = "lamp"
+        reflectance = 0
+        power = 60
+        [[surface]]
+        name = "la*"
+        {later}
+    """)
+    np.testing.assert_allclose(scene.emission, exitance)
+    np.testing.assert_allclose(scene.back_emission, exitance)
+
+
 def test_reflectance_replaces_texture_and_colours_but_not_light(load):
     scene = load('geometry = ["box.glb"]\n[[surface]]\nname = "box/*"\nreflectance = 0.25\n')
     patches = rd.subdivide(scene, cells=1)

@@ -73,6 +73,17 @@ def test_the_process_may_be_limited(system, monkeypatch):
     assert memory.free() == 0
 
 
+def test_what_the_process_has_is_counted_in_kibibytes(tmp_path, monkeypatch):
+    resource = pytest.importorskip("resource")
+    monkeypatch.setattr(memory, "PROC", tmp_path)
+    (tmp_path / "self").mkdir()
+    (tmp_path / "self" / "status").write_text("Name:\tpython\nVmPeak:\t 9000000 kB\nVmSize:\t 2097152 kB\n")
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (5 * GIB, resource.RLIM_INFINITY))
+    assert memory._process() == 3 * GIB
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+    assert memory._process() == math.inf
+
+
 @pytest.mark.parametrize(
     ("text", "bytes_"), [("8G", 8 * GIB), ("500 MiB", 500 * 2**20), ("1.5k", 1536), ("7", 7), ("none", math.inf)]
 )

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from radiosity.engine.departure import place_number
 from radiosity.engine.device import choose, upload
+from radiosity.engine.geometry import COLUMN_BITS
 from radiosity.engine.quanta import stream
 from radiosity.errors import MethodError
 from radiosity.method.numbers import DIMENSIONS, NUMBERS, WORDS, make
@@ -148,6 +150,25 @@ class TestPatches:
             for b in range(a):
                 counts, *_ = np.histogram2d(x[:, a], x[:, b], bins=10, range=[[0, 1], [0, 1]])
                 assert stats.chisquare(counts.ravel()).pvalue > ALPHA / comparisons
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("cells", [(10, 10), (34, 34), (158, 6)])
+def test_a_line_of_all_patches_of_a_face_fills_the_square(name, cells):
+    """The k-th lines of the patches of a face: at least as evenly over 4 x 4 or 8 x 8 boxes as random points."""
+    columns, rows = (axis.ravel() for axis in np.meshgrid(*map(np.arange, cells)))
+    boxes, shares = 4 if len(columns) < 500 else 8, []
+    for face, index in ((0, 1), (7, 6), (80_000, 50)):
+        record = np.full(len(columns), face, np.uint32), (columns | rows << COLUMN_BITS).astype(np.uint32)
+        places = place_number([upload(choose("cpu").types.UInt32, part) for part in record])
+        x = points(name, np.full(len(columns), index), patch=np.array(places), seed=14, of_patch=True)
+        for a in range(DIMENSIONS):
+            for b in range(a):
+                counts, *_ = np.histogram2d(x[:, a], x[:, b], bins=boxes, range=[[0, 1], [0, 1]])
+                found = stats.chisquare(counts.ravel())
+                assert found.pvalue > ALPHA / (9 * DIMENSIONS * (DIMENSIONS - 1) / 2)
+                shares.append(found.statistic / (boxes**2 - 1))
+    assert np.mean(shares) < (1.3 if name == "random" else 0.7)  # of squares that random points have
 
 
 def test_random_is_philox():

@@ -116,3 +116,23 @@ def test_on_the_command_line(tmp_path, capsys):
     assert len(lines) == 1 + 1 + 9
     assert command(["solve", "room", "--refine-check", "--resume", str(out)]) == 2
     assert "--resume" in capsys.readouterr().err
+
+
+@pytest.mark.filterwarnings("ignore:.*quanta for.*patches")
+@pytest.mark.parametrize(("quanta", "known"), [(20, False), (20_000, True)])
+def test_what_no_line_tells_is_a_question_mark(quanta, known):
+    """Of a lamp, a plate far above it, and one beside it that no light reaches."""
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 9), (0, 1, 9), (1, 1, 9), (1, 0, 9)]
+    corners += [(5, 0, 0), (6, 0, 0), (6, 1, 0), (5, 1, 0)]
+    scene = rd.Scene.from_arrays(corners, np.arange(12).reshape(3, 4), [0, 0.2, 0.5], [1.0, 0, 0], surface=range(3),
+                                 names=["lamp", "far", "never"])  # fmt: skip
+    found = rd.refine_check(rd.subdivide(scene, cells=1), quanta=quanta, replicates=2)
+    assert (found.coarse.arrivals[1] > 0) == known
+    text, rows = found.report(), {row["surface"]: row for row in found.table()}
+    assert "nan" not in text
+    assert text.splitlines()[-1] == "?: unknown, since nothing is reflected there, or no line landed there"
+    assert np.isnan(rows["never"]["sampling"])
+    assert np.isnan(rows["never"]["discretisation"])
+    assert rows["lamp"]["sampling"] == 0  # black: its radiosity is its own light
+    assert np.isnan(rows["the whole scene"]["sampling"]) != known
+    assert np.isnan(rows["far"]["sampling"]) != known

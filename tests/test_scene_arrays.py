@@ -125,6 +125,18 @@ def test_degenerate_faces_are_left_out_with_one_warning():
     assert scene.names == ("a", "b", "c")
 
 
+@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1.0, 1e6, 1e12])
+def test_size_alone_makes_no_face_degenerate(scale):
+    """What is too thin is so beside where it lies: one part in a million of the scene stays, one in a hundred million goes."""
+    points = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 1e-6, 0), (0.5, 1e-8, 0)]) * scale
+    thin, thinner = (0, 1, 4, -1), (0, 1, 5, -1)
+    scene = build(vertices=points, faces=[(0, 1, 2, 3), thin], surface=[0, 0], names=["a"])
+    assert scene.n_faces == 2
+    with pytest.warns(rd.RadiosityWarning, match=r"1 face without area left out \(first: face 1"):
+        scene = build(vertices=points, faces=[(0, 1, 2, 3), thinner], surface=[0, 0], names=["a"])
+    assert scene.n_faces == 1
+
+
 def test_a_parallelogram_stays_one_face():
     scene = build(faces=[(0, 1, 2, 3)])
     assert scene.n_faces == 1

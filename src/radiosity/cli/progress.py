@@ -2,7 +2,7 @@
 
 import sys
 from contextlib import contextmanager
-from math import isnan
+from math import isfinite
 
 from .amounts import short
 
@@ -49,7 +49,7 @@ def steps():
 def facts(state) -> str:
     """``stage 3, 12.3M rays, 21.4M/s, error 1.2 %, 8 s left``"""
     parts = [f"stage {state.stage + 1}", f"{short(state.rays)} rays", f"{short(state.rays_per_second)}/s"]
-    if state.error is not None and not isnan(state.error):
+    if state.error is not None and isfinite(state.error):
         parts.append(f"error {100 * state.error:.2g} %")
     if state.seconds_left is not None:
         parts.append(f"{duration(state.seconds_left)} left")

@@ -60,16 +60,18 @@ class BandGroups:
 class BandTally:
     """Power of each group, in 64-bit fixed point, received by every patch and carried by its lines.
 
-    A line carries, of each band, what its patch received since the last sweep divided by the real number of lines owed
-    for it, not by the number fired: that would leave the power of patches that fire nothing behind. The groups of a
-    patch lie side by side in memory, so that a landing touches one place.
+    A line carries, of each band, what its patch has not sent yet divided by the real number of lines owed for it, not by the
+    number fired. What is left so in the end is known, and sent on as `residue` tells. The groups of a patch lie side by side
+    in memory, so that a landing touches one place.
 
     Attributes:
         groups: the bands.
         received: UInt64, group g of slot s (see `firing`) at s * n_groups + g.
-        before, arrivals_before: the same of patch numbers, and their arrivals, as they were at the last sweep.
+        sent: UInt64, what lines have carried away from patch numbers, likewise.
+        arrivals_before: UInt32, of patch numbers, as they were at the last sweep; None between stages.
         fired: UInt64, power that left replicate r along lines, at g * replicates + r.
-        weights: UInt32, of group g, what each line of the i-th patch of a sweep carries, at i * n_groups + g.
+        weights: UInt32, of group g, what each line of the i-th patch of a sweep carries, at i * n_groups + g; None between
+            stages.
     """
 
     def __init__(self, engine, groups: BandGroups):
@@ -78,23 +80,29 @@ class BandTally:
         self.shares = [upload(types.Float64, groups.emission[:, g] * areas / engine.source.power) for g in range(self.n)]
         self.rhos = [upload(types.UInt32, Source.fixed(groups.reflectance[:, g])) for g in range(self.n)]
         self.received = dr.opaque(types.UInt64, 0, (engine.total + 2 * engine.replicates) * self.n)
-        self.before = dr.opaque(types.UInt64, 0, engine.total * self.n)
-        self.arrivals_before = dr.opaque(types.UInt32, 0, engine.total)
+        self.sent = dr.opaque(types.UInt64, 0, engine.total * self.n)
         self.fired = dr.opaque(types.UInt64, 0, self.n * engine.replicates)
-        self.weights = dr.opaque(types.UInt32, 0, engine.total * self.n)
-        self.quanta_before = 0
+        self.weights = self.arrivals_before = None
 
-    def weigh(self, engine, numbers, places, arrivals) -> None:
+    def rest(self) -> None:
+        """Between stages: let go of what only sweeps use."""
+        self.weights = self.arrivals_before = None
+
+    def weigh(self, engine, numbers, places, arrivals, counts) -> None:
         """Before a sweep: what each line of the patches ``numbers`` carries, of each group, to ``places`` in ``weights``; in the
-        end of all that received since the last one, and their ``arrivals`` now. No expression may still wait to read the arrays
-        that are written here, or Dr.Jit copies them whole."""
+        end what ``counts`` of them take away, and ``arrivals`` now. No expression may still wait to read the arrays that are
+        written here, or Dr.Jit copies them whole."""
         types = engine.types
+        if self.weights is None:
+            self.weights = dr.opaque(types.UInt32, 0, engine.total * self.n)
+            self.arrivals_before = dr.opaque(types.UInt32, 0, engine.total)
         self._weigh(engine, numbers, places, arrivals)
         dr.eval(self.weights)
         dr.scatter(self.arrivals_before, arrivals, numbers)
         for g in range(self.n):
-            dr.scatter(self.before, dr.gather(types.UInt64, self.received, numbers * self.n + g), numbers * self.n + g)
-        dr.eval(self.arrivals_before, self.before)
+            power = types.UInt64(dr.gather(types.UInt32, self.weights, places * self.n + g)) * types.UInt64(counts)
+            dr.scatter_add(self.sent, power, numbers * self.n + g, mode=dr.ReduceMode.NoConflicts)
+        dr.eval(self.arrivals_before, self.sent)
 
     def _weigh(self, engine, numbers, places, arrivals) -> None:
         types = engine.types
@@ -104,15 +112,13 @@ class BandTally:
             return wide(dr.gather(types.UInt32, rho, patch)) * 2.0**-32
 
         patch = numbers - engine.replicate(numbers) * engine.n_opaque
-        new = dr.opaque(wide, float(engine.quanta - self.quanta_before))
-        since = arrivals - dr.gather(types.UInt32, self.arrivals_before, numbers)
+        quanta, fired = dr.opaque(wide, float(engine.quanta)), dr.gather(types.UInt32, engine.fired, numbers)
         emitted = [dr.gather(wide, share, patch) for share in self.shares]
-        owed = dr.fma(functools.reduce(dr.maximum, emitted), new, fraction(engine.rho) * wide(since))
+        owed = dr.fma(functools.reduce(dr.maximum, emitted), quanta, fraction(engine.rho) * wide(arrivals)) - wide(fired)
         for g, (share, rho) in enumerate(zip(emitted, self.rhos, strict=True)):
-            received = dr.gather(types.UInt64, self.received, numbers * self.n + g)
-            since = received - dr.gather(types.UInt64, self.before, numbers * self.n + g)
-            power = dr.fma(share, new * QUANTUM, fraction(rho) * wide(since))
-            carried = dr.select(owed > 0, dr.minimum(power / owed, QUANTUM), 0)
+            received, sent = (dr.gather(types.UInt64, column, numbers * self.n + g) for column in (self.received, self.sent))
+            power = dr.fma(share, quanta * QUANTUM, fraction(rho) * wide(received)) - wide(sent)
+            carried = dr.select(owed > 0, dr.clip(power / owed, 0, QUANTUM), 0)
             dr.scatter(self.weights, types.UInt32(dr.floor(carried + 0.5)), places * self.n + g)
 
     def carried(self, types, chunk) -> list:

@@ -10,6 +10,7 @@ from .geometry import COLUMN_BITS, INVERTED, OFFSET, QUAD, Geometry
 
 MASK = (1 << COLUMN_BITS) - 1
 BACK = 1 << 31  # of a face number: its back
+COLUMN, ROW = 0xF1554989, 0xEB99116D  # steps of a place, see `place_number`; odd
 
 
 def local_line(geometry: Geometry, record, numbers):
@@ -23,6 +24,17 @@ def local_lines(geometry: Geometry, record):
     face, place = record
     frame = Frame.of(geometry, face)
     return lambda numbers: frame.leave(*position(geometry, place, numbers[2], numbers[3]), numbers)
+
+
+def place_number(record):
+    """UInt32 of a patch, from its record: face + column * `COLUMN` + row * `ROW`, modulo 2^32, and a bit for inverted triangles.
+
+    It is the place in the Kronecker sequence that moves the patch's numbers (`AbstractNumbers.of_patch`). The steps were searched
+    for among 60 000 pairs of random ones: no wave over the square of directions of up to 12 periods comes to rest, or nearly,
+    along the columns and rows of a face. Patch numbers have no such steps: with 34 columns a face's mean errs 1.5 times as much.
+    """
+    face, place = record
+    return face + (place & MASK) * COLUMN + ((place >> COLUMN_BITS) & MASK) * ROW + (place & INVERTED)
 
 
 def position(geometry: Geometry, place, x, y):

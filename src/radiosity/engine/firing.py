@@ -15,6 +15,7 @@ from ..method.numbers import ready
 from . import quanta as contract
 from .bands import BandGroups, BandTally
 from .blocks import shared
+from .departure import place_number
 from .device import frozen, upload
 from .geometry import Geometry
 from .landings import DENSE, AbstractLandings, landings
@@ -116,6 +117,8 @@ class Engine:
         numbers = self.candidates()
         sweep, largest = self._sweep(numbers, 0, self.total if numbers is None else dr.width(numbers))
         self.owes = sweep is not None
+        if not self.owes and self.bands is not None:
+            self.bands.rest()
         return sweep, largest
 
     def due_between(self, low: int, high: int) -> tuple[Sweep | None, int]:
@@ -138,9 +141,7 @@ class Engine:
             counts = self._count(read, arrivals, total, largest)
             dr.eval(total, largest, *([counts] if keep else []), *([arrivals] if self.bands is not None else []))
             if self.bands is not None:
-                self.bands.weigh(self, piece, places, arrivals)
-        if self.bands is not None:
-            self.bands.quanta_before = self.quanta
+                self.bands.weigh(self, piece, places, arrivals, counts)
         lines = int(total[0])
         return (Sweep(numbers, low, size, lines, counts if keep else None), int(largest[0])) if lines else (None, 0)
 
@@ -221,9 +222,9 @@ class Engine:
 
         landed = None
         if not chunk.batch.several:
-            landed = fire(self.points(number, first, replicate, bits), chunk.mask(types, always=few))
+            landed = fire(self.points(number, first, replicate, record, bits), chunk.mask(types, always=few))
         else:
-            points = self.numbers.in_turn(first, *self._stream(number, replicate), bits, 1 << max(SHIFTS))
+            points = self.numbers.in_turn(first, *self._stream(number, replicate, record), bits, 1 << max(SHIFTS))
             count = chunk.lines(types, first)
             loop((types.UInt32(0),), lambda turn: turn < count, turn_by_turn)
         if few:
@@ -235,7 +236,8 @@ class Engine:
     def trace(self, number, index, record, bits: int):
         """Fire the ``index``-th line (from 1) of each patch number: the slot of ``arrivals`` where it lands."""
         replicate = self._replicate(number)
-        return self._land(*local_line(self.geometry, record, self.points(number, index, replicate, bits)), replicate, False, True)
+        points = self.points(number, index, replicate, record, bits)
+        return self._land(*local_line(self.geometry, record, points), replicate, False, True)
 
     def _land(self, origin, direction, replicate, coherent: bool, active):
         return self.slot(land(self.geometry, origin, direction, coherent=coherent, active=active), replicate)
@@ -247,12 +249,12 @@ class Engine:
     def _replicate(self, number):
         return self.types.UInt32(0) if self.replicates == 1 else self.replicate(number)
 
-    def points(self, number, index, replicate, bits: int):
-        """The numbers of the ``index``-th line of each patch number."""
-        patch, randomisation = self._stream(number, replicate)
+    def points(self, number, index, replicate, record, bits: int):
+        """The numbers of the ``index``-th line of each patch number, whose record it is."""
+        patch, randomisation = self._stream(number, replicate, record)
         return self.numbers.points(index, patch, randomisation(index), bits)
 
-    def _stream(self, number, replicate):
+    def _stream(self, number, replicate, record):
         """Patch, and its randomisation as a function of the index: its own for its first lines, then that of all patches."""
         types = self.types
         patch = number if self.replicates == 1 else number - replicate * self.n_opaque
@@ -260,7 +262,8 @@ class Engine:
         words = [word for half in halves for word in half]
         if not self.by_patch:
             return patch, lambda index: words
-        return patch, lambda index: self.numbers.of_patch(words, dr.select(index <= self.own_lines, patch, 0))
+        place = place_number(record)
+        return patch, lambda index: self.numbers.of_patch(words, dr.select(index <= self.own_lines, place, 0))
 
     def slot(self, hit, replicate):
         """The slot of ``arrivals`` for lines of a replicate, from where they land."""

@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from ..method.order import run as fire_all
-from ..solution.books import Books, exact_sum, exact_totals, signed_totals
+from ..solution.books import Books, exact_sum, signed_totals
 from . import state as counters
 from .bands import QUANTUM
 from .firing import Engine
@@ -43,11 +43,11 @@ class Firing(AbstractProcess):
         counters.restore(self.engine, state)
 
     def unfinished(self, state: State) -> bool:
-        return "before" in state
+        return "within" in state
 
     @cached_property
     def tally(self) -> "Arrivals":
-        return Arrivals(self.engine)
+        return Arrivals(self.engine, self.problem)
 
 
 class Arrivals(AbstractTally):
@@ -56,8 +56,8 @@ class Arrivals(AbstractTally):
 
     settles = True
 
-    def __init__(self, engine: Engine):
-        self.engine = engine
+    def __init__(self, engine: Engine, problem: Problem):
+        self.engine, self.problem = engine, problem
         self.forget()
 
     def forget(self) -> None:
@@ -69,44 +69,38 @@ class Arrivals(AbstractTally):
         """What the residue of a state brings."""
         if self._sent is None or self._state is not state:
             self.forget()  # first, for the sake of memory
-            self._state, self._sent = state, send(self.engine, state)
+            self._state, self._sent = state, send(self.engine, self.problem, state)
         return self._sent
 
     def lines(self, problem: Problem, state: State) -> int:
-        return exact_sum(state["fired"]) + self.sent(state).lines
+        return self.swept_lines(problem, state) + self.sent(state).lines
+
+    def swept_lines(self, problem: Problem, state: State) -> int:
+        return exact_sum(state["fired"])
 
     def about_lines(self, problem: Problem, state: State) -> float:
-        fired, sign = exact_sum(state["fired"]), starts(self.engine, state).sign
+        fired, begun = exact_sum(state["fired"]), starts(self.engine, problem, state)
         packets = self.engine.replicates * int(state["quanta"])
-        of_one = fired / max(packets - int(sign.sum()), packets / 2)  # what is fired lacks those of the residue
-        return fired + LONGER * len(sign) * of_one
+        of_one = fired / max(packets - begun.net, packets / 2)  # what is fired lacks those of the residue
+        return fired + LONGER * len(begun.line) * of_one
 
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
         return state["arrivals"].sum(axis=0, dtype=np.int64)
 
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        unit = problem.source.power / int(state["quanta"]) / QUANTUM
-        landed = self.sent(state).landed[..., group]
-        if "received" in state:
-            return state["received"][..., group].astype(np.int64) + landed, unit
-        return state["arrivals"] * np.int64(QUANTUM) + landed, unit
+        return self.sent(state).received[..., group], problem.source.power / int(state["quanta"]) / QUANTUM
 
     def books(self, problem: Problem, state: State, group: int) -> dict:
         source, groups, quanta = problem.source, problem.groups, int(state["quanta"])
-        replicates = len(state["arrivals"])
+        replicates, sent = len(state["arrivals"]), self.sent(state)
         if "received" not in state:
-            counts, missed, fired, unit = state["arrivals"], state["missed"], exact_sum(state["fired"]), QUANTUM
-            emitted = source.emitted_in_all(quanta) * replicates * unit
+            missed, fired, unit = state["missed"], exact_sum(state["fired"]), QUANTUM
+            emitted = source.emitted_in_all(quanta) * replicates * QUANTUM
         else:
-            counts, missed, unit = state["received"][..., group], state["received_missed"][..., group], 1
-            fired = exact_sum(state["fired_power"][group])
+            missed, fired, unit = state["received_missed"][..., group], exact_sum(state["fired_power"][group]), 1
             share = groups.emission[:, group] * problem.patches.area / source.power
             emitted = round(float(share.sum()) * quanta * QUANTUM) * replicates << 32
-        rho = Source.fixed(groups.reflectance[:, group])
-        arrived, reflected = (total * unit for total in exact_totals(counts, rho))
-        sent = self.sent(state)
-        more = signed_totals(sent.landed[..., group], rho)
-        arrived, reflected = arrived + more[0], reflected + more[1]
+        arrived, reflected = signed_totals(sent.received[..., group], Source.fixed(groups.reflectance[:, group]))
         escaped, lost = (exact_sum(x) * unit + int(y.sum()) << 32 for x, y in zip(missed, sent.missed[..., group], strict=True))
         fired = fired * unit + sent.fired[group]
         watts = source.power / quanta / QUANTUM / 2**32 / replicates

@@ -103,6 +103,10 @@ class AbstractTally(ABC):
         """The same where it is quick to tell, else an estimate."""
         return self.lines(problem, state)
 
+    def swept_lines(self, problem: Problem, state: State) -> int:
+        """The same without lines that are traced where results are read."""
+        return self.lines(problem, state)
+
     @abstractmethod
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
         """(n_patches,) int64: lines that landed on each patch, replicates together."""

@@ -22,7 +22,7 @@ class Progress:
 
     Attributes:
         stage: how many stages are complete.
-        rays: lines traced so far, replicates together.
+        rays: lines of sweeps so far, replicates together; those that send the residue on come where results are read.
         rays_per_second: since the first sweep began.
         error: relative error after the last complete stage, NaN where unknown.
         fraction: of the budget, 0 to 1, or None where it cannot be told yet.
@@ -60,10 +60,12 @@ class Teller:
         """Tracing begins, with lines of an earlier run done."""
         self.tracing_since, self.lines, self.lines_before = time.perf_counter(), lines, lines
 
-    def complete(self, lines: int, quanta: int, error: float, margin: float = 1.0) -> None:
-        """A stage is complete; the error may be ``margin`` times what is stated (NaN: nobody knows)."""
+    def complete(self, lines: int, quanta: int, error: float, margin: float = 1.0, swept: int | None = None) -> None:
+        """A stage is complete; the error may be ``margin`` times what is stated (NaN: nobody knows). ``swept`` of its lines were
+        told, or else all."""
+        swept = lines if swept is None else swept
         self.bound = error * margin
-        self.stage, self.lines, self.error, self.lines_a_quantum = self.stage + 1, lines, error, lines / quanta
+        self.stage, self.lines, self.error, self.lines_a_quantum = self.stage + 1, swept, error, swept / quanta
         if error > 0 and lines > 0:
             self.known.append((math.log2(lines), math.log2(error)))
 

@@ -3,11 +3,13 @@
 When a stage ends, patch i owes x_i = E_i A_i / delta + rho_i h_i and has fired s_i = floor(x_i + phase_i) lines. The residue
 r_i = x_i - s_i is known exactly, and h_j - sum_i s_i F_ij has mean zero; so what is missing of the mean of h is the answer D to
 the means of the residues: D = F^T r + F^T rho D. Where no light comes back to its patch these are zero, since phases are uniform.
-In a narrow gap they are not, and most of the light is missing at few lines.
+In a narrow gap they are not, and most of the light is missing at few lines. Bands have residues of their own: what a patch owes
+of each less what its lines have carried.
 
-Residues are summed over groups of consecutive patches, in which most of their noise cancels, and become whole lines of weight 1
-or -1 by systematic rounding along the patches: all that is left unsent of a replicate is less than a line. A group's lines begin
-on its patches in proportion to what these owe, up to one line: as the means of their residues grow, too.
+Residues are summed over groups of consecutive patches, in which most of their noise cancels, and become whole lines by systematic
+rounding along the patches: all that is left unsent of a replicate is less than a line. A line carries 1 or -1 of the band that a
+group lacks most of (or has too much of), and its share of the others. It begins on a patch of the group in proportion to what
+these owe, up to one line: as the means of their residues grow, too.
 """
 
 import math
@@ -19,6 +21,9 @@ import numpy as np
 from ..patches.model import Patches
 from ..pieces import PIECE, pieces
 from . import quanta as contract
+from .bands import QUANTUM
+from .problem import Problem
+from .process import State
 from .quanta import Source
 
 SHARE = 0.025  # of a replicate's quanta: the lines that noise makes are to be no more
@@ -34,30 +39,71 @@ class Starts:
     Attributes:
         replicate, patch: (m,) int64, where they begin, replicate by replicate.
         line: (m,) uint32, which of its replicate, from 0 on.
-        sign: (m,) int64, 1 or -1.
+        power: (m, n_groups) int64, what they carry, `QUANTUM` to a quantum: that, or less that, of one of the groups.
     """
 
     replicate: np.ndarray
     patch: np.ndarray
     line: np.ndarray
-    sign: np.ndarray
+    power: np.ndarray
 
     @staticmethod
-    def of(source: Source, groups: "Groups", quanta: int, arrivals: np.ndarray, phase: np.ndarray, seed: int) -> "Starts":
-        """From the state after a stage of N quanta.
+    def of(problem: Problem, state: State, phase: np.ndarray, seed: int) -> "Starts":
+        """From a process's state after a stage.
 
         Args:
-            groups: of patches.
-            arrivals, phase: (replicates, n_patches) uint32.
+            phase: (replicates, n_patches) uint32.
         """
-        whole, fraction = source.emitted(quanta)
-        emitted = (whole.astype(np.uint64) << np.uint64(32)) | fraction
-        found = []
-        for replicate, (landed, offset) in enumerate(zip(arrivals, phase, strict=True)):
+        residue, found = Residue.of(problem, state, phase), []
+        groups = Groups.of(problem.patches, residue.quanta)
+        for replicate in range(len(phase)):
             random = np.random.Generator(np.random.Philox(contract.stream(seed, replicate, contract.RESIDUE)))
-            patch, sign = _lines(source.rho, emitted, landed, offset, groups, random)
-            found.append((np.full(len(patch), replicate), patch, np.arange(len(patch), dtype=np.uint32), sign))
+            patch, power = _lines(residue, replicate, groups, random)
+            found.append((np.full(len(patch), replicate), patch, np.arange(len(patch), dtype=np.uint32), power))
         return Starts(*(np.concatenate(column) for column in zip(*found, strict=True)))
+
+    @property
+    def net(self) -> int:
+        """How many carry more than nothing, less those that carry less."""
+        return int(np.sign(self.power.max(axis=1) + self.power.min(axis=1)).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Residue:
+    """Of all patches after a stage.
+
+    Attributes:
+        problem: what is solved.
+        quanta: N.
+        emitted: (n_patches,) uint64, E_i A_i / delta times 2^32.
+        state: of the process.
+        phase: (replicates, n_patches) uint32.
+    """
+
+    problem: Problem
+    quanta: int
+    emitted: np.ndarray
+    state: State
+    phase: np.ndarray
+
+    @staticmethod
+    def of(problem: Problem, state: State, phase: np.ndarray) -> "Residue":
+        """After a process's state."""
+        quanta = int(state["quanta"])
+        whole, fraction = problem.source.emitted(quanta)
+        return Residue(problem, quanta, (whole.astype(np.uint64) << np.uint64(32)) | fraction, state, phase)
+
+    def read(self, replicate: int, part: slice) -> tuple[np.ndarray, np.ndarray]:
+        """What some patches owe of the scalar problem, (k,) uint64, and what is left of each group, (k, n_groups) int64; both in
+        2^-32 of a quantum."""
+        arrivals, phase = self.state["arrivals"][replicate, part], self.phase[replicate, part]
+        owed = self.problem.source.rho[part].astype(np.uint64) * arrivals + self.emitted[part]
+        if "received" not in self.state:
+            return owed, (((owed + phase) % ONE).astype(np.int64) - phase)[:, None]
+        groups, received = self.problem.groups, self.state["received"][replicate, part]
+        share = groups.emission[part] * (self.problem.patches.area[part] / self.problem.source.power)[:, None]
+        owed_of_each = share * (self.quanta * QUANTUM) + Source.fixed(groups.reflectance[part]) * 2.0**-32 * received
+        return owed, 2 * np.round(owed_of_each - self.state["sent"][replicate, part]).astype(np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +112,7 @@ class Groups:
 
     Attributes:
         n_patches: in all.
-        begins: (n_groups,) int64, the first patch of each, increasing; None where each patch is alone.
+        begins: (k,) int64, the first patch of each, increasing; None where each patch is alone.
     """
 
     n_patches: int
@@ -105,18 +151,20 @@ def group_size(n_patches: int, quanta: int) -> int:
     return min(math.ceil(alone**2), MOST)
 
 
-def _lines(rho, emitted, arrivals, phase, groups: Groups, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Patches where a replicate's lines begin, and their signs."""
+def _lines(residue: Residue, replicate: int, groups: Groups, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Patches where a replicate's lines begin, and what they carry."""
     total, found = int(random.integers(0, 1 << 32)), []
     for part, begins in groups.parts():
-        owed = rho[part].astype(np.uint64) * arrivals[part] + emitted[part]
-        left = ((owed + phase[part]) % ONE).astype(np.int64) - phase[part]
-        sums = np.cumsum(np.append(total, np.add.reduceat(left, begins)))
-        total, lines = int(sums[-1]), np.diff(sums >> 32)
-        group = np.repeat(np.arange(len(lines)), np.abs(lines))
-        sign = np.sign(lines[group])
-        found.append((part.start + (group if groups.begins is None else _within(owed, begins, group, random)), sign))
-    return tuple(np.concatenate(column) for column in zip(*found, strict=True))
+        owed, left = residue.read(replicate, part)
+        sums = np.add.reduceat(left, begins)
+        most = sums[np.arange(len(sums)), np.abs(sums).argmax(axis=1)]
+        reached = np.cumsum(np.append(total, most))
+        total = int(reached[-1])
+        group = np.repeat(np.arange(len(sums)), np.abs(np.diff(reached >> 32)))
+        power = np.round(sums[group] * (QUANTUM / np.abs(most[group]))[:, None]).astype(np.int64)
+        found.append((part.start + (group if groups.begins is None else _within(owed, begins, group, random)), power))
+    patch, power = (np.concatenate(column) for column in zip(*found, strict=True))
+    return patch, power
 
 
 def _within(owed: np.ndarray, begins: np.ndarray, group: np.ndarray, random: np.random.Generator) -> np.ndarray:

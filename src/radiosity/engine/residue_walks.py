@@ -1,4 +1,4 @@
-"""The lines that send the residue on, and the walks that they begin (see `residue`), outside the counters of hits and lines fired.
+"""The lines that send the residue on, and the walks that they begin (see `residue`), outside the counters of hits and lines.
 
 A line of weight 1 goes on from where it lands with its weight times the reflectance, and where that falls below `LEAST`, with
 this weight or not at all: absorption by chance alone would add noise to what the scene receives where it reflects nearly all.
@@ -11,14 +11,16 @@ import numpy as np
 
 from ..method.numbers import WORDS
 from ..method.numbers.random import philox
+from ..pieces import pieces
 from . import quanta as contract
 from .bands import QUANTUM
 from .blocks import shared
 from .device import frozen, upload
 from .lines import local_line
+from .problem import Problem
 from .process import State
 from .recorded import loop
-from .residue import Groups, Starts
+from .residue import Starts
 
 LEAST = QUANTUM // 2  # 2^30
 LONGER = 1.6  # times as many lines as chance alone would take, 1.5 to 1.7 where reflectances are 0.5 to 1
@@ -26,65 +28,53 @@ LONGER = 1.6  # times as many lines as chance alone would take, 1.5 to 1.7 where
 
 @dataclass(frozen=True, eq=False)
 class Sent:
-    """What residues brought, signed, in 64-bit fixed point: `QUANTUM` to a quantum.
+    """What residues bring to what landed, which may be less than nothing, in 64-bit fixed point: `QUANTUM` to a quantum.
 
     Attributes:
-        landed: (replicates, n_patches, n_groups) int64.
-        missed: (2, replicates, n_groups) int64, escaped and lost.
-        fired: n_groups whole numbers, what left patches along lines, of all replicates.
-        lines: of all replicates.
+        received: (replicates, n_patches, n_groups) int64, both together.
+        missed: (2, replicates, n_groups) int64, escaped and lost, of the residue alone.
+        fired: n_groups whole numbers, what of the residue left patches along lines, of all replicates.
+        lines: of the residue, of all replicates.
     """
 
-    landed: np.ndarray
+    received: np.ndarray
     missed: np.ndarray
     fired: list[int]
     lines: int
 
 
-def starts(engine, state: State) -> Starts:
+def starts(engine, problem: Problem, state: State) -> Starts:
     """Where lines begin after the state's stage."""
-    phase, quanta = frozen(engine.phase).reshape(engine.replicates, engine.n), int(state["quanta"])
-    groups = Groups.of(engine.geometry.patches, quanta)
-    return Starts.of(engine.source, groups, quanta, state["arrivals"], phase, engine.seed)
+    return Starts.of(problem, state, frozen(engine.phase).reshape(engine.replicates, engine.n), engine.seed)
 
 
-def send(engine, state: State) -> Sent:
+def send(engine, problem: Problem, state: State) -> Sent:
     """Send the residues of a complete stage on.
 
     Args:
         engine: of the run; its counters are left alone.
+        problem: what is solved.
         state: of the stage.
     """
-    n_groups = 1 if engine.bands is None else engine.bands.n
+    begun = starts(engine, problem, state)
+    n_groups = begun.power.shape[1]
     tally = dr.zeros(engine.types.Int64, (engine.total + 2 * engine.replicates) * n_groups)
     dr.eval(tally)
-    begun, fired, lines = starts(engine, state), [0] * n_groups, 0
-    if len(begun.sign):
-        fired, lines = _walk(engine, begun, _carried(engine, state, begun), tally)
-    flat = frozen(tally).reshape(-1, n_groups)
-    landed = flat[: engine.total].reshape(engine.replicates, engine.n, n_groups)
-    return Sent(landed, flat[engine.total :].reshape(2, engine.replicates, n_groups), fired, lines)
+    fired, lines = _walk(engine, begun, tally) if len(begun.line) else ([0] * n_groups, 0)
+    flat = frozen(tally).reshape(-1, n_groups)  # nobody else holds it: hits are added where it lies, which takes no memory
+    received = flat[: engine.total].reshape(engine.replicates, engine.n, n_groups)
+    for replicate, row in enumerate(received):
+        for part in pieces(engine.n):
+            if "received" in state:
+                row[part] += state["received"][replicate, part].astype(np.int64)
+            else:
+                row[part] += (state["arrivals"][replicate, part] * np.int64(QUANTUM))[:, None]
+    return Sent(received, flat[engine.total :].reshape(2, engine.replicates, n_groups), fired, lines)
 
 
-def _carried(engine, state: State, begun: Starts) -> list[np.ndarray]:
-    """(m,) int64 of each group: what lines carry at first. Of bands what each has of a patch's power, over that of the scalar
-    problem: so much a line of the patch has carried in the mean of its sweeps."""
-    if engine.bands is None:
-        return [begun.sign * QUANTUM]
-    patch, quanta = begun.patch, int(state["quanta"])
-    emission, reflectance = engine.bands.groups.emission, engine.bands.groups.reflectance
-    unit = engine.geometry.patches.area[patch] / engine.source.power * quanta
-    owed = engine.source.share[patch] * quanta + engine.source.rho[patch] * 2.0**-32 * state["arrivals"][begun.replicate, patch]
-    carried = []
-    for g in range(engine.bands.n):
-        power = emission[patch, g] * unit * QUANTUM + reflectance[patch, g] * state["received"][begun.replicate, patch, g]
-        carried.append(begun.sign * np.round(np.minimum(power / owed, QUANTUM)).astype(np.int64))
-    return carried
-
-
-def _walk(engine, begun: Starts, carried: list[np.ndarray], tally) -> tuple[list[int], int]:
+def _walk(engine, begun: Starts, tally) -> tuple[list[int], int]:
     """One lane a line, which its walk follows to the end, in one kernel. What was fired of each group, and how many lines."""
-    types, m, n_groups = engine.types, len(begun.sign), len(carried)
+    types, (m, n_groups) = engine.types, begun.power.shape
     width = max(m, 2)  # arrays of one entry would compile a kernel of their own
 
     def column(kind, values):
@@ -107,10 +97,10 @@ def _walk(engine, begun: Starts, carried: list[np.ndarray], tally) -> tuple[list
         rho = dr.gather(types.UInt32, engine.rho, patch, here)
         left = types.UInt32((types.UInt64(weight) * types.UInt64(rho)) >> 32)
         after = dr.maximum(left, LEAST)
-        here &= choice >> 2 < left | (left >= LEAST)
+        here &= choice >> 2 < left
         return slot, turn + 1, here, after, _reflected(engine, powers, patch, here, left, after), fired
 
-    powers = [column(types.Int64, power) for power in carried]
+    powers = [column(types.Int64, power) for power in begun.power.T]
     none = [dr.zeros(types.Int64, width) for _ in powers]
     state = (number, dr.zeros(types.UInt32, width), going, dr.full(types.UInt32, QUANTUM, width), powers, none)
     _, turn, _, _, _, fired = loop(state, lambda number, turn, going, *rest: going, body)

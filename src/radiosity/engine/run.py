@@ -90,7 +90,7 @@ class Run:
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
-        self.teller.begin(0 if self.resume is None else round(process.tally.about_lines(self.problem, process.capture())))
+        self.teller.begin(0 if self.resume is None else process.tally.swept_lines(self.problem, process.capture()))
         status, pending, steps = "complete", {}, [target]
         while target:
             started = time.perf_counter()
@@ -108,7 +108,7 @@ class Run:
             error = snapshot.error(self.rows) if known else math.nan
             margin = self._margin(snapshot)
             lines = snapshot.lines if known or large else round(snapshot.about_lines)
-            self.teller.complete(lines, target, error, margin)
+            self.teller.complete(lines, target, error, margin, process.tally.swept_lines(self.problem, snapshot.state))
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
                 break

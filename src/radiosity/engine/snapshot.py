@@ -62,7 +62,8 @@ class Snapshot:
             bands = np.flatnonzero(groups.index == group)
             for part, one, its_error in self._irradiance(group):
                 mean[part, bands], error[part, bands] = (x[:, None] * groups.scale[bands] for x in (one, its_error))
-        if self.tally.counts_landings and by_luck(mean, error).any():
+        some = any(by_luck(mean[part], error[part]).any() for part in pieces(len(mean)))
+        if some and self.tally.counts_landings:
             usual = usual_power(mean, self.arrivals, self.problem.patches.area, self.line)
             error = least_error(mean, error, self.arrivals, self.problem.patches.area, usual, self.replicates)
         return mean, error

@@ -13,8 +13,8 @@ def capture(engine) -> dict[str, np.ndarray]:
     """An engine's counters on the host, as they are now.
 
     Keys: quanta, arrivals and fired (replicates, n_patches), missed (2, replicates). Where bands differ also received
-    (replicates, n_patches, groups), received_missed (2, replicates, groups) and fired_power (groups, replicates); and,
-    within a stage, before (as received), arrivals_before and quanta_before, which equal their namesakes after it.
+    and sent (replicates, n_patches, groups), received_missed (2, replicates, groups) and fired_power (groups, replicates); and,
+    within a stage, the key within.
     """
     arrivals, fired, missed = engine.counters()
     state = {"quanta": np.array(engine.quanta), "arrivals": arrivals, "fired": fired, "missed": missed}
@@ -25,11 +25,10 @@ def capture(engine) -> dict[str, np.ndarray]:
     split, shape = engine.total * bands.n, (engine.replicates, engine.n)
     state["received"] = received[:split].reshape(*shape, bands.n)
     state["received_missed"] = received[split:].reshape(2, engine.replicates, bands.n)
+    state["sent"] = frozen(bands.sent).reshape(*shape, bands.n)
     state["fired_power"] = frozen(bands.fired).reshape(bands.n, engine.replicates)
     if engine.owes:
-        state["before"] = frozen(bands.before).reshape(*shape, bands.n)
-        state["arrivals_before"] = frozen(bands.arrivals_before).reshape(shape)
-        state["quanta_before"] = np.array(bands.quanta_before)
+        state["within"] = np.array(True)
     return state
 
 
@@ -41,7 +40,7 @@ def restore(engine, state: dict[str, np.ndarray]) -> None:
     """
     wanted = {"quanta", "arrivals", "fired", "missed"}
     if engine.bands is not None:
-        wanted |= {"received", "received_missed", "fired_power"}
+        wanted |= {"received", "received_missed", "sent", "fired_power"}
     missing = sorted(wanted - set(state))
     if missing or state["arrivals"].shape != (engine.replicates, engine.n):
         raise MethodError(
@@ -53,9 +52,7 @@ def restore(engine, state: dict[str, np.ndarray]) -> None:
     bands = engine.bands
     if bands is not None:
         bands.received = upload(types.UInt64, np.concatenate([state["received"].ravel(), state["received_missed"].ravel()]))
-        bands.before = upload(types.UInt64, state.get("before", state["received"]))
-        bands.arrivals_before = upload(types.UInt32, state.get("arrivals_before", state["arrivals"]))
-        bands.quanta_before = int(state.get("quanta_before", state["quanta"]))
+        bands.sent = upload(types.UInt64, state["sent"])
         bands.fired = upload(types.UInt64, state["fired_power"])
     engine.set_quanta(int(state["quanta"]))
 

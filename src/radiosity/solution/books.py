@@ -61,13 +61,17 @@ def exact_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
 
 
 def signed_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
-    """As `exact_totals`, of signed integers whose columns' sums 64 bits hold."""
+    """As `exact_totals`, of signed integers of 64 bits."""
     total = weighted = 0
     for part in pieces(rows.shape[1]):
-        column = rows[:, part].sum(axis=0, keepdims=True)
-        for sign in (1, -1):
-            one = exact_totals(np.maximum(sign * column, 0).astype(np.uint64), weight[part])
-            total, weighted = total + sign * one[0], weighted + sign * one[1]
+        columns = np.zeros((2, part.stop - part.start), np.int64)  # of low and of high halves
+        for row in rows[:, part]:
+            columns += row & 0xFFFFFFFF, row >> 32
+        for shift, column in zip((0, 32), columns, strict=True):
+            for sign in (1, -1):
+                one = np.maximum(sign * column, 0)
+                total += sign * exact_sum(one) << shift
+                weighted += sign * exact_dot(one, weight[part]) << shift
     return total, weighted
 
 

@@ -4,6 +4,7 @@ import drjit as dr
 import numpy as np
 
 from ...method.numbers import ready
+from ..departure import place_number
 from ..device import upload
 from ..geometry import Geometry
 from ..lanes import CHUNK
@@ -34,8 +35,8 @@ def missed(geometry: Geometry, lines: int = 1024, seed: int = 0) -> tuple[np.nda
         patch = row + dr.opaque(UInt32, begin)
         index = lane - row * dr.opaque(UInt32, lines) + 1
         words = [dr.gather(UInt32, shift, UInt32(i)) for i in range(8)]
-        points = numbers.points(index, patch, numbers.of_patch(words, patch), 16)
         record = dr.gather(types.Array2u, geometry.patch_records, patch)
+        points = numbers.points(index, patch, numbers.of_patch(words, place_number(record)), 16)
         landed = patch_of(geometry, land(geometry, *local_line(geometry, record, points)), n + 1, n)
         dr.eval(landed)
         found = np.array(landed)[: count * lines].reshape(count, lines)

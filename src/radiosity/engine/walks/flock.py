@@ -84,7 +84,7 @@ class Legs:
         """The first leg of a walk, from a uniform point of its patch."""
         engine = self.engine
         replicate = engine.replicate(number)
-        numbers = engine.points(number, index, replicate, bits)
+        numbers = engine.points(number, index, replicate, record, bits)
         numbers[4:] = self._moved(numbers[4:], number - replicate * engine.n_opaque)
         return self._land(local_line(engine.geometry, record, numbers), replicate, numbers)
 

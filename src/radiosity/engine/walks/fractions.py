@@ -62,7 +62,7 @@ class Fractions:
         """In a kernel: patch number where a walk begins, and its record; ``number`` tells the replicate."""
         engine, types = self.engine, self.engine.types
         replicate = engine.replicate(number)
-        chosen = engine.points(number, index, replicate, bits)[4]
+        chosen = engine.points(number, index, replicate, engine.record(number), bits)[4]
         position = (types.UInt32(chosen * 2.0**24) << 8) | ((index * MIX) >> 24)
         patch = dr.binary_search(
             0, engine.n - 1,

@@ -28,14 +28,14 @@ class AbstractNumbers(ABC):
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         """(8,) uint32 drawn on the host from a strong generator: one for the scene and replicate."""
 
-    def of_patch(self, randomisation: list, patch: Any) -> list:
-        """In a kernel: the randomisation of a patch (UInt32), made from that of the replicate, which is that of patch 0.
+    def of_patch(self, randomisation: list, place: Any) -> list:
+        """In a kernel: the randomisation of a patch, made from that of its replicate, which is that of place 0.
 
-        The words of patch p are moved by p times five numbers, modulo 1: a Kronecker sequence, so that the patches of a surface,
-        and the patches of any stretch of numbers, move a point evenly over the cube (its numbers are those of M. Roberts, "The
-        unreasonable effectiveness of quasirandom sequences", 2018).
+        Each word is moved by the place (UInt32) times a number of its own, modulo 1: a Kronecker sequence (its numbers are those
+        of M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). A place is such a sum of face, column and
+        row, see `engine.departure.place_number`, that the patches of a face move a point evenly over the cube.
         """
-        moved = [word + patch * step for word, step in zip(randomisation, KRONECKER, strict=False)]
+        moved = [word + place * step for word, step in zip(randomisation, KRONECKER, strict=False)]
         return [*moved, *randomisation[DIMENSIONS:]]
 
     @abstractmethod

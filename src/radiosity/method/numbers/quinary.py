@@ -41,11 +41,11 @@ class Quinary(AbstractNumbers):
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return packed(np.random.Generator(np.random.Philox(stream)).integers(0, BASE, (DIMENSIONS, ROWS)))
 
-    def of_patch(self, randomisation, patch):
-        """The first four digits of each coordinate are moved: a place of 1/625 among patches, below which they go alike."""
+    def of_patch(self, randomisation, place):
+        """The first four digits of each coordinate are moved, by multiples of 1/625."""
         moved = list(randomisation)
         for word, step in zip((0, 1, 2, 3, 6), KRONECKER, strict=True):
-            total = moved[word] + first_digits(patch * step)
+            total = moved[word] + first_digits(place * step)
             moved[word] = total - _fives(total + 0x33333333)
         return moved
 

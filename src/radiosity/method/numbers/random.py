@@ -22,7 +22,7 @@ class Random(AbstractNumbers):
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return stream.generate_state(WORDS, np.uint32)
 
-    def of_patch(self, randomisation, patch):
+    def of_patch(self, randomisation, place):
         return randomisation  # the patch is in the counter
 
     def prepare(self, types):
