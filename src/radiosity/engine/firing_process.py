@@ -61,7 +61,6 @@ class Arrivals(AbstractTally):
         self.forget()
 
     def forget(self) -> None:
-        """Let go of what was read."""
         self._state: State | None = None
         self._sent: Sent | None = None
 

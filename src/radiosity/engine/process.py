@@ -107,6 +107,10 @@ class AbstractTally(ABC):
         """The same without lines that are traced where results are read."""
         return self.lines(problem, state)
 
+    def forget(self) -> None:
+        """Let go of what was read of a state."""
+        return
+
     @abstractmethod
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
         """(n_patches,) int64: lines that landed on each patch, replicates together."""

@@ -126,6 +126,7 @@ class Run:
             steps = [target]
             if target and large and self.replicates > 1:
                 snapshot.settle()
+                give_back_memory()
         if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
             raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
         if self.snapshot is None:

@@ -30,6 +30,7 @@ class Snapshot:
         if self.tally.settles:
             _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.books, self.asked
             self.state = {}
+            self.tally.forget()
 
     @cached_property
     def quanta(self) -> int:
