@@ -110,7 +110,8 @@ def least_error(
     irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray,
     usual: np.ndarray | None = None, replicates: int = 1,
 ) -> np.ndarray:  # fmt: skip
-    """(n_patches, n_bands) standard error, where it is zero since all replicates agree by chance. It is written over.
+    """(n_patches, n_bands) standard error, where it is zero since all replicates agree by chance, or since signed lines of the
+    residue cancel. It is written over.
 
     Where few lines landed it is that of Poisson's arrivals, and of one arrival where none landed or brought anything. Where many
     did it is what whole lines leave open: R replicates of equal counts know each of them to a line, uniformly, and their mean to
@@ -123,7 +124,8 @@ def least_error(
     usual = usual_power(irradiance, arrivals, area) if usual is None else usual
     usual = np.broadcast_to(usual, irradiance.shape)
     for part in pieces(len(area)):
-        lucky = by_luck(irradiance[part], error[part])
+        none = (irradiance[part] == 0) & (arrivals[part, None] == 0)  # signed lines that cancel say no more than none
+        lucky = by_luck(irradiance[part], error[part]) | none & (error[part] * area[part, None] < usual[part])
         if not lucky.any():
             continue
         count = np.where(irradiance[part] > 0, arrivals[part, None], 0)
