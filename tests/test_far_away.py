@@ -148,3 +148,11 @@ def test_what_is_no_larger_than_an_ulp_where_it_lies_is_told_by_name(room):
         rd.solve(rd.subdivide(far, cells=1), rays=20_000)
     (text,) = [f.message for f in check(far).findings if f.kind == "too small"]
     assert "'pebble'" in text
+
+
+def test_global_lines_through_a_ball_that_is_nearly_empty_are_told_of_or_refused(room):
+    patches = [rd.subdivide(stray(room, distance), cells=1) for distance in (100.0, 1000 * KILOMETRE)]
+    with pytest.warns(rd.RadiosityWarning, match="lines 'global-disc'.* 'stray' lies far away; take lines 'spans' or 'local'"):
+        rd.solve(patches[0], "global-multipath-first-shot", lines="global-disc", rays=20_000)
+    with pytest.raises(rd.MethodError, match="'stray' lies far away"):
+        rd.solve(patches[1], "global-multipath-first-shot", lines="global-disc", rays=20_000)

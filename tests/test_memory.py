@@ -119,6 +119,24 @@ def test_a_run_that_was_told_keeps_to_it(capsys, method):
     assert "1 MiB are allowed (memory)" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("method", [rd.Method(), rd.Method(equation="continuous"), rd.Method(order="regular")], ids=str)
+def test_expected_memory_grows_with_bands_replicates_and_patches(method):
+    """By the table: each group of bands and each replicate takes its own."""
+    few, many = (rd.subdivide(rd.load_scene("room"), cells=cells) for cells in (2, 20))
+    one = demand.DEMANDS[method.machine]
+
+    def wanted(patches, groups, replicates):
+        return demand.demand(method, patches, groups, replicates, None)
+
+    for patches in (few, many):
+        n = len(patches)
+        assert wanted(patches, 3, 8) - wanted(patches, 1, 8) == pytest.approx(2 * 8 * n * one.group)
+        assert wanted(patches, 3, 8) - wanted(patches, 3, 1) == pytest.approx(7 * n * (one.replicate + 3 * one.group))
+    more = len(many) - len(few)
+    expected = more * (one.patch + one.band + 2 * (one.replicate + one.group))
+    assert wanted(many, 1, 2) - wanted(few, 1, 2) == pytest.approx(expected)
+
+
 def test_what_will_not_fit_is_refused_before_it_begins(monkeypatch):
     patches = rd.subdivide(rd.load_scene("cornell-box"), about=200_000)
     monkeypatch.setenv(memory.VARIABLE, "200M")

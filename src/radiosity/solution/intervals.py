@@ -102,8 +102,8 @@ def irradiance_bounds(
 
 
 def by_luck(mean: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """Where all replicates agree, up to rounding."""
-    return error <= ROUNDING * np.abs(mean)
+    """Where all replicates agree, up to rounding, or what lines brought adds up to nothing (the residue's have signs)."""
+    return (error <= ROUNDING * np.abs(mean)) | ((mean == 0) & (error > 0))
 
 
 def least_error(
@@ -129,7 +129,7 @@ def least_error(
         count = np.where(irradiance[part] > 0, arrivals[part, None], 0)
         lines = np.where(count < FEW, np.sqrt(np.maximum(count, 1)), np.sqrt(replicates / 12))
         spread = power_of_an_arrival(irradiance[part], arrivals[part], area[part], usual[part]) * lines
-        np.copyto(error[part], spread / area[part, None], where=lucky)
+        np.copyto(error[part], np.maximum(spread / area[part, None], error[part]), where=lucky)
     return error
 
 
