@@ -1,9 +1,10 @@
 """The mean of many short runs, of every method, in a lamp-lit room: right within the bias that the method states (contract 12).
 
-In a furnace many faults leave no trace. Here a small lamp lights a box whose floor is darker than the rest: 200 independent runs
-of 2 000 lines (36 a patch), surface by surface. Methods of the discrete equation are held to exact form factors of polygons,
-those of the continuous one to 60 million lines of drawn random walks. Student's t, alpha = 1e-3 for all methods and surfaces
-together (Bonferroni), one comparison a method and surface; what a method states as its bias is allowed on top, and nothing else.
+In a furnace many faults leave no trace. Here a small lamp lights a box whose floor is darker than the rest: 200 independent
+runs of 2 000 lines (36 a patch), surface by surface. Methods of the discrete equation are held to exact form factors of
+polygons, those of the continuous one to 60 million lines of drawn random walks. Student's t, alpha = 1e-3 for all methods and
+surfaces together (Bonferroni), one comparison a method and surface; what a method states as its bias is allowed on top, and
+nothing else.
 """
 
 import numpy as np
