@@ -15,7 +15,7 @@ def powers(solution: rd.Solution, *, key=None, tally: AbstractTally | None = Non
     patches, problem = solution.patches, Problem.of(solution.patches)
     if tally is None:
         method = rd.Method(**solution.provenance["choices"])
-        tally = make(Geometry(patches, choose("cpu")), problem, method, 0, 1).tally
+        tally = make(Geometry(patches, choose("cpu")), problem, method, solution.provenance["seed"], solution.replicates).tally
     values, unit = tally.irradiance(problem, solution.state, group)
     _, key = np.unique(patches.surface if key is None else key, return_inverse=True)
     return np.stack([np.bincount(key, row) for row in np.asarray(values, float)]) * unit

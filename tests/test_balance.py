@@ -110,6 +110,18 @@ def test_true_factors_stay_and_what_escapes_is_left_out(random):
     assert found.escaped is missed
 
 
+def test_lines_own_directions_are_the_transpose_by_areas():
+    """A_i F_ij / A_j of patches of unlike areas, and what it gathers: what i sends arrives at j."""
+    area = np.array([1.0, 4.0, 0.5])
+    matrix = np.array([[0.0, 0.3, 0.1], [0.0, 0.0, 0.05], [0.6, 0.2, 0.0]])  # not reciprocal: backs let lines pass
+    seen = sparse(matrix, 1 - matrix.sum(axis=1)).sent(area)
+    assert seen.dense() == pytest.approx((area[:, None] * matrix / area).T)
+    radiosity = np.array([2.0, 3.0, 5.0])
+    assert area * seen.gather(radiosity) == pytest.approx((area * radiosity) @ matrix)  # power
+    assert sparse(matrix, np.zeros(3)).gather(radiosity) == pytest.approx(matrix @ radiosity)
+    assert seen.sparse(3).toarray() == pytest.approx(seen.dense())
+
+
 def test_rows_of_no_weight_follow_the_other_side():
     truth, area = exact()
     wrong, weight = truth.copy(), np.ones(15)

@@ -186,7 +186,7 @@ def test_every_method_leaves_room_above_zero(name):
         warnings.simplefilter("ignore", rd.RadiosityWarning)
         solution = rd.solve(patches, rays=2_000, **METHODS[name])
     none = solution.irradiance[:, 0] == 0
-    assert none.any() or name in ("control variate", "matrix")
+    assert none.any() or name in ("control variate", "matrix", "form factors", "pooling")
     low, high = solution.interval(0.95, "irradiance")
     assert (solution.irradiance_standard_error[none] > 0).all()
     assert (high[none] > 0).all()
@@ -248,7 +248,7 @@ def held(closed, quanta: int, runs: int) -> np.ndarray:
 
 
 def test_a_sensor_that_half_a_line_reaches(closed):
-    """At 92 %, 40 runs would hold 33 or fewer with a probability of 3 %; 50 % of runs held before there was a bound."""
+    """At 92 %, 40 runs would hold 33 or fewer with a probability of 3 %. In more than half of them no line lands."""
     assert (held(closed, 218, 40) > 33 / 40).all()
 
 

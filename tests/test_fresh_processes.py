@@ -34,7 +34,6 @@ SCENES = {
 ONE_REPLICATE = "--cells 1 --replicates 1"
 CASES = {
     "tables of four words": ("", [f"solve room {ONE_REPLICATE} --numbers sobol --quanta 1024"]),
-    "tables of sobol, few lines": ("", ["solve room --cells 2 --numbers niederreiter --rays 32768"]),
     "tables of digits": ("", [f"solve room {ONE_REPLICATE} --numbers scrambled-halton --quanta 6875"]),
     "tables in base 5": ("", [f"solve room {ONE_REPLICATE} --numbers faure --order depth-first --quanta 75000"]),
     "one pixel": ("one, passes", ["solve a.toml --rays 1k -o o.npz",

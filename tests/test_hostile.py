@@ -114,7 +114,7 @@ def test_edges_of_no_length():
 LONELY = {
     "one triangle": lambda: rd.Scene.from_arrays(SQUARE[:3], [[0, 1, 2]], 0.5, 1.0),
     "a plane": lambda: rd.Scene.from_arrays(
-        (SQUARE + np.arange(100)[:, None, None] // (1, 100, 101) % (10, 10, 1) * [1.0, 1, 0]).reshape(-1, 3),
+        (SQUARE + np.arange(100)[:, None, None] // (1, 10, 100) % (10, 10, 1) * [1.0, 1, 0]).reshape(-1, 3),
         np.arange(400).reshape(100, 4), 0.5, 1.0,
     ),
     "inside out": lambda: furnace(inward=False),

@@ -73,6 +73,17 @@ def test_the_process_may_be_limited(system, monkeypatch):
     assert memory.free() == 0
 
 
+def test_what_the_process_has_is_counted_in_kibibytes(tmp_path, monkeypatch):
+    resource = pytest.importorskip("resource")
+    monkeypatch.setattr(memory, "PROC", tmp_path)
+    (tmp_path / "self").mkdir()
+    (tmp_path / "self" / "status").write_text("Name:\tpython\nVmPeak:\t 9000000 kB\nVmSize:\t 2097152 kB\n")
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (5 * GIB, resource.RLIM_INFINITY))
+    assert memory._process() == 3 * GIB
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+    assert memory._process() == math.inf
+
+
 @pytest.mark.parametrize(
     ("text", "bytes_"), [("8G", 8 * GIB), ("500 MiB", 500 * 2**20), ("1.5k", 1536), ("7", 7), ("none", math.inf)]
 )
@@ -106,6 +117,24 @@ def test_a_run_that_was_told_keeps_to_it(capsys, method):
         rd.solve(rd.load_scene("room"), method, memory="lots", **({"rays": 10**6} if method == "random-walk" else {}))
     assert main(["solve", "room", "--method", method, "--memory", "1M"]) == 2
     assert "1 MiB are allowed (memory)" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("method", [rd.Method(), rd.Method(equation="continuous"), rd.Method(order="regular")], ids=str)
+def test_expected_memory_grows_with_bands_replicates_and_patches(method):
+    """By the table: each group of bands and each replicate takes its own."""
+    few, many = (rd.subdivide(rd.load_scene("room"), cells=cells) for cells in (2, 20))
+    one = demand.DEMANDS[method.machine]
+
+    def wanted(patches, groups, replicates):
+        return demand.demand(method, patches, groups, replicates, None)
+
+    for patches in (few, many):
+        n = len(patches)
+        assert wanted(patches, 3, 8) - wanted(patches, 1, 8) == pytest.approx(2 * 8 * n * one.group)
+        assert wanted(patches, 3, 8) - wanted(patches, 3, 1) == pytest.approx(7 * n * (one.replicate + 3 * one.group))
+    more = len(many) - len(few)
+    expected = more * (one.patch + one.band + 2 * (one.replicate + one.group))
+    assert wanted(many, 1, 2) - wanted(few, 1, 2) == pytest.approx(expected)
 
 
 def test_what_will_not_fit_is_refused_before_it_begins(monkeypatch):

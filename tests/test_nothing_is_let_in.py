@@ -199,6 +199,10 @@ def test_sizes_are_compared_with_the_file_s_length(tmp_path):
         archive.writestr("meta.npy", member((1 << 40,), b"\0" * 64))
     with pytest.raises(rd.SceneError, match="announces 8,796,093,022,208 bytes and holds 64"):
         rd.load_solution(tmp_path / "a.npz")
+    with zipfile.ZipFile(tmp_path / "b.npz", "w") as archive:
+        archive.writestr("meta.npy", member((8,), b"\0" * 65))
+    with pytest.raises(rd.SceneError, match="announces 64 bytes and holds 65; the file is damaged"):
+        rd.load_solution(tmp_path / "b.npz")
 
 
 def test_archives_that_unpack_to_very_much(tmp_path):

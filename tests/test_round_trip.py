@@ -113,6 +113,51 @@ def test_what_may_be_absent_stays_absent(solution, tmp_path, state, power):
     same(kept.surface_power, loaded.surface_power, "surface_power")
 
 
+def spoilt(name: str, change):
+    """Of a file's arrays: one of them changed at its last entry."""
+
+    def of(arrays: dict) -> dict:
+        values = arrays[name].copy()
+        values.flat[-1] = change(values.flat[-1], arrays)
+        return arrays | {name: values}
+
+    return of
+
+
+DAMAGE = {
+    "a vertex after the last": spoilt("scene_faces", lambda old, arrays: len(arrays["scene_vertices"])),
+    "a vertex before the first": spoilt("scene_faces", lambda old, arrays: -2),
+    "a surface after the last": spoilt("scene_surface", lambda old, arrays: len(arrays["scene_patch_size"])),
+    "a reflectance of one": spoilt("scene_reflectance", lambda old, arrays: 1.0),
+    "a reflectance below zero": spoilt("scene_back_reflectance", lambda old, arrays: -1e-9),
+    "an emission below zero": spoilt("scene_emission", lambda old, arrays: -1.0),
+    "an infinite emission": spoilt("scene_back_emission", lambda old, arrays: np.inf),
+    "a back of no kind": spoilt("scene_back", lambda old, arrays: 3),
+    "no columns": spoilt("patches_columns", lambda old, arrays: 0),
+    "a triangle cut unevenly": spoilt("patches_rows", lambda old, arrays: old + 1),
+    "an irradiance that is unknown": spoilt("irradiance", lambda old, arrays: np.nan),
+    "an error below zero": spoilt("irradiance_standard_error", lambda old, arrays: -1e-9),
+    "arrivals below zero": spoilt("arrivals", lambda old, arrays: -1),
+    "an infinite power": spoilt("surface_power", lambda old, arrays: np.inf),
+    "an image after the last": spoilt("reflectance_paint_image", lambda old, arrays: 2),
+    "a texture that is placed nowhere": lambda arrays: arrays | {
+        "emission_paint_uv": np.where(np.arange(4)[:, None] == 3, np.nan, arrays["emission_paint_uv"]).astype(np.float32)
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_what_does_not_fit_together_is_refused(solution, tmp_path, damage):
+    solution.save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as file:
+        arrays = {name: file[name] for name in file.files}
+    np.savez(tmp_path / "same.npz", **arrays)
+    same(rd.load_solution(tmp_path / "a.npz"), rd.load_solution(tmp_path / "same.npz"), "solution")
+    np.savez(tmp_path / "b.npz", **DAMAGE[damage](arrays))
+    with pytest.raises(rd.SceneError, match=r"b\.npz: is no solution of this program, or damaged"):
+        rd.load_solution(tmp_path / "b.npz")
+
+
 FACE_FIELDS = {"faces", "reflectance", "emission", "back", "back_reflectance", "back_emission", "surface"}
 PAINT_FIELDS = {"image", "uv", "color"}
 

@@ -6,8 +6,8 @@ from enclosures import cube, sphere
 
 import radiosity as rd
 from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.visibility import Polygons, visible_share
+from radiosity.engine.geometry import INSET, OFFSET, Geometry
+from radiosity.engine.visibility import Polygons, _records, visible_share
 from radiosity.errors import MethodError
 from radiosity.scene.shapes import quad
 from validation.closed_forms.rectangles import parallel
@@ -15,6 +15,23 @@ from validation.closed_forms.rectangles import parallel
 
 def geometry_of(scene: rd.Scene, cells: int = 1) -> Geometry:
     return Geometry(rd.subdivide(scene, cells=cells), choose("cpu"))
+
+
+def test_rays_begin_and_end_as_far_from_every_edge():
+    """Of long parallelograms, upright or skew: what is drawn in keeps its distance from all four edges."""
+    scene = black([quad((0, 0, 0), (8, 0, 0), (0, 1, 0)), quad((0, 0, 3), (0, 1, 0), (8, 5, 0))])
+    geometry = geometry_of(scene)
+    polygons, tree = Polygons.of(geometry.patches), geometry.tree
+    records = _records(geometry, polygons).astype(float)
+    corners = (polygons.corners - tree.centre) * tree.scale
+    for corner, record in zip(corners, records, strict=True):
+        origin, first, second, offset = record[:3], record[3:6], record[6:9], record[9]
+        drawn = np.array([origin, origin + first, origin + first + second, origin + second])
+        along = (np.roll(corner, -1, axis=0) - corner) / np.linalg.norm(np.roll(corner, -1, axis=0) - corner, axis=1)[:, None]
+        apart = [np.linalg.norm(np.cross(along[k], drawn[k] - corner[k])) for k in range(4)]
+        apart += [np.linalg.norm(np.cross(along[k], drawn[(k + 1) % 4] - corner[k])) for k in range(4)]
+        reach = np.abs(corners).max()
+        assert apart == pytest.approx([offset * INSET / OFFSET] * 8, rel=0.05, abs=2e-7 * reach)
 
 
 def all_pairs(geometry: Geometry) -> tuple[Polygons, Polygons]:

@@ -14,6 +14,7 @@ from ..pieces import pieces
 from ..scene.model import Back, Scene
 from ..scene.precision import EPSILON, plane_reach
 from .device import Device, upload
+from .ties import Ties
 from .tree import Tree, primitives, tree
 
 OFFSET = 8 * EPSILON  # of the largest number that places a point or its plane: lines begin this far in front of it
@@ -28,6 +29,7 @@ BACK_BIT = 30  # of a hit record's flags: two bits, a `Back`
 NORMAL_BITS = 21  # of each component of a normal in a hit record: only the side that a line comes from is asked of it
 NORMAL_ONE = (1 << NORMAL_BITS - 1) - 1
 HIT_WORDS = 4
+TIED = 1 << 31  # of a hit record's last word, which normals leave free: the face shares its plane with others
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,10 +51,18 @@ class Geometry:
     def prepare_hits(self) -> None:
         """Of that, what hits are read from."""
         _ = self.tree, self.hit_records, self.primitive_faces, self.offsets
+        if self.ties is not None:
+            self.ties.prepare()
 
     @cached_property
     def tree(self) -> Tree:
         return tree(self.scene, self.device)
+
+    @cached_property
+    def ties(self) -> Ties | None:
+        """Faces in one plane, where there are any."""
+        ties = Ties(self)
+        return ties if len(ties.standing) else None
 
     @cached_property
     def some_backs_pass(self) -> bool:
@@ -88,7 +98,7 @@ class Geometry:
         return cross / np.linalg.norm(cross, axis=1, keepdims=True)
 
     @cached_property
-    def _corners(self) -> np.ndarray:
+    def corners(self) -> np.ndarray:
         """(n_faces, 4, 3) in the caster's coordinates."""
         origin, first, second = self.frames
         fourth = origin + first + second * self.scene.is_quad[:, None]
@@ -98,7 +108,7 @@ class Geometry:
     def plane_offsets(self) -> np.ndarray:
         """(n_faces,) float64, the caster's units: the least by which lines begin in front of a face, from what its plane is
         rounded by."""
-        return OFFSET * plane_reach(self.normals, self._corners)
+        return OFFSET * plane_reach(self.normals, self.corners)
 
     def offset(self, face: np.ndarray, points: np.ndarray) -> np.ndarray:
         """(m,) float64, the caster's units: how far in front of faces lines begin.
@@ -116,7 +126,7 @@ class Geometry:
         origin, first, second = self.frames
         area = np.linalg.norm(np.cross(first, second), axis=1)
         lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, second - first)]
-        inset = self.offset(np.arange(scene.n_faces), self._corners) * (INSET / OFFSET)
+        inset = self.offset(np.arange(scene.n_faces), self.corners) * (INSET / OFFSET)
         # of a triangle the same share about the centroid, of a parallelogram a margin on each side
         share = np.minimum(3 * inset * np.max(lengths, axis=0) / area, 0.75)
         margins = [np.minimum(inset * lengths[1 - i] / area, 0.375) for i in (0, 1)]
@@ -135,19 +145,35 @@ class Geometry:
     def hit_records(self):
         """(n * 4,) UInt32: the front's first patch, cell counts and flags, and the normal in two words; of n primitives, or of n
         faces where all are quads, which have two each."""
-        scene, patches = self.scene, self.patches
-        _, face = primitives(scene)
+        _, face = primitives(self.scene)
         if self.all_quads:
             face = face[::2]
-        x, y, z = (np.round(self.normals[face] * NORMAL_ONE).astype(np.int64) + NORMAL_ONE + 1).T
-        packed = patches.columns | (patches.rows.astype(np.int64) << COLUMN_BITS) | np.where(scene.is_quad, QUAD, 0)
-        packed |= scene.back.astype(np.int64) << BACK_BIT
+        x, y, z = (self.steps[face] + NORMAL_ONE + 1).T
         record = np.zeros((len(face), HIT_WORDS), np.uint32)
-        record[:, 0], record[:, 1] = patches.first[:-1][face], packed[face]
+        record[:, 0], record[:, 1] = self.patches.first[:-1][face], self.packed[face]
         record[np.concatenate([[False], face[1:] == face[:-1]]), 1] |= SECOND_HALF
         both = x | y << NORMAL_BITS | z << 2 * NORMAL_BITS
         record[:, 2], record[:, 3] = both & 0xFFFFFFFF, both >> 32
+        if self.ties is not None:
+            record[self.ties.flagged[face], 3] |= TIED
         return upload(self.device.types.UInt32, record)
+
+    @cached_property
+    def steps(self) -> np.ndarray:
+        """(n_faces, 3) int64: normals in units of hit records."""
+        return np.round(self.normals * NORMAL_ONE).astype(np.int64)
+
+    @cached_property
+    def packed(self) -> np.ndarray:
+        """(n_faces,) int64: cell counts and flags of hit records."""
+        packed = self.patches.columns | (self.patches.rows.astype(np.int64) << COLUMN_BITS)
+        return packed | np.where(self.scene.is_quad, QUAD, 0) | self.scene.back.astype(np.int64) << BACK_BIT
+
+    @property
+    def first_primitives(self) -> np.ndarray:
+        """(n_faces,) int64: the first of each face's triangles."""
+        many = 1 + self.scene.is_quad.astype(np.int64)
+        return np.cumsum(many) - many
 
     @cached_property
     def primitive_faces(self):

@@ -1,6 +1,6 @@
 """In a kernel: from a line to the patch it lands on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
@@ -8,7 +8,7 @@ import drjit as dr
 from ..scene.model import Back
 from .departure import BACK, MASK, before, local_line, local_lines
 from .device import classes
-from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, Geometry
+from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, TIED, Geometry
 from .recorded import loop
 
 NORMAL_MASK = (1 << NORMAL_BITS) - 1
@@ -66,6 +66,29 @@ def _fields(hit: Landing):
 
 def _hit(geometry: Geometry, origin, direction, coherent: bool, active):
     """The nearest hit, and the face's normal, not normalised."""
+    hit, normal, tied = _found(geometry, origin, direction, coherent, active)
+    if geometry.ties is None:
+        return hit, normal
+    ((met, fields, along),) = geometry.ties.meet(hit, tied, origin, direction)
+    return _chosen(hit, met, fields), dr.select(met, along, normal)
+
+
+def both_sides(geometry: Geometry, origin, direction, coherent: bool, active) -> tuple[Landing, Landing]:
+    """The nearest hit, and what a line from the other side would hit there: another face, where two lie in one plane."""
+    hit, _, tied = _found(geometry, origin, direction, coherent, active)
+    turned = replace(hit, front=~hit.front)
+    if geometry.ties is None:
+        return hit, turned
+    near, far = geometry.ties.meet(hit, tied, origin, direction, beyond=True)
+    return _chosen(hit, *near[:2]), _chosen(turned, *far[:2])
+
+
+def _chosen(hit: Landing, met, fields) -> Landing:
+    return Landing(hit.valid, *(dr.select(met, new, old) for new, old in zip(fields[1:], _fields(hit)[1:], strict=True)))
+
+
+def _found(geometry: Geometry, origin, direction, coherent: bool, active):
+    """What the caster gives: the nearest hit, the face's normal, and whether the face shares its plane with others."""
     types = geometry.device.types
     Float, Int32 = types.Float, types.Int
     mi, caster = classes(geometry.device), geometry.tree.caster
@@ -80,7 +103,8 @@ def _hit(geometry: Geometry, origin, direction, coherent: bool, active):
     half = ((found.prim_index & 1) if geometry.all_quads else (packed & SECOND_HALF)) != 0
     u, v = found.prim_uv.x, found.prim_uv.y
     u, v = dr.select(half, 1 - u, u), dr.select(half, 1 - v, v)
-    return Landing(valid, found.prim_index, u, v, dr.dot(direction, normal) < 0, found.t, first, packed), normal
+    hit = Landing(valid, found.prim_index, u, v, dr.dot(direction, normal) < 0, found.t, first, packed)
+    return hit, normal, valid & ((high & TIED) != 0)
 
 
 def patch_of(geometry: Geometry, hit: Landing, absorbed: int, escaped: int):

@@ -61,7 +61,7 @@ class Teller:
         self.tracing_since, self.lines, self.lines_before = time.perf_counter(), lines, lines
 
     def complete(self, lines: int, quanta: int, error: float, margin: float = 1.0, swept: int | None = None) -> None:
-        """A stage is complete; the error may be ``margin`` times what is stated (NaN: nobody knows). ``swept`` of the lines were
+        """A stage is complete; the error may be ``margin`` times what is stated (NaN: nobody knows). ``swept`` of its lines were
         told, or else all."""
         swept = lines if swept is None else swept
         self.bound = error * margin

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ..errors import MethodError
 from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
+from ..scene.contact_findings import tell
 from ..scene.model import Scene
 from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
@@ -110,6 +111,7 @@ def prepared(
     if error_of is not None and error is None:
         raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
     keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
+    tell(scene.scene)
     from .run import Run
 
     return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper, error_of)

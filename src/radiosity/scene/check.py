@@ -5,8 +5,8 @@ import warnings
 import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
-from . import leaks, topology
-from .model import Back, Scene
+from . import contact_findings, leaks, topology
+from .model import Scene
 from .report import NOTE, SERIOUS, WARNING, Finding, Report, surface_rows
 
 LITTLE = 0.01  # of the lines: that much is lost on the backs of lamps in many sound scenes
@@ -78,17 +78,7 @@ def _light(power: np.ndarray):
 
 
 def _topology(scene: Scene):
-    one, two, same_way = topology.coincident(scene)
-    double = same_way | (scene.back[one] == Back.RADIATES) | (scene.back[two] == Back.RADIATES)
-    for pairs, text in (
-        (double, "lie on another face and radiate to the same side; only one of the two gets light: remove the copies"),
-        (~double, "lie back to back on another face, as the two sides of a thin wall"),
-    ):
-        if pairs.any():
-            names = {scene.names[s] for s in scene.surface[np.concatenate([one[pairs], two[pairs]])]}
-            count, first = int(pairs.sum()), int(two[pairs][0])
-            severity = WARNING if pairs is double else NOTE
-            yield Finding(severity, "duplicates", f"{count} faces (first: face {first}) {text} ({shown(sorted(names))})")
+    yield from contact_findings.findings(scene)
     edges = topology.open_edges(scene)
     if len(edges.face):
         metres = np.bincount(scene.surface[edges.face], edges.length, len(scene.names))

@@ -102,15 +102,16 @@ def irradiance_bounds(
 
 
 def by_luck(mean: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """Where all replicates agree, up to rounding."""
-    return error <= ROUNDING * np.abs(mean)
+    """Where all replicates agree, up to rounding, or what lines brought adds up to nothing (the residue's have signs)."""
+    return (error <= ROUNDING * np.abs(mean)) | ((mean == 0) & (error > 0))
 
 
 def least_error(
     irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray,
     usual: np.ndarray | None = None, replicates: int = 1,
 ) -> np.ndarray:  # fmt: skip
-    """(n_patches, n_bands) standard error, where it is zero since all replicates agree by chance. It is written over.
+    """(n_patches, n_bands) standard error, where it is zero since all replicates agree by chance, or since signed lines of the
+    residue cancel. It is written over.
 
     Where few lines landed it is that of Poisson's arrivals, and of one arrival where none landed or brought anything. Where many
     did it is what whole lines leave open: R replicates of equal counts know each of them to a line, uniformly, and their mean to
@@ -123,13 +124,14 @@ def least_error(
     usual = usual_power(irradiance, arrivals, area) if usual is None else usual
     usual = np.broadcast_to(usual, irradiance.shape)
     for part in pieces(len(area)):
-        lucky = by_luck(irradiance[part], error[part])
+        none = (irradiance[part] == 0) & (arrivals[part, None] == 0)  # signed lines that cancel say no more than none
+        lucky = by_luck(irradiance[part], error[part]) | none & (error[part] * area[part, None] < usual[part])
         if not lucky.any():
             continue
         count = np.where(irradiance[part] > 0, arrivals[part, None], 0)
         lines = np.where(count < FEW, np.sqrt(np.maximum(count, 1)), np.sqrt(replicates / 12))
         spread = power_of_an_arrival(irradiance[part], arrivals[part], area[part], usual[part]) * lines
-        np.copyto(error[part], spread / area[part, None], where=lucky)
+        np.copyto(error[part], np.maximum(spread / area[part, None], error[part]), where=lucky)
     return error
 
 

@@ -1,6 +1,6 @@
 """In a kernel: the next face on a line, what it shows to either side, and where the line goes on behind it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -11,7 +11,7 @@ from ...scene.model import Back
 from ..departure import before
 from ..device import upload
 from ..geometry import Geometry
-from ..lines import _hit, patch_of
+from ..lines import both_sides, patch_of
 from .hull import nothing_beyond
 
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `firing`: no patch has these numbers
@@ -70,9 +70,8 @@ class Crossings:
         """
         geometry = self.geometry
         types = geometry.device.types
-        hit, _ = _hit(geometry, origin, direction, coherent, active)
+        hit, turned = both_sides(geometry, origin, direction, coherent, active)
         near = patch_of(geometry, hit, LOST, ESCAPED)
-        turned = replace(hit, front=~hit.front)
         far = patch_of(geometry, turned, LOST, ESCAPED)
         face = dr.gather(types.UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
         block = dr.gather(types.Array44f, self.records, face, hit.valid)

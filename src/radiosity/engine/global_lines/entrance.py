@@ -50,6 +50,8 @@ class Entrance:
                 plane = (self.high if high else self.low)[axis]
                 flat = (np.abs(origin[:, axis] - plane) <= offset) & (first[:, axis] == 0) & (second[:, axis] == 0)
                 flat &= (back != Back.RADIATES) & ((inward[:, axis] < 0) == bool(high))
+                if geometry.ties is not None:
+                    flat &= ~geometry.ties.flagged  # what lines meet first there is found by the line
                 for face in np.flatnonzero(flat):
                     _paint(table[2 * axis + high], face, *(x[face][[b, c]] for x in (origin, first, second)), quad[face],
                            self.low[[b, c]], self.high[[b, c]])  # fmt: skip

@@ -4,13 +4,14 @@ A span is a straight piece between two sides that radiate. Its ends are uniform 
 other end of a span of patch i lies on patch j with probability F_ij, at both ends alike (Sbert 1993).
 """
 
+import warnings
 from dataclasses import dataclass
 from functools import cached_property, partial
 
 import drjit as dr
 import numpy as np
 
-from ...errors import MethodError
+from ...errors import MethodError, RadiosityWarning
 from ...method.lines import LINES
 from ...method.lines.global_lines import by_disc, by_two_points, of_bundle
 from ...method.model import Method
@@ -30,6 +31,7 @@ from .surfaces import Surfaces
 __all__ = ["CODES", "ESCAPED", "LOST", "ONE_WAY", "Pairs", "Spans"]
 
 CHUNK = 1 << 20  # lines of a launch
+FEW_ENDS, NO_ENDS = 1e-2, 1e-4  # of the ends of a line: where there are fewer, that is told; and refused
 LEAST_SIDE, MOST_SIDE = 3, 9  # a bundle's lattice has 2^3 to 2^9 lines along an edge
 DENSE = 16  # lines of a bundle to a face: from here on packets pay
 ROOM = 1.25  # spans that a launch makes room for, over those expected
@@ -71,6 +73,23 @@ class Spans:
     def __post_init__(self):
         if self.method.lines not in LINES or self.method.lines == "local":
             raise MethodError(f"lines '{self.method.lines}' have no spans; take {', '.join(k for k in LINES if k != 'local')}")
+        self._check_filled()
+
+    def _check_filled(self) -> None:
+        """Tell where the faces fill next to nothing of the ball that lines go through, and refuse where no run would end."""
+        ends = float(self.ends_per_line.sum())
+        if ends >= FEW_ENDS:
+            return
+        scene = self.geometry.scene
+        corners = scene.vertices[np.where(scene.faces < 0, scene.faces[:, :1], scene.faces)]
+        name = scene.names[scene.surface[np.abs(corners - scene.centre).max(axis=(1, 2)).argmax()]]
+        text = (
+            f"of lines '{self.method.lines}', through the ball about the whole scene, {ends / 2:.2g} meet faces that see each "
+            f"other, since '{name}' lies far away; take lines 'spans' or 'local'"
+        )
+        if ends < NO_ENDS:
+            raise MethodError(text)
+        warnings.warn(f"{scene.source}: {text}", RadiosityWarning, stacklevel=5)
 
     @turn()
     def draw(self, replicate: int, first: int, count: int) -> Pairs:

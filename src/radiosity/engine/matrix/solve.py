@@ -50,16 +50,22 @@ def irradiance(factors: Factors, emission: np.ndarray, reflectance: np.ndarray, 
     return received
 
 
-def of_own_light(factors: Factors, lines: np.ndarray, emission: np.ndarray, reflectance: np.ndarray, received: np.ndarray):
-    """(n,) how much too high irradiance is in the mean, where n_ij and n_ji are the same spans: a patch that many spans lead away
-    from gets back its light by as many. To the first order in one over the lines, Var(n_ij) being n_i F_ij,
+def of_own_light(factors: Factors, area, lines, emission, reflectance, received, *, both_ways: bool) -> np.ndarray:
+    """(n,) how far off irradiance is in the mean, to the first order in one over the lines.
 
-        E[F_ij F_ji] - F_ij F_ji = Var(n_ij) / (n_i n_j) = F_ij / n_j,
-
-    so that patch i receives sum_j F_ij rho_j B_i / n_j too much, and all patches what is reflected of that.
+    Lines between i and j count in both rows, so a patch that many of them lead away from gets back its light by as many. With
+    Var(n_ij) = n_i F_ij, and rows that sum to 1, E[F_ij F_jk] - F_ij F_jk is F_ij / n_j for k = i, less F_ij F_jk / n_j. So i
+    receives sum_j F_ij rho_j (B_i - H_j) / n_j too much, and all patches what is reflected of that. Where local lines count both
+    ways, A_j (n_i / A_i + n_j / A_j) stands for n_j.
 
     Args:
-        lines: (n,) of each row.
+        area, lines, emission, reflectance, received: (n,); ``lines`` of each row.
     """
-    own = (emission + reflectance * received) * factors.gather(reflectance / np.maximum(lines, 1))
-    return own + irradiance(factors, reflectance * own, reflectance)
+    i, j, one = factors.rows, factors.columns, np.maximum(lines, 1)
+    known = one[j] + (one[i] * area[j] / area[i] if both_ways else 0)
+    more = emission[i] + reflectance[i] * received[i] - received[j]
+    own = np.bincount(i, weights=factors.values * reflectance[j] * more / known, minlength=len(lines))
+    # in two parts, since what is solved for is not negative
+    up, down = (np.maximum(sign * own, 0) for sign in (1, -1))
+    reflected = [irradiance(factors, reflectance * part, reflectance) for part in (up, down)]
+    return np.abs(own + reflected[0] - reflected[1])

@@ -38,7 +38,7 @@ class MatrixTally(AbstractMeanTally):
         return self._solved(problem, state, group)[0], 1.0
 
     def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
-        """Of spans: what patches without any were given, and what patches get back of their own light, `solve.of_own_light`."""
+        """What patches without lines were given, and what patches get back of their own light, `solve.of_own_light`."""
         values, _, own = self._solved(problem, state, group)
         return bias(values, self.measured(problem, state)) + own.mean(axis=0)
 
@@ -82,8 +82,8 @@ class MatrixTally(AbstractMeanTally):
                 power = area * (emission + rho * received)
                 values.append(area * received)
                 missed.append([factors.escaped @ power, factors.lost @ power])
-                none = np.zeros(len(area))
-                own.append(none if self.both_ways else area * of_own_light(seen, lines, emission, rho, received))
+                more = of_own_light(seen, area, lines, emission, rho, received, both_ways=self.both_ways)
+                own.append(area * more)
         return {group: tuple(np.array(column) for column in columns) for group, columns in found.items()}
 
 

@@ -1,0 +1,59 @@
+"""Pairs of faces that lie on each other, or nearly so, and what becomes of light between them."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from .model import Back, Scene
+
+CERTAIN = 1  # ulps: less is no gap, but what coordinates were rounded by
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Pairs of faces, nearer than 8 ulps wherever they overlap; of copies, pairs of the first of them.
+
+    Attributes:
+        one, two: (m,) int64, ``one`` before ``two``, pairs in order.
+        gap: (m,) float64 metres by which ``two`` lies in front of ``one`` (negative: behind it), where that is most.
+        ulp: (m,) float64 metres, of single precision there.
+        share: (m,) float64, of the smaller one's area that the two have in common.
+        coplanar: (m,) bool, within 4 ulps: in one plane.
+        same_way: (m,) bool, fronts look the same way.
+    """
+
+    one: np.ndarray
+    two: np.ndarray
+    gap: np.ndarray
+    ulp: np.ndarray
+    share: np.ndarray
+    coplanar: np.ndarray
+    same_way: np.ndarray
+
+    def take(self, rows: np.ndarray) -> "Contacts":
+        """Some of them (indices or mask)."""
+        return Contacts(*(getattr(self, field.name)[rows] for field in fields(Contacts)))
+
+    def doubled(self, scene: Scene) -> np.ndarray:
+        """(m,) bool: in one plane, and both radiate to the same side: there only one of the two is met."""
+        radiates = scene.back == Back.RADIATES
+        return self.coplanar & (self.same_way | radiates[self.one] | radiates[self.two])
+
+    def unseen(self, scene: Scene) -> np.ndarray:
+        """(m,) bool: one radiates towards the other, which is nearer than lines begin, and yet apart."""
+        back, turned = scene.back, np.where(self.same_way, -1, 1)
+        sides = []
+        for face, other, height in ((self.one, self.two, self.gap), (self.two, self.one, turned * self.gap)):
+            sees = (height > 0) | (back[face] == Back.RADIATES)
+            shows_front = turned * height > 0
+            sides.append(sees & (shows_front | (back[other] != Back.PASSES)))
+        return (np.abs(self.gap) > CERTAIN * self.ulp) & (sides[0] | sides[1]) & ~self.doubled(scene)
+
+    @staticmethod
+    def joined(parts: "list[Contacts]") -> "Contacts":
+        """Several, in the order of their pairs, each once."""
+        if not parts:
+            return Contacts(*(np.zeros(0, t) for t in (np.int64, np.int64, float, float, float, bool, bool)))
+        every = Contacts(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Contacts)))
+        _, first = np.unique(np.column_stack([every.one, every.two]), axis=0, return_index=True)
+        return every.take(first)

@@ -1,0 +1,126 @@
+"""Faces that lie on each other within what single precision holds apart, however they are cut.
+
+Of copies, faces with the very same corners in the same order, the first stands for all: it alone is compared with other faces,
+and each copy with it. So a million copies are a million pairs, not half a billion.
+"""
+
+import warnings
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ..errors import RadiosityWarning
+from .contacts import Contacts
+from .flat_pieces import flat_pieces, numbered
+from .model import Scene
+from .neighbours import Plates, pairs
+from .overlap import common, overlapping
+from .precision import EPSILON
+
+ONE_PLANE = 4  # ulps: faces nearer than this where they overlap lie in one plane
+NEAR = 8  # ulps: so far in front of their face lines begin (engine/geometry.py), so that they miss what is nearer
+WIDTH = 32  # ulps: what faces share is wider than that, and than SLIVER of the smaller one's longest edge
+SLIVER = 1e-5
+MOST = 1 << 24  # pairs
+
+_known: "WeakKeyDictionary[Scene, Contacts]" = WeakKeyDictionary()
+
+
+def contacts(scene: Scene) -> Contacts:
+    """All pairs of a scene; found once."""
+    if scene not in _known:
+        _known[scene] = _find(scene)
+    return _known[scene]
+
+
+def copied(scene: Scene) -> np.ndarray:
+    """(n_faces,) int64: of each face the first one with the same corners in the same order, itself where there is none."""
+    rows = _corners(scene).reshape(scene.n_faces, 12)
+    _, first, number = np.unique(numbered(rows), return_index=True, return_inverse=True)
+    first = first[number.ravel()]
+    return np.where((rows == rows[first]).all(axis=1), first, np.arange(scene.n_faces))
+
+
+def _corners(scene: Scene) -> np.ndarray:
+    """(n_faces, 4, 3) metres about the centre; triangles repeat the third."""
+    return scene.vertices[np.where(scene.faces < 0, scene.faces[:, 2:3], scene.faces)] - scene.centre
+
+
+def _find(scene: Scene) -> Contacts:
+    first, corners = copied(scene), _corners(scene)
+    alone = first == np.arange(scene.n_faces)
+    parts, two = _compared(scene, corners, np.flatnonzero(alone)), np.flatnonzero(~alone)
+    if len(two):
+        ulp = EPSILON * np.maximum(np.abs(corners[two]).max(axis=(1, 2)), scene.plane_reach[two])
+        yes = np.ones(len(two), bool)
+        parts.append(Contacts(first[two], two, np.zeros(len(two)), ulp, np.ones(len(two)), yes, yes))
+    return Contacts.joined(parts)
+
+
+def _compared(scene: Scene, corners: np.ndarray, faces: np.ndarray) -> list[Contacts]:
+    """Pairs of some faces, in parts."""
+    edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    longest, reach = edges.max(axis=1), np.abs(corners).max(axis=(1, 2))
+    margin = NEAR * EPSILON * np.maximum(reach, scene.plane_reach)
+    height = scene.area * np.where(scene.is_quad, 1, 2) / longest
+    least = np.maximum(WIDTH * EPSILON * reach, SLIVER * longest)
+    low, high, tilt = corners.min(axis=1), corners.max(axis=1), 2 * margin / height
+    piece = flat_pieces(corners, scene.normal, tilt, faces)
+    plates = Plates(low, high, scene.normal, corners.mean(axis=1), tilt, margin, least, piece)
+    parts, found = [], 0
+    for small, large in pairs(plates, faces):
+        rows = _parallel(plates, corners, small, large)
+        parts.append(_measured(scene, corners, least, small[rows], large[rows]))
+        found += len(parts[-1].one)
+        if found > MOST:
+            warnings.warn(
+                f"{scene.source}: more than {MOST} pairs of faces lie on each other; which of the others a line meets is left to "
+                "chance: remove copies of faces", RadiosityWarning, stacklevel=3,
+            )  # fmt: skip
+            break
+    return parts
+
+
+def _parallel(plates: Plates, corners: np.ndarray, small: np.ndarray, large: np.ndarray) -> np.ndarray:
+    """Rows of pairs that are parallel and in one plane, within what they are uncertain by."""
+    normal = plates.normal
+    turned = np.linalg.norm(np.cross(normal[small], normal[large]), axis=1)
+    rows = np.flatnonzero(turned <= 2 * (plates.tilt[small] + plates.tilt[large]) + EPSILON)
+    small, large = small[rows], large[rows]
+    height = np.einsum("mki,mi->mk", corners[small] - corners[large][:, :1], normal[large])
+    margin = plates.margin[small] + plates.margin[large]
+    return rows[(height.min(axis=1) <= margin) & (height.max(axis=1) >= -margin)]
+
+
+def _measured(scene: Scene, corners: np.ndarray, least: np.ndarray, small: np.ndarray, large: np.ndarray) -> Contacts:
+    """Those of the pairs that overlap, nearer than `NEAR` ulps."""
+    normal = scene.normal
+    first = corners[large, 1] - corners[large, 0]
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    basis = np.stack([first, np.cross(normal[large], first)], axis=2)
+    below, above = (np.einsum("mki,mij->mkj", corners[face] - corners[large][:, :1], basis) for face in (large, small))
+    rows = np.flatnonzero(overlapping(below, above, least[small]))
+    small, large, basis = small[rows], large[rows], basis[rows]
+    shape, area = common(below[rows], above[rows])
+    points = corners[large][:, :1] + np.einsum("mkj,mij->mki", shape, basis)
+    exact = _height(corners, normal[large], small, points) - _height(corners, normal[large], large, points)
+    rounded = corners.astype(np.float32).astype(np.float64)  # as lines meet them
+    told = _height(rounded, normal[large], small, points) - _height(rounded, normal[large], large, points)
+    most = np.take_along_axis(exact, np.abs(exact).argmax(axis=1)[:, None], axis=1)[:, 0]
+    place = np.maximum(scene.plane_reach[small], scene.plane_reach[large])
+    ulp = EPSILON * np.maximum(np.abs(points).max(axis=(1, 2)), place)
+    same = np.einsum("ij,ij->i", normal[small], normal[large]) > 0
+    turn = small < large  # then the larger one is `two`, and its height over the smaller is told along that one's normal
+    gap = np.where(turn, np.where(same, -most, most), most)
+    share = area / np.minimum(scene.area[small], scene.area[large])
+    every = Contacts(np.minimum(small, large), np.maximum(small, large), gap, ulp, share,
+                     np.abs(told).max(axis=1) <= ONE_PLANE * ulp, same)  # fmt: skip
+    return every.take(np.minimum(np.abs(exact), np.abs(told)).max(axis=1) <= NEAR * ulp)
+
+
+def _height(corners: np.ndarray, along: np.ndarray, face: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(m, k) from points, along a direction, to the planes of faces."""
+    origin, second, third, fourth = corners[face].transpose(1, 0, 2)
+    last = np.where((third == fourth).all(axis=1)[:, None], third, fourth)
+    normal = np.cross(second - origin, last - origin)
+    return np.einsum("mki,mi->mk", origin[:, None] - points, normal) / np.einsum("mi,mi->m", normal, along)[:, None]

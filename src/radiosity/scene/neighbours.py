@@ -1,0 +1,131 @@
+"""Pairs of faces that may lie on each other: near in space, and in planes that are near where they meet.
+
+Faces are put into a grid of cubes, for each power of four one whose cubes are as large as the faces of that size, and within a
+cube into slabs by the distance of their planes from its middle. Each face is compared with those of its own size and larger that
+share a cube and a slab with it. So a wall does not meet all that stands before it, nor a fine mesh all of itself.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+SQUARE = 0.7  # below sqrt(1/2)
+STEP = 2  # of one grid to the next, as a power of two
+SLABS = 64  # of a cube
+FILTER = np.uint64((1 << 22) - 1)  # most keys that nobody shares are told by their last bits
+CHUNK = 1 << 19  # faces, and pairs, at a time
+PRIMES = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0x27D4EB2F165667C5)
+
+
+@dataclass(frozen=True, eq=False)
+class Plates:
+    """Flat convex pieces.
+
+    Attributes:
+        low, high: (n, 3) their boxes.
+        normal, centroid: (n, 3).
+        tilt: (n,) radians that normals are uncertain by. margin: (n,) what planes and places are uncertain by.
+        width: (n,) what is narrower is no overlap with this plate.
+        piece: (n,) int: plates of one piece are not compared.
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+    normal: np.ndarray
+    centroid: np.ndarray
+    tilt: np.ndarray
+    margin: np.ndarray
+    width: np.ndarray
+    piece: np.ndarray
+
+
+def pairs(plates: Plates, some: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Pairs of some plates (indices) whose boxes and planes may meet, in parts: (m,) indices of the smaller, and of the larger.
+    Some come twice."""
+    size = np.maximum((plates.high - plates.low).max(axis=1) + 2 * plates.margin, 1e-300)
+    level = STEP * np.ceil(np.log2(size) / STEP).astype(np.int64)
+    for at in np.unique(level[some]):
+        cube, larger = 2.0**at, some[level[some] == at]
+        face, cell, keys = _entries(plates, larger, cube)
+        order = np.argsort(keys)
+        face, cell, keys = face[order], cell[order], keys[order]
+        smaller = some[level[some] <= at]
+        for begin in range(0, len(smaller), CHUNK):
+            yield from _matches(plates, smaller[begin : begin + CHUNK], cube, level, (face, cell, keys))
+
+
+def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Faces by cubes and slabs: face, cube (k, 3) and key of each."""
+    margin = plates.margin[face][:, None]
+    low = np.floor((plates.low[face] - margin) / cube).astype(np.int64)
+    wide = np.floor((plates.high[face] + margin) / cube).astype(np.int64) > low
+    rows, cells = [], []
+    for step in np.ndindex(2, 2, 2):
+        here = np.flatnonzero(_each([column if more else True for column, more in zip(wide.T, step, strict=True)], len(face)))
+        rows.append(here)
+        cells.append(low[here] + np.array(step))
+    row, cell = np.concatenate(rows), np.concatenate(cells)
+    face = face[row]
+    middle = plates.centroid[face] - (cell + 0.5) * cube
+    distance = np.abs(np.einsum("ij,ij->i", plates.normal[face], middle))
+    unsure = plates.tilt[face] * cube + plates.margin[face]
+    slab = cube / SLABS
+    # rounded, so that planes of round coordinates lie in the middle of a slab
+    first = np.clip(np.rint((distance - unsure) / slab), 0, SLABS).astype(np.int64)
+    last = np.clip(np.rint((distance + unsure) / slab), 0, SLABS).astype(np.int64)
+    many = last - first + 1
+    at = np.repeat(np.arange(len(face)), many)
+    number = first[at] + np.arange(len(at)) - np.repeat(np.cumsum(many) - many, many)
+    factors = np.array(PRIMES, np.uint64)
+    keys = cell[:, 0].astype(np.uint64) * factors[0]  # a hash: what meets by chance is sorted out below
+    for axis in (1, 2):
+        keys += cell[:, axis].astype(np.uint64) * factors[axis]
+    keys = keys[at] + number.astype(np.uint64) * factors[3]
+    return face[at], cell[at], (keys ^ (keys >> np.uint64(29))) * factors[0]
+
+
+def _each(conditions, count: int) -> np.ndarray:
+    """All of some conditions, column by column: faster than along short rows."""
+    result = np.ones(count, bool)
+    for condition in conditions:
+        result &= condition
+    return result
+
+
+def _matches(plates: Plates, some: np.ndarray, cube: float, level: np.ndarray, larger) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    target, target_cell, target_keys = larger
+    face, cell, keys = _entries(plates, some, cube)
+    taken = np.zeros(int(FILTER) + 1, bool)
+    taken[target_keys & FILTER] = True
+    shared = np.flatnonzero(taken[keys & FILTER])
+    face, cell, keys = face[shared], cell[shared], keys[shared]
+    begin, end = np.searchsorted(target_keys, keys, "left"), np.searchsorted(target_keys, keys, "right")
+    met = np.flatnonzero(end > begin)
+    # where all that are met are of the plate's own piece there is nothing to compare
+    piece, ends_of = plates.piece[target], np.flatnonzero(np.concatenate([target_keys[1:] != target_keys[:-1], [True]]))
+    starts = np.concatenate([[0], ends_of[:-1] + 1])
+    lowest, highest = (reduce.reduceat(piece, starts) for reduce in (np.minimum, np.maximum))
+    group = np.searchsorted(ends_of, begin[met])
+    own = plates.piece[face[met]]
+    met = met[(lowest[group] != own) | (highest[group] != own)]
+    face, cell, begin, many = face[met], cell[met], begin[met], (end - begin)[met]
+    ends = np.cumsum(many)
+    at = 0
+    while at < len(face):
+        until = max(int(np.searchsorted(ends, (ends[at - 1] if at else 0) + CHUNK, "right")), at + 1)
+        part = slice(at, until)
+        row = np.repeat(np.arange(at, until), many[part])
+        place = begin[row] + np.arange(len(row)) - np.repeat(ends[part] - many[part] - (ends[at - 1] if at else 0), many[part])
+        one, two = face[row], target[place]
+        keep = ((level[one] < level[two]) | (one < two)) & (plates.piece[one] != plates.piece[two])
+        keep &= _each((cell[row, axis] == target_cell[place, axis] for axis in range(3)), len(row))
+        row, one, two = row[keep], one[keep], two[keep]
+        low = [np.maximum(plates.low[one, axis], plates.low[two, axis]) for axis in range(3)]
+        high = [np.minimum(plates.high[one, axis], plates.high[two, axis]) for axis in range(3)]
+        margin, width = plates.margin[one] + plates.margin[two], SQUARE * plates.width[one]
+        keep = _each((h - lo >= -margin for lo, h in zip(low, high, strict=True)), len(row))
+        # along two axes at least a plane region is as wide as half the root of two of its width
+        keep &= sum((h - lo > width).astype(np.int8) for lo, h in zip(low, high, strict=True)) >= 2
+        yield one[keep], two[keep]
+        at = until
