@@ -115,7 +115,12 @@ def test_scaled_turned_and_moved(load, name, scale, move):
         assert np.sqrt(np.mean(((values[1] - values[0])[known] / both[known]) ** 2)) < 0.2
         assert values[1][~known] == pytest.approx(values[0][~known], rel=1e-12)
     assert two.error == pytest.approx(one.error, rel=0.02)
-    assert two.rays == pytest.approx(one.rays, rel=1e-3)
+    each = [int(s.state["fired"].sum(dtype=np.uint64)) / s.quanta for s in (one, two)]
+    assert each[1] == pytest.approx(each[0], rel=1e-3)
+    # the lines of the residue, some hundredths of all, are others where one hit differs; their number and the quanta that a pilot
+    # run finds follow
+    assert two.rays == pytest.approx(one.rays, rel=1e-2)
+    assert two.quanta == pytest.approx(one.quanta, rel=1e-2)
     power = scale**2 * sum(book["emitted"] for book in one.books)
     assert np.abs(two.escaped - scale**2 * one.escaped).max() < 1e-3 * power
     rows = zip_longest(one.surface_table(), two.surface_table())

@@ -21,9 +21,9 @@ How to read it:
   the scatter between runs makes it: it is 1 where the stated errors are true. Its p-value comes from flipping the signs of
   whole runs, since patches of one run share lines.
 - **RMS** is the area-weighted RMS of the difference over that of the irradiance, beside what both sides' noise makes it.
-- **rounding** (the books' word): patches fire whole lines, and leave a share of a quantum behind where their own light comes
-  back to them. The irradiance is lower by that share of the emitted power, which is inversely proportional to the lines; it is
-  no noise, so that errors do not contain it. It is allowed for here by as much as the books of the runs say.
+- **rounding** (the books' word): what whole lines leave unsent after their residue has been sent on, less than a line a
+  replicate but for what chance takes or gives (docs/errors.md, "Whole lines"). It is allowed for here by as much as the books of
+  the runs say.
 """
 
 ROW = "| {} | {:.6g} | {:.6g} | {:.1e} | {:+.2f} | {:.3f} | {} |"

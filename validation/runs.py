@@ -15,8 +15,8 @@ class Runs:
 
     Attributes:
         irradiance, stated: the standard errors that they stated, (runs, n_patches, n_bands) each.
-        rounding: what the books call so, over the emitted power, in the mean of the runs and the worst of the bands: whole lines
-            leave a share of a quantum behind in patches to which their own light comes back, which makes all a little darker.
+        rounding: what the books call so, over the emitted power, in the mean of the runs and the worst of the bands: what whole
+            lines leave unsent.
     """
 
     patches: rd.Patches
