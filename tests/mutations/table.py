@@ -332,7 +332,7 @@ MISTAKES = (
             ("test_patches.py", "test_hierarchy.py"), "powers of two are rounded up to the next"),
     Mistake("method/baseline.py", "return self.samples or OF_PATCH", "return self.samples or OF_PAIR",
             ("test_method.py", "test_baselines.py"), "a patch has as many lines as a pair"),
-    Mistake("method/numbers/sobol.py", "(3, 1, (1, 3, 1))", "(3, 1, (1, 1, 3))", ("test_numbers_matrices.py",),
+    Mistake("method/numbers/sobol.py", "(3, 1, (1, 3, 1))", "(3, 1, (1, 1, 3))", ("test_numbers_digital.py",),
             "direction integers change places"),
     Mistake("engine/ties.py", "begin[row, 1] + step // wide[row]", "begin[row, 1] + step // deep[row]", ("test_coplanar.py",),
             "wide faces are entered in wrong cells"),
