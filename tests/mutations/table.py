@@ -384,7 +384,8 @@ MISTAKES = (
     Mistake("image/fit.py", "* min(1.0, aspect))", ")", ("test_image_camera.py",), "tall pictures cut the scene off"),
     Mistake("image/weld.py", "position = _combine(group, *place.T)", "position = _combine(*place.T)", ("test_image_mesh.py",),
             "surfaces that touch share vertices"),
-    Mistake("cli/check.py", "(not any(s.power), -s.area)", "(any(s.power), -s.area)", ("test_check.py",), "emitters come last"),
+    Mistake("cli/check.py", "(not any(s.power), -s.area)", "(any(s.power), -s.area)",
+            ("test_cli_solve.py::test_check_prints_what_there_is",), "emitters come last"),
     Mistake("lab/sight.py", "seen = (hits.face >= 0) & hits.front", "seen = hits.face >= 0",
             ("test_lab_numbers.py", "test_lab.py"), "backs are seen as fronts"),
 )  # fmt: skip
