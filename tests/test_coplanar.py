@@ -2,7 +2,7 @@
 
 import warnings
 from dataclasses import replace
-from itertools import permutations
+from itertools import permutations, product
 
 import numpy as np
 import pytest
@@ -346,3 +346,32 @@ def test_a_doubled_lamp_is_told_of():
     doubled = room.take(np.concatenate([np.arange(room.n_faces), np.flatnonzero(lamp)]))
     with pytest.warns(rd.RadiosityWarning, match=f"{lamp.sum()} faces .* lie on another face and radiate to the same side"):
         rd.solve(rd.subdivide(doubled, cells=1), rays=20_000)
+
+
+def test_a_doubled_lamp_that_shines_from_its_back_is_told_of():
+    floor, lamp = (
+        quad((0, 0, 0), (1, 0, 0), (0, 1, 0)),
+        quad((0.2, 0.2, 0), (0, 0.6, 0), (0.6, 0, 0)),
+    )  # the lamp's front is below
+    scene = rd.Scene.from_arrays(
+        np.concatenate([floor, lamp]), np.arange(8).reshape(2, 4), 0.0, 0.0, back=[A, R], back_emission=[0.0, 1.0],
+        surface=[0, 1], names=["floor", "lamp"],
+    )  # fmt: skip
+    with pytest.warns(rd.RadiosityWarning, match="1 faces .first: face 1. lie on another face .*'floor', 'lamp'"):
+        rd.solve(rd.subdivide(scene, cells=1), rays=2000)
+
+
+@pytest.mark.parametrize(("below", "above"), [(0, 0), (0, 1), (1, 0), (1, 1)], ids=str)
+@pytest.mark.parametrize("backs", list(product((A, R, P), repeat=2)), ids=str)
+def test_faces_are_unseen_where_light_goes_from_one_side_to_another_that_stops_it(below, above, backs):
+    """Fronts look up (1) or down (0); the gap is nearer than where lines begin, and yet no plane is shared."""
+    gap = 6 * 2.0**-23 * 0.5
+    first, second = (quad((0, 0, z), (1, 0, 0), (0, 1, 0)) for z in (0, gap))
+    scene = rd.Scene.from_arrays(
+        np.concatenate([first if below else first[::-1], second if above else second[::-1]]), np.arange(8).reshape(2, 4),
+        0.0, 1.0, back=backs,
+    )  # fmt: skip
+    found = contacts(scene)
+    assert found.coplanar.tolist() == [False]
+    one, two = R if below else backs[0], backs[1] if above else R  # of the sides that look into the gap
+    assert found.unseen(scene).tolist() == [(one == R and two != P) or (two == R and one != P)]

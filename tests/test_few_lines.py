@@ -6,6 +6,7 @@ Arrivals of independent lines are Poisson's, so intervals can be held to draws o
 import math
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -140,6 +141,22 @@ def test_a_surface_that_few_lines_reached_may_get_more():
     low, high = solution.surface_interval(0.95, "radiosity")
     assert high[1, 0] == pytest.approx(5.5716 * one / 2, rel=1e-4)
     assert high[0, 0] == pytest.approx(1 + NONE * one * patches.area[1] / 2, rel=1e-6)  # the lamp's own light
+
+
+def test_lines_that_come_in_bunches_bound_surfaces_as_bunches():
+    """Of two patches one or the other gets all lines of a replicate: their sum tells of no bunches, they themselves do."""
+    alone = squares(1.0, 1.0, 1.0).scene
+    scene = rd.Scene.from_arrays(alone.vertices, alone.faces, 0.0, alone.emission, surface=[0, 1, 2, 2], names=list("abc"))
+    patches = rd.subdivide(scene, cells=1)
+    counts = np.array([[0, 0, 5 * (r % 2), 5 * (1 - r % 2)] for r in range(8)])
+    solution = drawn(patches, np.zeros(4), SimpleNamespace(poisson=lambda mean, shape: counts))
+    both = np.add.reduceat(solution.surface_power, [0, 1, 2], axis=2)
+    solution = replace(solution, surface_power=both)
+    bunch = 20 / 7  # (error / mean)^2 of 1 / 7, times 20 arrivals
+    one = 1e-3 / 8 / patches.area[1]
+    for low, high in (solution.interval(0.95, "irradiance"), solution.surface_interval()):
+        assert low[1, 0] == 0
+        assert high[1, 0] == pytest.approx(NONE * bunch * one, rel=1e-9)
 
 
 def test_rare_lines_of_another_colour_have_their_own_power():

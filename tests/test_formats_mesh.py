@@ -47,6 +47,15 @@ def test_ply_of_triangles_and_quadrilaterals(tmp_path, content):
     np.testing.assert_allclose(scene.area, [1, 0.5])
 
 
+@pytest.mark.parametrize("stray", [[np.nan, 0, 0], [0, np.inf, 0], [1e30, 0, 0]])
+def test_vertices_that_no_face_uses_may_be_anything(tmp_path, stray):
+    scene = load(tmp_path / "stray.ply", ply_bytes([*SQUARE, stray], [[0, 1, 2, 3]]))
+    assert scene.area.tolist() == [1]
+    np.testing.assert_array_equal(scene.bounds, [[0, 0, 0], [1, 1, 0]])
+    if not np.isfinite(stray).all():
+        fails(tmp_path / "used.ply", ply_bytes([*SQUARE, stray], [[0, 1, 2, 3], [0, 1, 4]]), "vertex 4")
+
+
 def test_ply_polygons(tmp_path):
     house = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 0.5, 0], [0, 1, 0]]
     scene = load(tmp_path / "house.ply", ply_bytes(house, [[0, 1, 2, 3, 4]]))

@@ -121,6 +121,27 @@ def test_textures_are_scaled_and_then_moved(load, tmp_path, move, left, right):
         assert patches.reflectance[here].mean() == pytest.approx(((value / 255 + 0.055) / 1.055) ** 2.4, rel=0.3)
 
 
+@pytest.mark.parametrize(
+    "option",
+    ["-blendu on", "-blendv off", "-boost 2", "-mm 0 1", "-texres 64", "-clamp on", "-bm 1", "-imfchan l", "-type sphere",
+     "-cc off", "-colorspace sRGB", "-o 0", "-s 1 1", "-t 0 0 0", "-mm 0 1 -bm 1 -o 0 0"],
+)  # fmt: skip
+def test_values_of_options_are_no_part_of_a_file_s_name(load, tmp_path, option):
+    (tmp_path / "t.png").write_bytes(png(np.full((4, 4, 3), 120)))
+    text = SQUARE + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n" + KNOWN + "f 1/1 2/2 3/3 4/4\n"
+    scene = load(text, f"newmtl grey\nKd 1 1 1\nmap_Kd {option} t.png\n")  # a texture that is not found would be told of
+    np.testing.assert_allclose(rd.subdivide(scene, cells=1).reflectance, ((120 / 255 + 0.055) / 1.055) ** 2.4, rtol=1e-6)
+
+
+def test_images_of_16_bits_have_65535_for_white(load, tmp_path):
+    from PIL import Image
+
+    Image.fromarray(np.full((4, 4), 30_000, np.uint16)).save(tmp_path / "t.png")
+    text = SQUARE + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n" + KNOWN + "f 1/1 2/2 3/3 4/4\n"
+    scene = load(text, "newmtl grey\nKd 1 1 1\nmap_Kd t.png\n")
+    np.testing.assert_allclose(rd.subdivide(scene, cells=1).reflectance, ((30_000 / 65535 + 0.055) / 1.055) ** 2.4, rtol=1e-6)
+
+
 def test_lost_texture_and_library(load, tmp_path):
     text = SQUARE + "vt 0 0\n" + KNOWN + "f 1/1 2/1 3/1 4/1\n"
     with pytest.warns(RadiosityWarning, match=r"textures that cannot be read.*C:\\pictures\\no\.png"):

@@ -6,6 +6,7 @@ p = 4e-4, about 40 comparisons), LARGEST for the largest of some hundred patches
 
 import numpy as np
 import pytest
+from enclosures import cube
 from replicates import powers
 from test_lines import stack
 
@@ -165,3 +166,11 @@ def test_one_replicate_has_no_error_and_a_seed_repeats_itself():
         longer = rd.solve(patches, method, rays=300_000, replicates=1, seed=4, resume=one)
         again = rd.solve(patches, method, quanta=longer.quanta, replicates=1, seed=4)
         assert longer.irradiance == pytest.approx(again.irradiance, rel=1e-12)
+
+
+@some
+def test_every_line_of_a_closed_scene_lands(method):
+    """Both ends of a span are lines that land, and those of a first shot land, too."""
+    patches = rd.subdivide(cube(0.5, [1.0, 0, 0, 0, 0, 0]), cells=2)
+    solution = rd.solve(patches, method, rays=8_000)
+    assert solution.arrivals.sum() == solution.rays > 7_000

@@ -11,6 +11,7 @@ from iterations import VARIANTS, open_room
 from replicates import difference, powers
 
 import radiosity as rd
+from radiosity.engine.iteration.control import median, source_constant
 
 SIGMAS = 6.0
 COLORS = [[0.8, 0.5, 0.1], [0.2, 0.5, 0.7], [0.6, 0.3, 0.3], [0.1, 0.7, 0.2], [0.5, 0.5, 0.6], [0.3, 0.3, 0.75]]
@@ -102,3 +103,20 @@ def test_black_walls_and_exact_constants_end():
             assert np.abs(solution.irradiance - 1 / (1 - rho)).max() < 0.2, name
             if "control" in name:
                 assert np.abs(solution.irradiance - 1 / (1 - rho)).max() < 2e-3, name
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_constants_leave_the_least_power_to_send(seed):
+    """Of all constants at which the sums have a corner none does better: of a source, and of a radiosity."""
+    random = np.random.Generator(np.random.Philox(seed))
+    emission, rho, area = random.random((3, 9)) * [[1.0], [0.98], [2.0]]
+
+    def least(values, weights, wanted):
+        power = np.abs(values[:, None] - weights[:, None] * wanted)
+        return (area @ power).min()
+
+    corners = emission / (1 - rho)
+    found = source_constant(emission, rho, area)
+    assert least(emission, 1 - rho, np.array([found])) == pytest.approx(least(emission, 1 - rho, corners), rel=1e-12)
+    found = median(emission, area)
+    assert least(emission, np.ones(9), np.array([found])) == pytest.approx(least(emission, np.ones(9), emission), rel=1e-12)

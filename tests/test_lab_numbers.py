@@ -8,6 +8,8 @@ from scipy import stats
 
 import radiosity as rd
 from radiosity.lab import calibration, contest, measure, slopes
+from radiosity.lab.sight import Sight
+from radiosity.scene.shapes import quad
 
 
 def test_a_slope_is_that_of_the_last_two_decades():
@@ -81,3 +83,14 @@ def test_coverage_and_its_error_are_over_runs(monkeypatch):
         assert abs(share - level) < 5 * error
     assert found.rms == pytest.approx(1 / np.sqrt(calibration.REPLICATES), rel=0.02)
     assert found.visited == 1
+
+
+def test_pixels_that_see_no_patch_or_the_back_of_one_are_left_out():
+    """Of three squares side by side, seen from above, the middle one looks down; beyond them there is nothing."""
+    quads = [quad((x, 0, 0), (1, 0, 0), (0, 1, 0)) for x in (0, 1, 2)]
+    quads[1] = quads[1][::-1]
+    camera = rd.Camera((1.5, 0.5, 10.0), (1.5, 0.5, 0.0), (0, 1, 0), 2 * np.rad2deg(np.arctan(0.1)), 400, 200)  # 4 m x 2 m
+    scene = rd.Scene.from_arrays(np.concatenate(quads), np.arange(12).reshape(3, 4), 0.0, [1.0, 2.0, 3.0], cameras=[camera])
+    sight = Sight.of(rd.subdivide(scene, cells=1))
+    assert np.bincount(sight.patch).tolist() == [1600, 0, 1600]  # a fortieth of a metre to a pixel
+    assert sight.error(np.array([[1.0, 5.0, 3.0]]), np.array([1.0, 2.0, 3.0])).tolist() == [0.0]

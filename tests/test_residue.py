@@ -170,6 +170,22 @@ def test_lines_of_groups_are_right_in_the_mean():
     assert (np.abs(total / runs - expected) < limit() * error + 1e-6).all()
 
 
+def test_lines_of_a_group_begin_in_proportion_to_what_patches_owe_up_to_one_line():
+    """However much a patch has sent: its residue is less than a line."""
+    from scipy.stats import chisquare
+
+    owed = np.array([1 << 30, 1 << 31, 1 << 32, 5 << 40, 0, 3 << 32, 1 << 31], np.uint64)
+    begins, each = np.array([0, 5]), 40_000
+    found = residue._within(owed, begins, np.repeat([0, 1], each), np.random.Generator(np.random.Philox(5)))
+    counts = np.bincount(found, minlength=len(owed))
+    assert counts[4] == 0
+    share = np.array([0.25, 0.5, 1, 1, 0, 1, 0.5])
+    expected = each * share / np.repeat([2.75, 1.5], [5, 2])
+    for group in ([0, 1, 2, 3], [5, 6]):
+        assert counts[group].sum() == each
+        assert chisquare(counts[group], expected[group]).pvalue > ALPHA
+
+
 def test_groups_keep_to_faces_or_surfaces():
     patches = rd.subdivide(rd.load_scene("room"), cells=12)
     groups = residue.Groups.of(patches, 5_000)

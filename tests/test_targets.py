@@ -206,6 +206,25 @@ def test_a_limit_ends_a_run_to_an_error(limit, why):
 
 
 @pytest.mark.usefixtures("quick")
+def test_what_is_known_of_an_error_is_how_many_lines_landed_on_its_surface():
+    """A screen beside it receives more."""
+    alone, _ = sensor()
+    scene = alone.scene
+    screen = rd.Scene.from_arrays(
+        [*scene.vertices, (1, 0, 1), (1, 1, 1), (2, 1, 1), (2, 0, 1)], [(0, 1, 2, 3), (4, 5, 6, 7), (8, 9, 10, 11)],
+        [0.0, 0.2, 0.0], [1.0, 0.0, 0.0], surface=[0, 1, 2], names=["lamp", "sensor", "screen"],
+    )  # fmt: skip
+    patches = rd.subdivide(screen, cells=1)
+    with pytest.warns(rd.RadiosityWarning, match="surface:sensor was not reached") as told:
+        solution = rd.solve(patches, error=0.01, error_of="surface:sensor", rays=QUICK)
+    landed = int(solution.arrivals[1])
+    assert landed < FEW
+    assert solution.arrivals[2] > 100
+    text = next(str(w.message) for w in told if "not reached" in str(w.message))
+    assert f"after {solution.rays:,} lines it cannot be told yet ({landed:,} lines landed there)" in text
+
+
+@pytest.mark.usefixtures("quick")
 def test_a_limit_does_not_keep_a_run_from_ending_sooner():
     patches = rd.subdivide(rd.load_scene("room"), cells=2)
     alone = rd.solve(patches, error=0.05)
