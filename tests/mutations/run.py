@@ -1,6 +1,6 @@
 """Are small mistakes noticed? Each of `table.MISTAKES` is put into a copy of this checkout, one at a time, and its tests are run.
 
-    python tests/mutations/run.py              all of them, half an hour or so
+    python tests/mutations/run.py              all of them, an hour or so
     python tests/mutations/run.py tone vtp     those whose file or reason holds one of the words
 
 What notices a mistake must pass without it. A mistake whose text does not stand once in its file is told and counts as missed:

@@ -135,7 +135,7 @@ MISTAKES = (
     Mistake("engine/walks/scores.py", "dr.select(alive, brought / probability, 0)", "dr.select(alive, brought, 0)",
             ("test_axis_estimator.py",), "survivors do not stand for the others"),
     Mistake("engine/walks/fractions.py", "self._count(leg - 1) / after", "self._count(leg - 1) / self.counts[0]",
-            ("test_walks_unbiased.py",), "a share is taken of all walks"),
+            ("test_axis_estimator.py",), "a share is taken of all walks"),
     Mistake("engine/global_lines/first_shot.py", "spans_lines * share / (1 - share)", "spans_lines * share",
             ("test_global_solutions.py", "test_global_lines.py"), "a share of the others, not of all"),
     Mistake("engine/global_lines/first_shot.py", 'state[PREFIX + "received"][..., group]', 'state[PREFIX + "received"][..., 0]',
