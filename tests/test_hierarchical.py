@@ -15,6 +15,7 @@ from radiosity.deterministic.hierarchical import refine as refining
 from radiosity.deterministic.hierarchical.exchange import Exchange
 from radiosity.deterministic.hierarchical.kernel import Shapes, unoccluded
 from radiosity.deterministic.hierarchical.levels import Levels
+from radiosity.deterministic.hierarchical.oracle import Radiosity
 from radiosity.patches import Hierarchy, elements
 
 MIXED = rd.Scene.from_arrays(
@@ -47,6 +48,18 @@ def test_push_and_pull_conserve_power(random):
     assert (low <= pulled * (1 + 1e-12)).all()
     assert (pulled <= high * (1 + 1e-12)).all()
     assert high[root].max() == radiosity.max()
+
+
+def test_deviations_are_those_of_the_patch_that_is_farthest_off(random):
+    """Whether it is brighter or darker than the element, of each band by itself."""
+    levels = Levels(Hierarchy(cut(MIXED)))
+    values = random.uniform(size=(len(levels.hierarchy.patches), 3))
+    found, expected = Radiosity.of(levels, values), np.zeros((len(levels.hierarchy), 3))
+    for patch, element in enumerate(levels.leaf):
+        while element >= 0:
+            expected[element] = np.maximum(expected[element], np.abs(values[patch] - found.mean[element]))
+            element = levels.parent[element]
+    np.testing.assert_allclose(found.deviation, expected, atol=1e-14)
 
 
 @pytest.mark.parametrize("make", [enclosures.parallel_squares, enclosures.perpendicular_squares])
