@@ -299,7 +299,7 @@ MISTAKES = (
             ("test_lab_numbers.py",), "ratios are inverse"),
     Mistake("lab/slopes.py", "DECADES = 2", "DECADES = 3", ("test_lab_numbers.py",), "slopes of the start are in the end's"),
     Mistake("lab/discretisation.py", "** 2 - noise - found.standard_error", "** 2 - found.standard_error",
-            ("test_lab.py::test_discretisation_error_falls_with_the_mesh_and_is_less_for_continuous_walks",),
+            ("test_lab_numbers.py",),
             "noise of the fine mesh is called discretisation"),
     Mistake("lab/contest.py", "(area @ truth**2)).max())", "(area @ truth**2)).mean())", ("test_lab_numbers.py",),
             "the mean band, not the worst"),
