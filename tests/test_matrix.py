@@ -6,7 +6,7 @@ about 1 % for a false alarm, and seeds are fixed.
 
 import numpy as np
 import pytest
-from enclosures import coaxial_discs, cube, sphere_in_box
+from enclosures import coaxial_discs, cube, parallel_squares, sphere_in_box
 from iterations import open_room
 from replicates import difference, powers
 
@@ -154,3 +154,21 @@ def test_backs_that_let_lines_pass_are_counted_one_way(lines):
     solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=4_000_000, replicates=16)
     expected = powers(rd.solve(patches, rays=4_000_000, replicates=16))
     assert np.abs(difference(powers(solution, tally=MatrixTally(False, directed=True)), expected)).max() < 6.0
+
+
+@pytest.mark.parametrize("lines", LINES)
+def test_light_goes_through_backs_that_pass_although_it_does_not_come_back(lines):
+    """Between two facing squares stands a wide screen whose back lets the light of the lower one pass, and whose front hides that
+    one from the upper. The upper square receives what it would without the screen, which receives nothing."""
+    below, exact = parallel_squares()
+    screen = [(-5, -5, 0.5), (6, -5, 0.5), (6, 6, 0.5), (-5, 6, 0.5)]
+    scene = rd.Scene.from_arrays(
+        np.concatenate([below.vertices, screen]), np.concatenate([below.faces, [[8, 9, 10, 11]]]), 0.0, [1.0, 0.0, 0.0],
+        back=[rd.Back.ABSORBS, rd.Back.ABSORBS, rd.Back.PASSES], surface=range(3), names=["lamp", "square", "screen"],
+    )  # fmt: skip
+    solution = rd.solve(rd.subdivide(scene, cells=1), rd.Method(order="matrix", lines=lines), rays=1_000_000, replicates=16)
+    power = powers(solution, key=np.arange(3))
+    error = power[:, 1].std(ddof=1) / 4
+    assert abs(power[:, 1].mean() - exact) < 5 * error
+    assert error < 0.05 * exact
+    assert (power[:, [0, 2]] == 0).all()

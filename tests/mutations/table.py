@@ -144,7 +144,7 @@ MISTAKES = (
             "            sent, missed = rho * power + emission, first_shot", ("test_global_solutions.py",),
             "what the lights send escapes twice"),
     Mistake("engine/matrix/process.py", "MatrixTally(both_ways, directed=self.geometry.some_backs_pass)",
-            "MatrixTally(both_ways, directed=False)", ("test_axis_lines.py", "test_matrix.py"), "backs that pass hide both ways"),
+            "MatrixTally(both_ways, directed=False)", ("test_matrix.py",), "backs that pass hide both ways"),
     Mistake("engine/matrix/hemicube.py", "cosine * across - sine * tangent", "cosine * across + sine * tangent",
             ("test_hemicube.py",), "turned cubes are skew"),
     Mistake("deterministic/hierarchical/oracle.py", "np.maximum(high - mean, mean - low)", "high - mean",
