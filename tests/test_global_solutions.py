@@ -13,6 +13,7 @@ from test_lines import stack
 import radiosity as rd
 from radiosity.engine.device import choose, frozen, upload
 from radiosity.engine.geometry import Geometry
+from radiosity.engine.global_lines import first_shot
 from radiosity.engine.global_lines.exchange import Exchange
 from radiosity.engine.global_lines.mixing import Mixed
 from radiosity.engine.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
@@ -174,3 +175,11 @@ def test_every_line_of_a_closed_scene_lands(method):
     patches = rd.subdivide(cube(0.5, [1.0, 0, 0, 0, 0, 0]), cells=2)
     solution = rd.solve(patches, method, rays=8_000)
     assert solution.arrivals.sum() == solution.rays > 7_000
+
+
+@pytest.mark.parametrize("order", ["multipath", "regular"])
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.8])
+def test_a_first_shot_has_its_share_of_all_lines(order, share):
+    patches = rd.subdivide(cube(0.5, [1.0, 0, 0, 0, 0, 0]), cells=2)
+    solution = rd.solve(patches, rd.Method(lines="spans", order=order, first_shot=share), rays=20_000)
+    assert first_shot.fired(solution.state) / solution.rays == pytest.approx(share, abs=0.01)
