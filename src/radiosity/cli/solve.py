@@ -77,9 +77,9 @@ def solve(
     seconds
         Or: for how long to trace, such as 60, 5min or 1h.
     error
-        Or: until the relative error is below this, such as 1% or 0.01; in 95 % of runs the true error is. With --rays, --seconds
-        or both it goes no further than these; where it ends above the error, or where too few lines landed to tell it, the status
-        is "not reached" and the exit status 3. Without a limit the counters are one, at 4 billion lines for each replicate.
+        Or: until the relative error is below this, such as 1% or 0.01; in 95 % of runs the true error is. Lines or seconds given
+        beside it are a limit. A run that ends above the error, or on too few lines to tell it, has the status "not reached" and
+        the exit status 3. Without a limit it ends at 4 billion lines for each replicate, where its counters are full.
     error_of
         Whose error: surface:NAME, or surface:PATTERN. Default: the whole scene's.
     quanta
