@@ -36,8 +36,9 @@ def warn_of_target(run: "Run", snapshot: Snapshot) -> None:
     else:
         known = f"after {snapshot.lines:,} lines it is {run.teller.bound:.2%} or less in 95 % of runs"
     limits = [f"{name}={value:g}" for name, value in (("rays", budget.rays), ("seconds", budget.seconds)) if value is not None]
-    full = "counters are full: take more replicates"
-    why = f"the limit was {', '.join(limits)}, or {full}" if limits else full
+    # a stage that full counters forbid would have doubled the lines
+    limited = limits and snapshot.lines / run.replicates < run.most / 2
+    why = f"the limit was {', '.join(limits)}" if limited else "counters are full: take more replicates"
     warnings.warn(
         f"the error {100 * (budget.error or 0):.3g}% of {whose} was not reached: {known}; {why}",
         RadiosityWarning,
