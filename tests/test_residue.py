@@ -73,7 +73,7 @@ def limit() -> float:
     return float(norm.ppf(1 - ALPHA / 2))
 
 
-def not_sent(engine, problem, state) -> residue_walks.Sent:
+def not_sent(engine, problem, state, begun) -> residue_walks.Sent:
     """A wrong implementation."""
     groups = problem.groups.n_groups
     received = state["received"] if "received" in state else state["arrivals"][..., None] * np.int64(QUANTUM)
@@ -248,7 +248,7 @@ def test_books_close_with_what_the_residue_brings():
         for quanta in (30, 300, 3_000):
             state = advanced(process, quanta)
             sent = process.tally.sent(state)
-            landed = sent.received - not_sent(process.engine, process.problem, state).received
+            landed = sent.received - not_sent(process.engine, process.problem, state, process.tally.begun(state)).received
             assert landed.any()
             assert [int(landed[..., g].sum() + sent.missed[..., g].sum()) for g in range(len(sent.fired))] == sent.fired
             for group in range(process.problem.groups.n_groups):
@@ -279,9 +279,9 @@ def test_residue_lines_count_as_rays(rays):
 def test_intermediate_stages_send_nothing(monkeypatch):
     taken, send = [], firing_process.send
 
-    def counted(engine, problem, state):
+    def counted(engine, problem, state, begun):
         taken.append(int(state["quanta"]))
-        return send(engine, problem, state)
+        return send(engine, problem, state, begun)
 
     monkeypatch.setattr(firing_process, "send", counted)
     patches = cavity()

@@ -12,6 +12,7 @@ from .firing import Engine
 from .problem import Problem
 from .process import AbstractProcess, AbstractTally, State, Swept
 from .quanta import Source
+from .residue import Starts
 from .residue_walks import LONGER, Sent, send, starts
 
 
@@ -62,13 +63,21 @@ class Arrivals(AbstractTally):
 
     def forget(self) -> None:
         self._state: State | None = None
+        self._begun: Starts | None = None
         self._sent: Sent | None = None
+
+    def begun(self, state: State) -> Starts:
+        """Where lines begin that send the residue of a state on."""
+        if self._begun is None or self._state is not state:
+            self.forget()  # first, for the sake of memory
+            self._state, self._begun = state, starts(self.engine, self.problem, state)
+        return self._begun
 
     def sent(self, state: State) -> Sent:
         """What the residue of a state brings."""
-        if self._sent is None or self._state is not state:
-            self.forget()  # first, for the sake of memory
-            self._state, self._sent = state, send(self.engine, self.problem, state)
+        begun = self.begun(state)
+        if self._sent is None:
+            self._sent = send(self.engine, self.problem, state, begun)
         return self._sent
 
     def lines(self, problem: Problem, state: State) -> int:
@@ -78,7 +87,7 @@ class Arrivals(AbstractTally):
         return exact_sum(state["fired"])
 
     def about_lines(self, problem: Problem, state: State) -> float:
-        fired, begun = exact_sum(state["fired"]), starts(self.engine, problem, state)
+        fired, begun = exact_sum(state["fired"]), self.begun(state)
         packets = self.engine.replicates * int(state["quanta"])
         of_one = fired / max(packets - begun.net, packets / 2)  # what is fired lacks those of the residue
         return fired + LONGER * len(begun.line) * of_one

@@ -11,7 +11,7 @@ import numpy as np
 from ..patches import cells
 from ..patches.model import Patches
 from ..pieces import pieces
-from ..scene.model import Back, Scene
+from ..scene.model import Back, Scene, unit_normals
 from ..scene.precision import EPSILON, plane_reach
 from .device import Device, upload
 from .ties import Ties
@@ -94,8 +94,7 @@ class Geometry:
     def normals(self) -> np.ndarray:
         """(n_faces, 3) float64, of the caster's vertices."""
         _, first, second = self.frames
-        cross = np.cross(first, second)
-        return cross / np.linalg.norm(cross, axis=1, keepdims=True)
+        return unit_normals(first, second)
 
     @cached_property
     def corners(self) -> np.ndarray:

@@ -48,15 +48,15 @@ def starts(engine, problem: Problem, state: State) -> Starts:
     return Starts.of(problem, state, frozen(engine.phase).reshape(engine.replicates, engine.n), engine.seed)
 
 
-def send(engine, problem: Problem, state: State) -> Sent:
+def send(engine, problem: Problem, state: State, begun: Starts) -> Sent:
     """Send the residues of a complete stage on.
 
     Args:
         engine: of the run; its counters are left alone.
         problem: what is solved.
         state: of the stage.
+        begun: its `starts`.
     """
-    begun = starts(engine, problem, state)
     n_groups = begun.power.shape[1]
     tally = dr.zeros(engine.types.Int64, (engine.total + 2 * engine.replicates) * n_groups)
     dr.eval(tally)

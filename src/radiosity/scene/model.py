@@ -146,8 +146,7 @@ class Scene:
     def normal(self) -> np.ndarray:
         """(n_faces, 3) unit normal of the front."""
         _, first, second = self.frames
-        cross = np.cross(first, second)
-        return cross / np.linalg.norm(cross, axis=1, keepdims=True)
+        return unit_normals(first, second)
 
     @cached_property
     def bounds(self) -> np.ndarray:
@@ -207,3 +206,9 @@ class Scene:
         from .degenerate import leave_out
 
         return leave_out(self)
+
+
+def unit_normals(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(n, 3) of faces with these edges, (n, 3) each."""
+    cross = np.cross(first, second)
+    return cross / np.linalg.norm(cross, axis=1, keepdims=True)

@@ -44,7 +44,7 @@ class Pooled(AbstractMeanTally):
 
     def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
         """Of a patch's ends one sees the brightest light."""
-        ends = _pooled(problem, state["ends"], state)
+        ends = self.measured(problem, state)
         return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(ends.mean(axis=0), 1)
 
     def books(self, problem: Problem, state: State, group: int) -> dict:

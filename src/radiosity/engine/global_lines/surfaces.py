@@ -79,8 +79,7 @@ class Surfaces:
         UInt32 = self.geometry.device.types.UInt32
         ends, guide, sides = self._tables
         side = dr.gather(UInt32, guide, word >> (32 - self.bits))
-        (side,) = loop(
-            (side,), lambda side: dr.gather(UInt32, ends, side) < word, lambda side: (side + 1,))
+        (side,) = loop((side,), lambda side: dr.gather(UInt32, ends, side) < word, lambda side: (side + 1,))
         return dr.gather(UInt32, sides, side)
 
     def word(self, numbers, index):
