@@ -95,7 +95,6 @@ def test_a_missing_bsdf_is_half_and_absorbs_behind(load):
         ('<bsdf type="conductor"/>', 0.0),
         ('<bsdf type="roughconductor"/>', 0.0),
         ('<bsdf type="dielectric"/>', 0.0),
-        (f'<bsdf type="mask"><float name="opacity" value="0.5"/>{WHITE}</bsdf>', 0.7),
         (
             '<bsdf type="blendbsdf"><float name="weight" value="0.25"/><bsdf type="conductor"/><bsdf type="plastic"/></bsdf>',
             0.125,

@@ -310,3 +310,13 @@ def test_not_text(load, tmp_path):
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(SceneError, match="no TOML"):
         rd.load_scene(path)
+
+
+def test_open_lamps_hide_nothing(tmp_path):
+    (tmp_path / "lamp.stl").write_bytes(stl_bytes(TRIANGLES))
+    text = 'geometry = "lamp.stl"\n[[surface]]\nname = "lamp"\nradiance = 1\nback = "open"\nreflectance = {}\n'
+    (tmp_path / "scene.toml").write_text(text.format(0))
+    assert rd.load_scene(tmp_path / "scene.toml").back.tolist() == [rd.Back.OPEN]
+    (tmp_path / "scene.toml").write_text(text.format(0.5))
+    with pytest.raises(rd.SceneError, match=r"surface 'lamp'\) is open.*0.5"):
+        rd.load_scene(tmp_path / "scene.toml")

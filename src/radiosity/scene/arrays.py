@@ -46,6 +46,7 @@ def build_rows(vertices, faces, reflectance, emission, *, surface=None, names=No
     back = arguments.backs_of(back, two_sided, n, source)
     for value, what in zip(values, ("reflectance", "emission", "back reflectance", "back emission"), strict=True):
         arguments.check_values(value, what, surface, names, source)
+    arguments.check_open(back, values[0], surface, names, source)
     bands = arguments.bands_of(bands, n_bands, source)
     faces, rows = _parallelograms(vertices, faces)
     reflectance, emission, back_reflectance, back_emission = (value[rows] for value in values)
