@@ -15,7 +15,8 @@ from ....errors import SceneError, shown
 from ...parts import ReadOptions
 from .glb import chunks
 
-KNOWN_EXTENSIONS = ("KHR_texture_transform", "KHR_mesh_quantization", "KHR_lights_punctual", "EXT_texture_webp")
+COMPRESSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+UNPACK = "export it without compression (in Blender: untick Compression), or unpack it: gltf-transform copy in.glb out.glb"
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +92,8 @@ class GltfFile:
         info = self.item("buffers", index)
         if index not in self.known:
             what = f"buffer {index}"
+            if "uri" not in info and (packed := set(self.dictionary(info.get("extensions", {}), what)) & set(COMPRESSED)):
+                raise self.fail(f"{what} is compressed with {shown(packed)}, which is not read; {UNPACK}")
             if "uri" not in info and (index != 0 or self.chunk is None):
                 raise self.fail(f"{what} has no uri and the file has no binary chunk for it")
             data = self.resource(info["uri"], what) if "uri" in info else self.chunk or b""
@@ -114,7 +117,7 @@ def load(path: Path, options: ReadOptions) -> GltfFile:
     """Read and check the outer layers of a .glb or .gltf file.
 
     Raises:
-        SceneError: truncated, not glTF 2.0, or in need of an extension that is not read.
+        SceneError: truncated, or not glTF 2.0.
     """
     data = path.read_bytes()
     text, chunk = chunks(path, data) if path.suffix.lower() == ".glb" or data[:4] == b"glTF" else (data, None)
@@ -127,9 +130,4 @@ def load(path: Path, options: ReadOptions) -> GltfFile:
     version = str(tree["asset"].get("version"))
     if not version.startswith("2."):
         raise SceneError(f"{path}: glTF version {version}; only 2.0 is read")
-    file = GltfFile(path, options, tree, chunk)
-    required = [str(name) for name in file.items(tree, "extensionsRequired")]
-    unknown = [name for name in required if name not in KNOWN_EXTENSIONS and not name.startswith("KHR_materials_")]
-    if unknown:
-        raise file.fail(f"needs the extension {shown(unknown)}, which is not read; export without compression or this extension")
-    return file
+    return GltfFile(path, options, tree, chunk)
