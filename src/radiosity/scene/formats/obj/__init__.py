@@ -13,10 +13,11 @@ import numpy as np
 from ....errors import SceneError, shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
+from ..beside import in_any_case, warn_of_case
 from ..faces import cut
 from ..textures import decode_srgb, warn_of_means, with_means
 from .mtl import Finish, read_library
-from .tables import Tables, parse
+from .tables import NO_NAME, Tables, parse
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -34,6 +35,10 @@ def read(path: Path, options: ReadOptions) -> Scene:
         warn(text)
     if tables.free_form:
         warn(f"{path}: {tables.free_form} free-form curves and surfaces are left out; export polygons")
+    if tables.left_out:
+        warn(f"{path}: statements that are left out: {shown(f'{what} ({count})' for what, count in tables.left_out.items())}")
+    if several := [f"{name} ({count})" for name, count in tables.begun.items() if count > 1 and name.lower() not in NO_NAME]:
+        warn(f"{path}: objects of the same name become one: {shown(several)}")
     finishes = _libraries(path, tables, options)
     wanted = {material for _, material in tables.groups if material}
     if missing := sorted(wanted - set(finishes)):
@@ -50,16 +55,25 @@ def read(path: Path, options: ReadOptions) -> Scene:
 
 def _libraries(path: Path, tables: Tables, options: ReadOptions) -> dict[str, Finish]:
     result: dict[str, Finish] = {}
-    lost = []
+    lost, renamed, again = [], [], []
     for text in dict.fromkeys(tables.libraries):
+        text = text.replace("\\", "/")
         # a name may hold blanks, and a line may hold several names
-        whole = path.parent / text.replace("\\", "/")
-        for file in [whole] if isfile(whole) else [path.parent / name.replace("\\", "/") for name in text.split()]:
-            options.admit(file, path)
+        whole = isfile(path.parent / text) or in_any_case(path.parent, text)
+        for name in [text] if whole else text.split():
+            file = options.admit(path.parent / name, path)
+            if not isfile(file) and (other := in_any_case(path.parent, name)):
+                renamed.append((name, other))
+                file = options.admit(other, path)
             if isfile(file):
-                result.update(read_library(file, options))
+                found = read_library(file, options, tables.codec)
+                again += [material for material in found if material in result]
+                result.update(found)
             else:
-                lost.append(str(file.name))
+                lost.append(file.name)
+    warn_of_case(path, renamed)
+    if again:
+        warn(f"{path}: materials that several libraries define; the last one holds: {shown(dict.fromkeys(again))}")
     if lost:
         warn(f"{path}: material libraries that do not exist: {shown(lost)}; put them beside the file")
     return result
