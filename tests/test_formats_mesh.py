@@ -165,3 +165,62 @@ def test_faces_without_area_are_counted(tmp_path):
         scene = rd.load_scene(path)
     assert scene.n_faces == 1
     assert any("2 faces without area left out" in str(w.message) and "'flat'" in str(w.message) for w in caught)
+
+
+@pytest.mark.parametrize("tail", [b"\0\0", b"\n", b"made by x" * 20])
+@pytest.mark.parametrize("head", [b"made by x", b"solid x facet"])
+def test_bytes_after_the_triangles_of_a_stl_file_are_told(tmp_path, head, tail):
+    (tmp_path / "x.stl").write_bytes(head + stl_bytes(TRIANGLES)[len(head) :] + tail)
+    with pytest.warns(RadiosityWarning) as caught:
+        scene = rd.load_scene(tmp_path / "x.stl")
+    assert scene.area.tolist() == [1]
+    assert str(caught[0].message).endswith(f"x.stl: {len(tail)} bytes after the last of 2 triangles are left out")
+    assert len(caught) == 2  # and the missing material
+
+
+def test_binary_stl_files_may_begin_with_solid(tmp_path):
+    data = b"solid tile" + stl_bytes(TRIANGLES)[10:]
+    assert load(tmp_path / "tile.stl", data).area.tolist() == [1]
+
+
+def test_attributes_of_stl_triangles_are_told(tmp_path):
+    data = bytearray(stl_bytes(TRIANGLES))
+    data[-2:] = b"\x1f\x80"
+    (tmp_path / "x.stl").write_bytes(data)
+    with pytest.warns(RadiosityWarning) as caught:
+        rd.load_scene(tmp_path / "x.stl")
+    assert "colours, as some programs write them) of 1 triangles" in str(caught[0].message)
+
+
+def test_solids_of_a_stl_file(tmp_path):
+    """Names of several words, none, twice the same, other line ends, capitals."""
+    text = stl_text({"Lamp one": TRIANGLES, "": TRIANGLES + 1.0}) + stl_text({"Lamp one": TRIANGLES + 2.0})
+    for ends in ("\n", "\r\n", "\r"):
+        (tmp_path / "x.stl").write_bytes(text.replace("facet", "FACET").replace("\n", ends).encode())
+        with pytest.warns(RadiosityWarning) as caught:
+            scene = rd.load_scene(tmp_path / "x.stl")
+        assert scene.names == ("Lamp one", "x", "Lamp one#2")
+        assert scene.area.tolist() == [1, 1, 1]
+        assert str(caught[0].message).endswith("get numbers (name#2, ...) in the order of the file: 'Lamp one (2)'")
+
+
+def test_facets_of_four_corners_and_of_two_are_damage(tmp_path):
+    rows = "solid a\n" + "".join(
+        "facet normal 0 0 1\nouter loop\n" + "vertex 0 0 0\n" * corners + "endloop\nendfacet\n" for corners in (4, 2)
+    )
+    fails(tmp_path / "x.stl", rows + "endsolid a\n", "facets are complete")
+    fails(tmp_path / "x.stl", stl_text({"a": TRIANGLES}).replace("vertex 0 0 0\n", "vertex 0 0\n", 1), "line 4", "three numbers")
+
+
+def test_a_stl_file_without_its_end_is_told(tmp_path):
+    text = stl_text({"a": TRIANGLES})
+    (tmp_path / "x.stl").write_text(text[: text.rindex("endsolid")])
+    with pytest.warns(RadiosityWarning) as caught:
+        assert rd.load_scene(tmp_path / "x.stl").area.tolist() == [1]
+    assert "ends without endsolid" in str(caught[0].message)
+
+
+def test_names_of_stl_solids_in_code_pages(tmp_path):
+    (tmp_path / "x.stl").write_bytes(stl_text({"Wände": TRIANGLES}).encode("cp1252"))
+    with pytest.warns(RadiosityWarning, match=r"names are read as Latin-1|no material"):
+        assert rd.load_scene(tmp_path / "x.stl").names == ("Wände",)

@@ -7,6 +7,7 @@ import numpy as np
 from ....errors import shown
 from ...assemble import warn
 from ...model import Camera
+from ..names import numbered
 from .file import GltfFile
 
 HEIGHT = 600  # pixels of a picture; glTF gives only the ratio
@@ -53,7 +54,7 @@ def walk(file: GltfFile) -> list[Node]:
         seeing = extension(file, info, "KHR_node_visibility", f"node {index}")
         hidden = hidden or (seeing is not None and seeing.get("visible", True) is False)
         name = _name(file, info, index)
-        result.append(Node(_unique(name, taken), info, matrix, hidden))
+        result.append(Node(numbered(name, taken), info, matrix, hidden))
         if "mesh" in info:
             alike[name] = alike.get(name, 0) + 1
         stack += [(child, matrix, hidden) for child in reversed(file.items(info, "children"))]
@@ -113,14 +114,6 @@ def _name(file: GltfFile, info: dict, index: int) -> str:
     if not name and "mesh" in info:
         name = file.item("meshes", info["mesh"]).get("name")
     return str(name or f"node {index}")
-
-
-def _unique(name: str, taken: dict[str, int]) -> str:
-    """The name, with a number where another object has it."""
-    taken[name] = taken.get(name, 0) + 1
-    if taken[name] == 1:
-        return name
-    return _unique(f"{name}#{taken[name]}", taken)
 
 
 def local_matrix(file: GltfFile, info: dict, what: str) -> np.ndarray:
