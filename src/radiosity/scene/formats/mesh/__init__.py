@@ -14,10 +14,10 @@ from ...model import Scene
 from ..faces import cut
 from ..textures import decode_srgb, linear_image, warn_of_means, with_means
 from .ply import Ply, read_ply
+from .ply_faces import polygons as polygons_of
 from .ply_rows import Columns
 from .stl import read_stl
 
-INDICES = ("vertex_indices", "vertex_index")
 COORDINATES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 
 
@@ -39,10 +39,10 @@ def _ply(path: Path, options: ReadOptions) -> Part:
     if not set("xyz") <= set(vertex.numbers):
         raise SceneError(f"{path}: the vertices have no x, y, z; the file is damaged")
     points = np.column_stack([vertex.numbers[axis] for axis in "xyz"]).astype(np.float64)
-    polygons = next((face.lists[name] for name in INDICES if name in face.lists), None)
+    polygons = polygons_of(path, ply)
     if polygons is None or not len(polygons.sizes):
         raise SceneError(f"{path}: the file holds {len(points)} points but no faces; export a surface, not a point cloud")
-    index = polygons.values.astype(np.int64)
+    index = polygons.values
     wrong = (index < 0) | (index >= len(points))
     if wrong.any():
         at = int(np.flatnonzero(wrong)[0])

@@ -10,6 +10,7 @@ import numpy as np
 from ....errors import SceneError
 from ..faces import cut
 from ..mesh.ply import read_ply
+from ..mesh.ply_faces import polygons
 from ..obj.tables import parse
 from .node import Node
 from .shapes import Geometry
@@ -52,15 +53,15 @@ def _obj(node: Node, file: Path) -> Geometry:
 
 
 def _ply(node: Node, file: Path) -> Geometry:
-    elements = read_ply(file).columns
-    if "vertex" not in elements or "face" not in elements:
+    ply = read_ply(file)
+    index = polygons(file, ply)
+    if "vertex" not in ply.columns or index is None:
         raise SceneError(f"{file}: the file has no vertices or no faces")
-    vertex, lists = elements["vertex"].numbers, elements["face"].lists
-    index = next((lists[name] for name in ("vertex_indices", "vertex_index") if name in lists), None)
-    if index is None or not {"x", "y", "z"} <= set(vertex):
-        raise SceneError(f"{file}: the vertices have no x, y, z, or the faces no vertex_indices")
+    vertex = ply.columns["vertex"].numbers
+    if not {"x", "y", "z"} <= set(vertex):
+        raise SceneError(f"{file}: the vertices have no x, y, z")
     points = _columns(vertex, ("x", "y", "z"))
-    corners = _checked(index.values.astype(np.int64), len(points), file)
+    corners = _checked(index.values, len(points), file)
     faces = cut(points[corners], index.sizes)
     uv = next((_columns(vertex, pair) for pair in (("u", "v"), ("s", "t")) if set(pair) <= set(vertex)), None)
     color = _columns(vertex, ("r", "g", "b")) if {"r", "g", "b"} <= set(vertex) else None
