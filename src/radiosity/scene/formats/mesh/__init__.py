@@ -11,7 +11,7 @@ import numpy as np
 from ....errors import SceneError
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
-from ..faces import cut
+from ..faces import cut, warn_of_crossing
 from ..textures import decode_srgb, linear_image, warn_of_means, with_means
 from .ply import Ply, read_ply
 from .ply_faces import polygons as polygons_of
@@ -53,7 +53,9 @@ def _ply(path: Path, options: ReadOptions) -> Part:
         if options.strict:
             raise SceneError(text)
         warn(text)
-    faces = cut(points[index], polygons.sizes)
+    crossed: list[int] = []
+    faces = cut(points[index], polygons.sizes, crossed)
+    warn_of_crossing(path, {path.stem: crossed})
     color, face_color, wedges = _color(path, vertex), _color(path, face), face.lists.get("texcoord")
     held = vertex.numbers
     uv = next((np.column_stack([held[u], held[v]]) for u, v in COORDINATES if u in held and v in held), None)

@@ -15,14 +15,13 @@ from ...assemble import assemble
 from ...model import Back, Scene
 from ...parts import Material, Part, ReadOptions
 from ..color import is_neutral, unit_rgb
+from ..faces import CROSSING
 from ..polygon import triangulate
 from .context import MgfMaterial
 from .faces import FaceReader, Polygons
 from .faults import Faults, Statement
 from .filter import reduce_to_faces
 from .source import read_source
-
-CROSSING = 1e-6  # relative difference of areas that rounding does not make
 
 
 def read(path: Path, options: ReadOptions) -> Scene:

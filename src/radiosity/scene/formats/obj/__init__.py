@@ -14,7 +14,7 @@ from ....errors import SceneError, shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
 from ..beside import in_any_case, warn_of_case
-from ..faces import cut
+from ..faces import cut, warn_of_crossing
 from ..textures import decode_srgb, warn_of_means, with_means
 from .mtl import Finish, read_library
 from .tables import NO_NAME, Tables, parse
@@ -46,8 +46,10 @@ def read(path: Path, options: ReadOptions) -> Scene:
     vertices = np.array([row[:3] for row in tables.vertices], np.float64).reshape(-1, 3)
     colors = np.array([row[3:6] if len(row) >= 6 else [np.nan] * 3 for row in tables.vertices]).reshape(-1, 3)
     uv = np.array(tables.uv, np.float64).reshape(-1, 2)
-    parts = [_part(name or path.stem, material, rows, (vertices, colors, uv), finishes.get(material))
+    crossed: dict[str, list[int]] = {}
+    parts = [_part(name or path.stem, material, rows, (vertices, colors, uv), finishes.get(material), crossed)
              for (name, material), rows in tables.groups.items() if rows]  # fmt: skip
+    warn_of_crossing(path, crossed)
     placed = [with_means(part, part.uv is None, part.emission_uv is None) for part in parts]
     warn_of_means(parts, placed, str(path))
     return assemble(placed, str(path), options)
@@ -79,17 +81,16 @@ def _libraries(path: Path, tables: Tables, options: ReadOptions) -> dict[str, Fi
     return result
 
 
-def _part(name: str, material: str, rows, tables, finish: Finish | None) -> Part:
+def _part(name: str, material: str, rows, tables, finish: Finish | None, crossed: dict[str, list[int]]) -> Part:
+    name = f"{name}/{material}" if material and material != name else name
     vertices, colors, uv = tables
     flat = np.array([corner for row in rows for corner in row], np.int64)
-    faces = cut(vertices[flat[:, 0]], np.array([len(row) for row in rows]))
+    faces = cut(vertices[flat[:, 0]], np.array([len(row) for row in rows]), crossed.setdefault(name, []))
     keys, index = np.unique(flat[:, 0] * (len(uv) + 1) + flat[:, 1] + 1, return_inverse=True)
     corners = np.column_stack([keys // (len(uv) + 1), keys % (len(uv) + 1) - 1])
     numbers = np.where(faces >= 0, index[faces], -1)
     finish = finish or Finish(Material())
-    part = Part(
-        f"{name}/{material}" if material and material != name else name, vertices[corners[:, 0]], numbers, finish.material
-    )
+    part = Part(name, vertices[corners[:, 0]], numbers, finish.material)
     color = decode_srgb(colors[corners[:, 0]])
     if np.isfinite(color).all():
         part = replace(part, color=color)
