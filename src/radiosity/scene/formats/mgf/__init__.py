@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ....errors import SceneError
-from ...assemble import assemble
+from ....errors import SceneError, shown
+from ...assemble import assemble, warn
 from ...model import Back, Scene
 from ...parts import Material, Part, ReadOptions
 from ..color import is_neutral, unit_rgb
@@ -46,6 +46,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
     if not any(len(part.faces) for part in parts):
         raise SceneError(f"{path}: no faces could be read from this MGF file{faults.first()}")
     faults.warn()
+    if several := [f"{name} ({len(places)})" for name, places in reader.begun.items() if len(places) > 1]:
+        warn(f"{path}: objects of the same name become one: {shown(several)}")
     return assemble(parts, str(path), options, photometric=True)
 
 

@@ -29,7 +29,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
     try:
         values = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        raise SceneError(f"{path}: is no TOML ({error})") from None
+        hint = "; save it as UTF-8" if isinstance(error, UnicodeDecodeError) else ""
+        raise SceneError(f"{path}: is no TOML ({error}){hint}") from None
     asked = checked(values, str(path))
     factors = [UNITS[entry.unit or asked.unit] * (entry.scale or asked.scale) for entry in asked.geometry]
 
@@ -44,6 +45,10 @@ def read(path: Path, options: ReadOptions) -> Scene:
     if any(name != one and _matches(name, one) for one in called for name in names):
         looks = Looks(asked.surface, called)  # known only now: lamp[1] is a surface here, and lamp1 another one
         scenes = dressed(looks)
+    several = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+    if several:
+        text = "surfaces of the same name in several geometry files become one; tell them apart by a name = of each [[geometry]]"
+        warn(f"{path}: {text}: {shown(several)}")
     for surface in asked.surface:
         if not any(_matches(name, surface.name) for name in names):
             warn(f"{path}: no surface is called '{surface.name}'; there are {shown(sorted(set(names)), 20)}")
