@@ -14,6 +14,7 @@ import numpy as np
 from ....errors import shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
+from ..beside import warn_of_case
 from ..textures import warn_of_means, with_means
 from .accessor import accessor
 from .deform import Skins, morphed
@@ -62,6 +63,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
         warn(f"{path}: textures that end at their rim or are mirrored are repeated instead: {shown(clamped)}")
     materials.report()
     warn_of_unread(file)
+    warn_of_case(path, file.renamed)
     placed = [with_means(part, part.uv is None, part.emission_uv is None) for part in parts]
     warn_of_means(parts, placed, str(path))
     return assemble(placed, str(path), options, cameras=cameras(file, [node for node in nodes if not node.hidden]))

@@ -13,6 +13,7 @@ from urllib.parse import unquote, unquote_to_bytes
 
 from ....errors import SceneError, shown
 from ...parts import ReadOptions
+from ..beside import in_any_case
 from .glb import chunks
 
 COMPRESSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
@@ -28,6 +29,7 @@ class GltfFile:
     tree: dict
     chunk: bytes | None = None  # of a .glb
     known: dict = field(default_factory=dict)  # buffers already read
+    renamed: list[tuple[str, Path]] = field(default_factory=list)  # found under a name of other case
 
     def fail(self, text: str) -> SceneError:
         return SceneError(f"{self.path}: {text}")
@@ -80,6 +82,9 @@ class GltfFile:
             raise self.fail(f"{what} is at '{uri[:80]}': nothing is fetched from addresses; put the file beside this one")
         try:
             file = self.options.admit(self.path.parent / unquote(uri), self.path)
+            if not file.is_file() and (other := in_any_case(self.path.parent, unquote(uri))):
+                self.renamed.append((uri, other))
+                file = self.options.admit(other, self.path)
             if not file.is_file():
                 raise self.fail(f"{what} is in '{uri}', but there is no file {file}; put it there or export as .glb")
             return file.read_bytes()

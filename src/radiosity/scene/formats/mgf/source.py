@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ....errors import SceneError
 from ...parts import ReadOptions
+from ..beside import in_any_case, warn_of_case
 from ..encoding import decode
 from .faults import Faults, Statement
 from .faults import decode as name_of
@@ -77,6 +78,9 @@ def _include_statement(
         return faults.add(statement.place, f"'{name}' includes itself")
     if len(above) >= DEEPEST:
         return faults.add(statement.place, f"files include each other more than {DEEPEST} deep")
+    if not os.path.isfile(name) and (other := in_any_case(Path(statement.file).parent, os.fsdecode(words[1].lstrip(b"/")))):
+        warn_of_case(statement.place, [(Path(name).name, other)])
+        name = os.fspath(options.admit(other, statement.place))
     if not os.path.isfile(name):
         return faults.add(statement.place, f"included file '{name}' does not exist")
     transformed = len(words) > 2

@@ -13,6 +13,7 @@ from ...arguments import LARGEST
 from ...assemble import Part, ReadOptions, warn
 from ...combine import combine
 from ...model import Back, Camera, Scene
+from ..beside import in_any_case, warn_of_case
 
 BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
 SIDES = {1: Back.ABSORBS, 2: Back.RADIATES}
@@ -36,7 +37,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
 
     def dressed(looks: Looks) -> list[Scene]:
         each = zip(asked.geometry, factors, strict=True)
-        return [_geometry(path.parent / entry.file, factor, entry.name, looks, options, path) for entry, factor in each]
+        return [_geometry(entry.file, factor, entry.name, looks, options, path) for entry, factor in each]
 
     looks = Looks(asked.surface)
     scenes = dressed(looks)
@@ -119,10 +120,14 @@ class Looks:
         return replace(scene, emission=emission, back_emission=back)
 
 
-def _geometry(path: Path, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
+def _geometry(file: str, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
     from .. import read as read_any
 
+    path = source.parent / file
     options.admit(path, source)
+    if not path.exists() and (other := in_any_case(source.parent, file)):
+        warn_of_case(source, [(file, other)])
+        path = options.admit(other, source)
     if path.suffix.lower() == ".toml":
         raise SceneError(f"{source}: geometry '{path.name}' is a .toml file; name its geometry files instead")
 
