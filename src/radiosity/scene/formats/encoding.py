@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from ...errors import SceneError
 from ..assemble import warn
 
 MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe\0\0", "utf-32"), (b"\0\0\xfe\xff", "utf-32"), (b"\xff\xfe", "utf-16"),
@@ -62,14 +63,14 @@ def decode(data: bytes, source: str, *, hint: str | None = None) -> Text:
         hint: the codec of a file that belongs to this one, which is taken where it fits.
 
     Raises:
-        UnicodeDecodeError: a file that begins with a byte order mark and does not go on so.
+        SceneError: a file that begins as UTF-16 or UTF-32 and does not go on so.
     """
     for mark, codec in MARKS:
         if data.startswith(mark):
-            return Text(data.decode(codec).removeprefix("\ufeff"), codec)
+            return _unicode(data, codec, source)
     for codec, zeros in (("utf-16-le", data[1:200:2]), ("utf-16-be", data[0:200:2])):
         if len(zeros) > 1 and zeros.count(0) * 2 > len(zeros):
-            return Text(data.decode(codec), codec)
+            return _unicode(data, codec, source)
     try:
         return Text(data.decode("utf-8"), "utf-8")
     except UnicodeDecodeError:
@@ -86,6 +87,14 @@ def decode(data: bytes, source: str, *, hint: str | None = None) -> Text:
         warn(f"{source}: is not UTF-8; its names are read as {best.title}{doubt}: save it as UTF-8 where they come out wrong")
     page = hinted or best
     return Text(data.decode(page.codec, "replace" if page.codec != "cp1252" else "cp1252_or_latin_1"), page.codec)
+
+
+def _unicode(data: bytes, codec: str, source: str) -> Text:
+    try:
+        return Text(data.decode(codec).removeprefix("\ufeff"), codec)
+    except UnicodeDecodeError as error:
+        text = f"{source}: begins as {codec.upper()} text does, and does not go on so ({error})"
+        raise SceneError(f"{text}; the file is damaged") from None
 
 
 def read_text(path: Path, *, hint: str | None = None) -> Text:

@@ -14,6 +14,7 @@ from ....errors import SceneError, shown
 from ...assemble import assemble, warn
 from ...model import Scene
 from ...parts import Part, ReadOptions
+from ..names import repeated
 from ..textures import warn_of_means, with_means
 from .bsdf import of_shape
 from .camera import read_camera
@@ -66,6 +67,7 @@ class Reader:
         self._geometries: dict[int, Geometry] = {}
         self._equal_energy: list[int] = []  # parts by number
         self._averaged: list[str] = []
+        self._given: list[str] = []  # names that the file gives, of shapes or of their files
         self._masked: dict[str, float] = {}
         self._shapes = self._faces = 0
 
@@ -75,7 +77,8 @@ class Reader:
         Raises:
             SceneError: numbers, files or types that make no shape.
         """
-        label = prefix + (node.name or Path(str(node.values.get("filename", ""))).stem or node.plugin)
+        given = node.name or Path(str(node.values.get("filename", ""))).stem
+        label = prefix + (given or node.plugin)
         inner = transformation(node, label)
         self._shapes += 1
         if self._shapes > MOST_SHAPES or self._faces > MOST_FACES:
@@ -102,6 +105,7 @@ class Reader:
             self._equal_energy.append(len(self._parts))
         part, averaged = make_part(self._unique(label), geometry, sides, area[0] if area else None, self._colors)
         self._parts.append(part)
+        self._given += [label] if given else []
         if 0 < sides.opacity < 1:
             self._masked[part.name] = sides.opacity
         self._averaged += [part.name] * averaged
@@ -120,6 +124,8 @@ class Reader:
             raise SceneError(f"{self._path}: cannot be used as it is{text}; remove that, or read the file without strict")
         if text:
             warn(f"{self._path}: only diffuse surfaces and area emitters take part{text}")
+        if several := repeated(self._given):
+            warn(f"{self._path}: shapes of the same name get numbers ('name 2', ...) in the order of the file: {shown(several)}")
         if self._masked:
             shares = [f"{name} ({opacity:.3g})" for name, opacity in self._masked.items()]
             warn(f"{self._path}: transparency (mask) is left out, taken as opaque, with the mean opacity: {shown(shares)}")
