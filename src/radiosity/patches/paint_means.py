@@ -73,7 +73,7 @@ def cell_means(paint: Paint, base: np.ndarray, columns: np.ndarray, rows: np.nda
     first = np.concatenate([[0], np.cumsum(count)])
     result = np.empty((first[-1], base.shape[1]))
     for image, texels, weight, faces in _groups(paint, base):
-        means = None if image < 0 else ImageMeans(texels, paint.sampler(image))
+        means = None if texels is None else ImageMeans(texels, paint.sampler(image))
         all_cells = _ranges(first[faces], count[faces])
         owners = np.repeat(faces, count[faces])
         for part in pieces(len(all_cells)):
@@ -142,7 +142,8 @@ def _of_image(means: ImageMeans, paint: Paint, weight: np.ndarray, grid: Grid) -
 
 
 def _parts(paint: Paint, grid: Grid) -> np.ndarray:
-    """(m,) int, a power of two: how often each cell's edges are cut so that colours and coordinates are nearly linear in the parts."""
+    """(m,) int, a power of two: into how many parts each cell's edges are cut, so that each part has nearly one colour and linear
+    texture coordinates."""
     color, uv = (_steps(values[grid.owner].astype(np.float64), grid.is_quad) for values in (paint.color, paint.uv))
     top = np.maximum(paint.color[grid.owner].max(axis=1), 1e-30)
     across = (np.abs(color[0]) + np.abs(color[2])) / top / grid.columns[:, None]

@@ -4,20 +4,21 @@ import numpy as np
 
 from .edge_integrals import along_edges, crossings
 from .image_tables import Tables, coarser
+from .repeats import folded
 from .sampler import Sampler
 
 THIN = 1e-4  # texels: what is narrower is taken to be so wide
-AT_ONCE = 1 << 24  # numbers of an image of which tables are made at a time; larger ones band by band
-CROSSINGS = (256, 1 << 14)  # lines between cells that an edge may cross, at least and at most; longer edges take larger texels
-ALL_CROSSINGS = 1 << 23  # what the edges of one call share
+AT_ONCE = 1 << 24  # texels times bands of an image of which tables are made at a time
+CROSSINGS = (1 << 10, 1 << 14)  # lines between cells that an edge may cross, least and most; longer edges take larger texels
+ALL_CROSSINGS = 1 << 24  # what the edges of one call share
 NARROW = 8  # footprints are at least so many of those larger texels wide
 
 
 class ImageMeans:
     """Of one image, (height, width, n_bands), with its sampler.
 
-    Means are exact, but for footprints over thousands of texels that do not lie along the axes: what they cut at their rim counts by
-    the means of larger texels, which errs by less than 0.1 %.
+    Means are exact, but for footprints over thousands of texels whose edges do not lie along the axes: texels at their rim
+    count by the means of larger ones, which errs by less than 0.1 %.
     """
 
     def __init__(self, image: np.ndarray, sampler: Sampler):
@@ -47,25 +48,30 @@ class ImageMeans:
             edges = [first, second, -first, -second]
         total = np.zeros((len(origin), self.image.shape[2]))
         start, edge = np.concatenate(starts), np.concatenate(edges)
-        level = self._levels(start, edge, np.tile(np.abs(area), len(starts)))
+        owner, weight = np.tile(np.arange(len(origin)), len(starts)), np.ones(len(start))
+        across = np.abs(area)[owner] / np.maximum(np.linalg.norm(edge, axis=1), 1e-300)
+        x, y = self._tables(self.groups[0], 0).x, self._tables(self.groups[0], 0).y
+        if x.period and y.period:
+            start, edge, weight, which = folded(start, edge, (x.period, y.period), across)
+            owner, across = owner[which], across[which]
+        level = self._levels(start, edge, across)
         for bands in self.groups:
             for which in np.unique(level):
                 at = np.flatnonzero(level == which)
                 tables = self._tables(bands, int(which))
                 found = along_edges(tables, start[at], edge[at])
                 for number, band in enumerate(bands):
-                    total[:, band] += np.bincount(at % len(origin), found[number], len(origin))
+                    total[:, band] += np.bincount(owner[at], found[number] * weight[at], len(origin))
         mean = np.concatenate([self._tables(bands, 0).mean for bands in self.groups])
         total = mean + total / (area * (0.5 if triangles else 1.0))[:, None]
         return np.broadcast_to(np.clip(total, 0, None), (len(total), self.n_bands))
 
-    def _levels(self, start: np.ndarray, edge: np.ndarray, area: np.ndarray) -> np.ndarray:
+    def _levels(self, start: np.ndarray, edge: np.ndarray, across: np.ndarray) -> np.ndarray:
         """The logarithm of the factor by which texels are larger for an edge; 0 where nothing is left out."""
         tables = self._tables(self.groups[0], 0)
         count = crossings(tables, start, edge)
         most = np.clip(ALL_CROSSINGS // len(count), *CROSSINGS)
-        width = area / np.maximum(np.linalg.norm(edge, axis=1), 1e-300)
-        largest = np.floor(np.log2(np.maximum(width / NARROW, 1)))
+        largest = np.floor(np.log2(np.maximum(across / NARROW, 1)))
         needed = [np.ceil(np.log2(np.maximum(count / bound, 1))) for bound in (most, CROSSINGS[1])]
         return np.maximum(np.minimum(needed[0], largest), needed[1]).astype(np.int64)
 

@@ -1,12 +1,12 @@
 """Antiderivatives of an image, for integrals along the edges of footprints.
 
 By Green's theorem the integral of f over a footprint is that of p dy - q dx around it, plus the mean of f times its area, where
-f = mean + dp/dx + dq/dy. Here p(x, y) is the integral along the row of f less the row's mean, and q(y) that of the rows' means less the
-mean of all, so that both repeat where the image does, and are as small far away as near by. Along an axis that is clamped no mean
-is taken off, and what lies outside is linear.
+f = mean + dp/dx + dq/dy. Here p(x, y) is the integral along a row of f minus the row's mean, and q(y) the integral of the rows'
+means minus the mean of all. So both repeat where the image does, and stay small. Along an axis that is clamped no mean is
+taken off, and p or q is linear outside the image.
 
-Coordinates are those of texels, x to the right and y down, from the corner of the image's first texel. In a table's own coordinates
-every cell between whole numbers holds one polynomial: the cells are texels, or the squares between their centres.
+Coordinates are those of texels, x to the right and y down, from the corner of the image's first texel. In a table's own
+coordinates every cell between whole numbers holds one polynomial: the cells are texels, or the squares between their centres.
 """
 
 from collections.abc import Callable
@@ -23,8 +23,8 @@ class Axis:
     """The columns, or the rows, of a table.
 
     Attributes:
-        texels: (n,) int, the image's texel in each; the last is the first again where the axis repeats, and the first and last ones
-            stand for all outside where it is clamped.
+        texels: (n,) int, the image's texel in each. The last is the first again where the axis repeats; the first and the last
+            stand for all that lies outside where it is clamped.
         period: whole numbers after which the axis repeats, or 0.
         scale, shift: own coordinate = scale times the texel coordinate + shift.
     """
@@ -74,10 +74,8 @@ class Tables:
 
     def __init__(self, image: np.ndarray, sampler: Sampler, scale: tuple[float, float] = (1.0, 1.0)):
         self.linear = sampler.filter == "linear"
-        sizes = image.shape[1], image.shape[0]
-        self.x, self.y = (
-            Axis.of(*axis, linear=self.linear, scale=s) for *axis, s in zip(sizes, sampler.wrap, scale, strict=True)
-        )
+        axes = zip((image.shape[1], image.shape[0]), sampler.wrap, scale, strict=True)
+        self.x, self.y = (Axis.of(count, wrap, linear=self.linear, scale=by) for count, wrap, by in axes)
         whole = np.moveaxis(image, 2, 0)[:, self.y.texels[:, None], self.x.texels].astype(np.float64)
         bands, height, width = whole.shape
         rows = whole[:, :, : width - 1].mean(axis=2) if self.x.period else np.zeros((bands, height))
@@ -85,9 +83,17 @@ class Tables:
         whole -= rows[:, :, None]
         self.width = width
         self.values = whole.reshape(bands, -1)
-        self.along = self._sums(whole, 2).reshape(bands, -1)
+        self.along = self._from_corner(whole, self._sums(whole, 2), self.x).reshape(bands, -1)
         self.row_values = rows - self.mean[:, None]
-        self.row_sums = self._sums(self.row_values, 1)
+        self.row_sums = self._from_corner(self.row_values, self._sums(self.row_values, 1), self.y)
+
+    def _from_corner(self, values: np.ndarray, sums: np.ndarray, axis: Axis) -> np.ndarray:
+        """Antiderivatives along the last axis that are 0 at the corner of the first texel, at every scale and filter."""
+        corner = axis.own(np.zeros(1))
+        cell, begin = axis.cell(corner)
+        at = np.arange(cell[0], values.size, values.shape[-1])
+        start = self._row(values.ravel(), sums.ravel(), at)(corner - begin)
+        return sums - start.reshape(*values.shape[:-1], 1)
 
     def _sums(self, values: np.ndarray, axis: int) -> np.ndarray:
         """The antiderivative at whole numbers, 0 at the first."""
@@ -118,13 +124,15 @@ class Tables:
         """The integral of p over y, from 0 to y at x, both own coordinates."""
         (column, left), (row, top) = self.x.cell(x), self.y.cell(y)
         at, x, y = row * self.width + column, x - left, y - top
-        sums, values = [table[band] for table in self._down], (self.values[band], self.along[band])
-        upper = self._row(*values, at)(x)
-        result = self._row(*sums, at)(x) + y * upper
+        values, along = self.values[band], self.along[band]
+        values_down, along_down = (table[band] for table in self._down)
+        upper = self._row(values, along, at)(x)
+        result = self._row(values_down, along_down, at)(x) + y * upper
         if self.linear:
-            result += y * y / 2 * (self._row(*values, at + self.width)(x) - upper)
+            result += y * y / 2 * (self._row(values, along, at + self.width)(x) - upper)
         if self.y.period:
-            result += (top - row) / self.y.period * self._row(*sums, self.y.period * self.width + column)(x)
+            whole = self._row(values_down, along_down, self.y.period * self.width + column)(x)
+            result += (top - row) / self.y.period * whole
         return result
 
     def _row(self, values: np.ndarray, sums: np.ndarray, at: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:

@@ -1,10 +1,10 @@
 """A quantity that varies over a face: texture images and corner colours that multiply a base value."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .sampler import PLAIN, Sampler, fold
+from .sampler import DEFAULT_SAMPLER, Sampler, fold
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class Paint:
 
     def sampler(self, index: int) -> Sampler:
         """The sampler of an image."""
-        return self.samplers[index] if self.samplers else PLAIN
+        return self.samplers[index] if self.samplers else DEFAULT_SAMPLER
 
     def factor(self, face: np.ndarray, u: np.ndarray, v: np.ndarray, is_quad: np.ndarray) -> np.ndarray:
         """The multiplier, (m, n_bands), at face coordinates (u, v) of m points; without the limit.
@@ -50,7 +50,7 @@ class Paint:
 
     def take(self, faces: np.ndarray) -> "Paint":
         """The paint of a choice of faces."""
-        return Paint(self.images, self.image[faces], self.uv[faces], self.color[faces], self.limit, self.samplers)
+        return replace(self, image=self.image[faces], uv=self.uv[faces], color=self.color[faces])
 
 
 def between(corners: np.ndarray, is_quad: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ import numpy as np
 
 
 def mean_below(corners: np.ndarray, limit: float) -> np.ndarray:
-    """Mean over triangles of the smaller of ``limit`` and a linear function of these values at the corners, (m, 3, n) to (m, n)."""
+    """Means over triangles of linear functions, cut off at ``limit``: values at the corners (m, 3, n) to (m, n)."""
     low, middle, high = np.moveaxis(np.sort(corners, axis=1), 1, 0)
     mean = corners.mean(axis=1)
 

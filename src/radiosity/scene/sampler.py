@@ -25,7 +25,7 @@ class Sampler:
             raise ValueError(f"wrap {self.wrap!r} and filter {self.filter!r}; known are {WRAPS} and {FILTERS}")
 
 
-PLAIN = Sampler()
+DEFAULT_SAMPLER = Sampler()
 
 
 def fold(texel: np.ndarray, count: int, wrap: str) -> np.ndarray:

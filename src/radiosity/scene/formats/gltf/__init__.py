@@ -13,6 +13,7 @@ import numpy as np
 from ....errors import shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
+from ...sampler import DEFAULT_SAMPLER
 from ..textures import warn_of_means, with_means
 from .accessor import accessor
 from .file import GltfFile, load
@@ -32,7 +33,6 @@ def read(path: Path, options: ReadOptions) -> Scene:
     nodes = walk(file)
     materials = Materials(file)
     left_out: dict[str, list[str]] = {}
-    clamped: dict[str, bool] = {}
     parts = []
     for name, info, matrix in nodes:
         if "mesh" not in info:
@@ -47,22 +47,20 @@ def read(path: Path, options: ReadOptions) -> Scene:
             if primitive.get("mode", TRIANGLES) not in (TRIANGLES, STRIP, FAN):
                 left_out.setdefault("points and lines", []).append(name)
                 continue
-            parts.append(_part(file, name, primitive, matrix, materials, clamped))
+            parts.append(_part(file, name, primitive, matrix, materials))
     if any("extensions" in info and "KHR_lights_punctual" in info["extensions"] for _, info, _ in nodes):
         left_out["point lights (only surfaces emit: give one an emissive colour)"] = [n for n, i, _ in nodes if "extensions" in i]
     if "EXT_mesh_gpu_instancing" in file.items(file.tree, "extensionsUsed"):
         left_out["instances"] = ["EXT_mesh_gpu_instancing"]
     for what, names in left_out.items():
         warn(f"{path}: {what} are left out: {shown(dict.fromkeys(names))}")
-    if clamped:
-        warn(f"{path}: textures that end at their rim or are mirrored are repeated instead: {shown(clamped)}")
     materials.report()
     placed = [with_means(part, part.uv is None, part.emission_uv is None) for part in parts]
     warn_of_means(parts, placed, str(path))
     return assemble(placed, str(path), options, cameras=cameras(file, nodes))
 
 
-def _part(file: GltfFile, name: str, primitive: dict, matrix: np.ndarray, materials: Materials, clamped: dict) -> Part:
+def _part(file: GltfFile, name: str, primitive: dict, matrix: np.ndarray, materials: Materials) -> Part:
     what = f"'{name}'"
     attributes = file.dictionary(primitive.get("attributes"), f"attributes of {what}")
     vertices = _attribute(file, attributes, "POSITION", (3,), what)
@@ -80,10 +78,11 @@ def _part(file: GltfFile, name: str, primitive: dict, matrix: np.ndarray, materi
         name = f"{name}/{finish.name}" if finish.name != name else name
     else:
         finish = Finish("", Material((1.0,) if "COLOR_0" in attributes else None))
-    uv = [_uv(file, attributes, texture, what, len(vertices), clamped) for texture in (finish.base, finish.emissive)]
+    base, emissive = finish.base, finish.emissive
+    uv = [_uv(file, attributes, texture, what, len(vertices)) for texture in (base, emissive)]
     return Part(
-        name, vertices, faces, finish.material, uv[0], color,
-        finish.base and finish.base.image, finish.emissive and finish.emissive.image, uv[1],
+        name, vertices, faces, finish.material, uv[0], color, base and base.image, emissive and emissive.image, uv[1],
+        sampler=base.sampler if base else DEFAULT_SAMPLER, emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
     )  # fmt: skip
 
 
@@ -96,14 +95,11 @@ def _attribute(file: GltfFile, attributes: dict, key: str, widths: tuple, what: 
     return values
 
 
-def _uv(file: GltfFile, attributes: dict, texture: Texture | None, what: str, count: int, clamped: dict) -> np.ndarray | None:
+def _uv(file: GltfFile, attributes: dict, texture: Texture | None, what: str, count: int) -> np.ndarray | None:
     key = f"TEXCOORD_{texture.coordinates}" if texture else ""
     if texture is None or key not in attributes:
         return None
-    uv = texture.uv(_attribute(file, attributes, key, (2,), what, count))
-    if not texture.repeats and (np.abs(uv - 0.5) > 0.501).any():
-        clamped[what.strip("'")] = True
-    return uv
+    return texture.uv(_attribute(file, attributes, key, (2,), what, count))
 
 
 def _triangles(file: GltfFile, primitive: dict, n_vertices: int, what: str) -> np.ndarray:

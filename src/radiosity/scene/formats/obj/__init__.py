@@ -13,6 +13,7 @@ import numpy as np
 from ....errors import SceneError, shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
+from ...sampler import DEFAULT_SAMPLER
 from ..faces import cut
 from ..textures import decode_srgb, warn_of_means, with_means
 from .mtl import Finish, read_library
@@ -82,7 +83,10 @@ def _part(name: str, material: str, rows, tables, finish: Finish | None) -> Part
         if finish.material.reflectance is None:
             part = replace(part, material=replace(finish.material, reflectance=(1.0,)))
     base, emissive = finish.base, finish.emissive
-    part = replace(part, texture=base and base.image, emission_texture=emissive and emissive.image)
+    part = replace(
+        part, texture=base and base.image, emission_texture=emissive and emissive.image,
+        sampler=base.sampler if base else DEFAULT_SAMPLER, emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
+    )  # fmt: skip
     if (corners[:, 1] >= 0).all():
         own = uv[corners[:, 1]]
         return replace(part, uv=base and base.uv(own), emission_uv=emissive and emissive.uv(own))

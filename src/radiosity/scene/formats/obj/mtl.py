@@ -42,6 +42,8 @@ def read_library(path: Path, options: ReadOptions) -> dict[str, Finish]:
     result = {name: _finish(path, entry, maps) for name, entry in entries.items()}
     if maps.lost:
         warn(f"{path}: textures that cannot be read are left out: {'; '.join(dict.fromkeys(maps.lost))}")
+    if maps.ignored:
+        warn(f"{path}: options of textures that are not followed: {shown(maps.ignored)}; bake them into the image")
     see_through = [
         name for name, entry in entries.items() if _number(path, entry, "d", 1.0) < 1 or _number(path, entry, "tr", 0.0) > 0
     ]
