@@ -19,8 +19,9 @@ class TextureMemory:
     left: int = MOST_TEXELS
     averaged: dict[str, None] = field(default_factory=dict)
 
-    def edge(self, height: int, width: int, what: str) -> int:
+    def edge(self, shape: tuple[int, ...], what: str) -> int:
         """The most texels along an edge that an image may keep."""
+        height, width = shape[:2]
         texels = height * width
         if max(height, width) <= SMALL or (max(height, width) <= LARGEST and texels <= self.left):
             self.left -= texels

@@ -43,10 +43,10 @@ def linear_image(data: bytes, what: str, options: ReadOptions, *, raw: bool = Fa
     if floating:
         raise SceneError(f"{what}: images of floating point numbers are not read in this format; save it as PNG or JPEG")
     most = 65535 if wide else 255
-    table: np.ndarray = np.arange(most + 1) / most
-    table = (table if raw else decode_srgb(table)).astype(np.float32)
+    codes = np.arange(most + 1) / most
+    table = np.asarray(codes if raw else decode_srgb(codes), np.float32)
     pixels = np.clip(pixels, 0, most) if wide else pixels
-    return reduced(pixels.reshape(*pixels.shape[:2], -1), lambda block: table[block], what, options)
+    return reduced(pixels.reshape(*pixels.shape[:2], -1), table.take, what, options)
 
 
 def decode_srgb(value: np.ndarray) -> np.ndarray:
@@ -57,7 +57,7 @@ def decode_srgb(value: np.ndarray) -> np.ndarray:
 
 def reduced(pixels: np.ndarray, decode, what: str, options: ReadOptions) -> np.ndarray:
     """Decoded rows, float32; averaged in blocks where the image is too large (see `texture_memory`)."""
-    edge = options.textures.edge(*pixels.shape[:2], what)
+    edge = options.textures.edge(pixels.shape, what)
     height, width = (min(length, edge) for length in pixels.shape[:2])
     if (height, width) == pixels.shape[:2]:
         return np.ascontiguousarray(decode(pixels), np.float32)
