@@ -16,7 +16,7 @@ class TextureMemory:
         averaged: names of images that were averaged.
     """
 
-    left: int = MOST_TEXELS
+    left: int = field(default_factory=lambda: MOST_TEXELS)
     averaged: dict[str, None] = field(default_factory=dict)
 
     def edge(self, shape: tuple[int, ...], what: str) -> int:
