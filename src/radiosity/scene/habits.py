@@ -93,6 +93,7 @@ def _check_arrays(part: Part, source: str) -> None:
     for values, what, low, high in (
         (part.vertices, "coordinates", -np.inf, np.inf),
         (part.color, "colour", 0.0, LARGEST),
+        (part.emission_color, "emitted colour", 0.0, LARGEST),
         (part.uv, "texture coordinates", -LARGEST, LARGEST),
         (part.emission_uv, "texture coordinates", -LARGEST, LARGEST),
     ):

@@ -9,6 +9,8 @@ import numpy as np
 
 from ..errors import SceneError
 from .model import Back
+from .sampler import DEFAULT_SAMPLER, Sampler
+from .texture_memory import TextureMemory
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,9 @@ class Part:
         material: of all its faces.
         uv: (n, 2) texture coordinates of the vertices, or None.
         color: (n, n_bands) linear vertex colours that multiply the reflectance, or None.
+        emission_color: the same for the emission.
         texture, emission_texture: (height, width, 1 or 3) linear images that multiply reflectance, emission; or None.
+        sampler, emission_sampler: how these images are continued.
         emission_uv: (n, 2) texture coordinates of the emission's texture; None: ``uv``.
         patch_size: metres, or NaN.
     """
@@ -57,12 +61,15 @@ class Part:
     emission_texture: np.ndarray | None = None
     emission_uv: np.ndarray | None = None
     patch_size: float = np.nan
+    sampler: Sampler = DEFAULT_SAMPLER
+    emission_sampler: Sampler = DEFAULT_SAMPLER
+    emission_color: np.ndarray | None = None
 
     @property
     def n_bands(self) -> int:
         m = self.material
         values = [m.reflectance, m.emission, m.back_reflectance, m.back_emission]
-        arrays = [self.color, self.texture, self.emission_texture]
+        arrays = [self.color, self.emission_color, self.texture, self.emission_texture]
         return max([1] + [len(v) for v in values if v is not None] + [a.shape[-1] for a in arrays if a is not None])
 
 
@@ -75,12 +82,14 @@ class ReadOptions:
         strict: faults that can be skipped are errors.
         edit: changes the parts that were read before they become a scene (the .toml reader's hook).
         root: the folder outside which no file is read, resolved; None: any file may be.
+        textures: how large images may be; it is used up while files are read.
     """
 
     max_reflectance: float = 0.95
     strict: bool = False
     edit: Callable[[list[Part]], list[Part]] | None = None
     root: Path | None = None
+    textures: TextureMemory = field(default_factory=TextureMemory)
 
     def __post_init__(self):
         if not 0 < self.max_reflectance < 1:

@@ -81,6 +81,7 @@ def _scene(scene: Scene) -> None:
 
 
 def _paint(paint: Paint, n: int, bands: int) -> None:
+    _that(len(paint.samplers) in (0, len(paint.images)), "samplers of other images")
     for image in paint.images:
         _that(image.ndim == 3 and image.dtype.kind == "f" and image.size > 0, "an image of another shape")
         _that(image.shape[2] in (1, bands) and bool(((image >= 0) & (image < MOST_OF_PAINTS)).all()), "an image out of range")

@@ -91,7 +91,7 @@ class Looks:
             exitance = _exitance(entry)
             if exitance is not None:
                 material = replace(material, emission=exitance, back_emission=None)
-                part = replace(part, emission_texture=None)
+                part = replace(part, emission_texture=None, emission_color=None)
                 self.powers.pop(part.name, None)
                 if entry.power is not None:
                     self.powers[part.name] = number
