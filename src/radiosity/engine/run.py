@@ -255,6 +255,7 @@ class Run:
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
             snapshot.quanta, self.replicates,
             snapshot.books, status, self._provenance(), state, snapshot.surface_power,
+            snapshot.side_power,
         )  # fmt: skip
 
     @property

@@ -28,7 +28,7 @@ class Snapshot:
         """Read all that is asked of it now, and let go of the state, where that is quick and takes less memory: what the process
         writes next goes to a copy of whatever is held."""
         if self.tally.settles:
-            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.books, self.asked
+            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power, self.books, self.asked
             self.state = {}
             self.tally.forget()
 
@@ -86,6 +86,14 @@ class Snapshot:
     def asked(self) -> Any:
         """What ``also`` reads."""
         return None if self.also is None else self.also(self)
+
+    @cached_property
+    def side_power(self) -> np.ndarray | None:
+        """See `Solution.side_power`."""
+        patches = self.problem.patches
+        if not patches.is_back.any():
+            return None
+        return self.sums(2 * patches.surface.astype(np.int64) + patches.is_back, 2 * len(patches.scene.names))
 
     def sums(self, key: np.ndarray, count: int) -> np.ndarray:
         """(2, replicates, count, n_bands) W or lm: what patches of an equal key receive, and of it reflect, in each replicate.

@@ -1,4 +1,5 @@
-"""CSV: ``x.csv`` with a row for each patch, and beside it ``x.surfaces.csv`` with a row for each surface.
+"""CSV: ``x.csv`` with a row for each patch, and beside it ``x.surfaces.csv`` with a row for each surface, or for each side of it
+that light reached (`solution.table.surface_table` explains the columns). Patches on the dark side of a face count none as ``few``.
 
 UTF-8, comma separated, a header row with units; what is unknown is ``nan``.
 """
@@ -10,11 +11,12 @@ from typing import TextIO
 
 import numpy as np
 
+from ..solution.sides import sides_of
 from .look import Look
 from .output import replacing
 
 CHUNK = 1 << 16
-POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net")
+POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net", "net_error", "net_low", "net_high")
 
 
 def write(solution, path, look: Look | None = None) -> None:
@@ -50,7 +52,7 @@ def _patches(solution, path: Path) -> None:
             label = f"{title} {band}" if len(bands) > 1 else title
             columns[f"{label} [{measure}]" if measure else label] = np.asarray(values)[:, i]
     columns["arrivals"] = np.asarray(solution.arrivals)
-    columns["few arrivals"] = np.asarray(solution.few).astype(int)
+    columns["few arrivals"] = (np.asarray(solution.few) & ~sides_of(solution).dark).astype(int)
     low, high = solution.interval(0.95, "irradiance")
     for title, values in (("irradiance, 95 % from", low), ("irradiance, 95 % to", high)):
         for i, band in enumerate(bands):
@@ -65,7 +67,7 @@ def _patches(solution, path: Path) -> None:
 
 def _surfaces(solution, path: Path) -> None:
     rows, scene = solution.surface_table(), solution.patches.scene
-    units = {"area": "m²", "radiosity": solution.unit, "irradiance": solution.unit, **dict.fromkeys(POWERS, scene.power_unit)}
+    units = {"area": "m²", "dark": "m²", "radiosity": solution.unit, "irradiance": solution.unit, **dict.fromkeys(POWERS, scene.power_unit)}
     with replacing(path) as temporary, _text(temporary) as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(_titled(key, units) for key in rows[0])
