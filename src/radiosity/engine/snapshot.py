@@ -28,7 +28,8 @@ class Snapshot:
         """Read all that is asked of it now, and let go of the state, where that is quick and takes less memory: what the process
         writes next goes to a copy of whatever is held."""
         if self.tally.settles:
-            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power, self.books, self.asked
+            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power
+            _ = self.books, self.asked
             self.state = {}
             self.tally.forget()
 

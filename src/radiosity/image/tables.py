@@ -1,5 +1,5 @@
 """CSV: ``x.csv`` with a row for each patch, and beside it ``x.surfaces.csv`` with a row for each surface, or for each side of it
-that light reached (`solution.table.surface_table` explains the columns). Patches on the dark side of a face count none as ``few``.
+that light reached (`solution.table.surface_table` explains the columns). ``few arrivals`` is 0 on the dark side of a face.
 
 UTF-8, comma separated, a header row with units; what is unknown is ``nan``.
 """
@@ -67,7 +67,8 @@ def _patches(solution, path: Path) -> None:
 
 def _surfaces(solution, path: Path) -> None:
     rows, scene = solution.surface_table(), solution.patches.scene
-    units = {"area": "m²", "dark": "m²", "radiosity": solution.unit, "irradiance": solution.unit, **dict.fromkeys(POWERS, scene.power_unit)}
+    units = {"area": "m²", "dark": "m²", "radiosity": solution.unit, "irradiance": solution.unit}
+    units |= dict.fromkeys(POWERS, scene.power_unit)
     with replacing(path) as temporary, _text(temporary) as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(_titled(key, units) for key in rows[0])

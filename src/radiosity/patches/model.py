@@ -116,7 +116,9 @@ class Patches:
 
     def _of_side(self, front, back, paint) -> np.ndarray:
         value = np.where(self.is_back[:, None], back[self.face], front[self.face])
-        return value if paint is None else np.minimum(value * self._mean(paint), paint.limit)
+        if paint is None:
+            return value
+        return np.minimum(value * self._mean(paint), np.where(paint.painted, paint.limit, np.inf)[self.face, None])
 
     def _mean(self, paint) -> np.ndarray:
         """Mean of a paint over each patch, from a regular grid of points."""

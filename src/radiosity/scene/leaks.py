@@ -26,6 +26,7 @@ class Fates:
         hit: (n_lines,) int64, the face met, or -1.
         exit: (n_lines,) int64, the side of the scene's box that a line which meets nothing leaves through: x low, x high, ...
         distance: (n_lines,) float64, metres; infinite for a line that escaped.
+        front: (n_lines,) bool, it met the front of the face.
     """
 
     face: np.ndarray
@@ -33,6 +34,7 @@ class Fates:
     hit: np.ndarray
     exit: np.ndarray
     distance: np.ndarray
+    front: np.ndarray
 
     @cached_property
     def escaped(self) -> float:
@@ -123,7 +125,7 @@ def _trace(scene: Scene, face, back, place, generator, device: str):
     hits = first_hits(scene, start, direction, device=device)
     dead_back = ~hits.front & (scene.back[hits.face] != Back.RADIATES)
     fate = np.where(hits.face < 0, ESCAPED, np.where(dead_back, LOST, SEEN))
-    return Fates(face, fate, hits.face, _exit(scene, start, direction), hits.distance), hits.front, (hits.u, hits.v)
+    return Fates(face, fate, hits.face, _exit(scene, start, direction), hits.distance, hits.front), hits.front, (hits.u, hits.v)
 
 
 def _exit(scene: Scene, start: np.ndarray, direction: np.ndarray) -> np.ndarray:

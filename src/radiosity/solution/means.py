@@ -38,7 +38,8 @@ def of_rows(solution, level: float, quantity: str) -> "Ends":
         power = power[:, :, sides.surface]
         back = np.array([side == BACK for side in sides.side])
         parts = ~sides.whole
-        power[:, :, parts] = np.nan if solution.side_power is None else solution.side_power[:, :, (2 * sides.surface + back)[parts]]
+        of_sides = solution.side_power
+        power[:, :, parts] = np.nan if of_sides is None else of_sides[:, :, (2 * sides.surface + back)[parts]]
     return _of_sets(solution, level, quantity, sides.row, len(sides.surface), power)
 
 

@@ -82,7 +82,7 @@ def _surfaces(solution) -> list[str]:
     heads = [f"B {s}".strip() for s in short] + [f"H {s}".strip() for s in short]
     heads = [f"{head:>9}" for head in heads] + [f"{head:>7}" for head in ("H ±", "error")]
     title = f"{'surface':<{width}} {'patches':>8} {'area m²':>9} " + " ".join(heads)
-    about = f"radiosity B and irradiance H in {scene.unit}, area means; ±: 95 % interval of mean H; error: RMS over patches; relative"
+    about = f"radiosity B and irradiance H in {scene.unit}, area means; ±: 95 % interval of H; error: RMS over patches, relative"
     result = [about, title]
     for name, row in zip(names, rows, strict=False):
         values = [row[f"radiosity{t}"] for t in tails] + [row[f"irradiance{t}"] for t in tails]

@@ -1,7 +1,7 @@
 """Sides of surfaces: which of them light reached, and the rows that tables have of them.
 
-Faces of OBJ, PLY and STL files have two radiating sides. In a closed room one of them is the outside, which no line reaches: it is
-*dark*. A mean over both sides would be half of what the room receives, so dark sides have no part in means of surfaces.
+Faces of OBJ, PLY and STL files have two radiating sides. In a closed room one of them is the outside, which no line reaches: it
+is *dark*. A mean over both sides would be half of what the room receives, so dark sides have no part in means of surfaces.
 """
 
 from dataclasses import dataclass
@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene.model import Back
+from ..scene.reached import Lit, lit_sides
 from .intervals import FEW
 
 FRONT, BACK, LIT = "front", "back", "lit"  # lit: fronts of some faces and backs of others, where a surface is wound both ways
-STRAY = 0.01  # of the lines of such a surface at most meet faces that few lines reached
-_BOTH, _FRONT, _BACK, _MIXED = range(4)  # the sides of a surface that have a part in its means
-_NAMES = {_FRONT: FRONT, _BACK: BACK, _MIXED: LIT}
+_NAMES = {Lit.FRONT: FRONT, Lit.BACK: BACK, Lit.MIXED: LIT}
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,17 +47,17 @@ def sides_of(solution) -> Sides:
     counts = solution.arrivals if np.any(solution.arrivals) else FEW * (np.nan_to_num(solution.irradiance) > 0).any(axis=1)
     reached = np.zeros((scene.n_faces, 2))
     np.add.at(reached, place, counts)
-    kind = _kinds(reached, surface, two, n)
+    kind = lit_sides(scene, reached, FEW)
     back_is_less = reached[:, 0] >= reached[:, 1]
     of_face, outside = kind[surface], np.zeros((scene.n_faces, 2), bool)
-    outside[:, 0] = two & ((of_face == _BACK) | (of_face == _MIXED) & ~back_is_less)
-    outside[:, 1] = two & ((of_face == _FRONT) | (of_face == _MIXED) & back_is_less)
+    outside[:, 0] = two & ((of_face == Lit.BACK) | (of_face == Lit.MIXED) & ~back_is_less)
+    outside[:, 1] = two & ((of_face == Lit.FRONT) | (of_face == Lit.MIXED) & back_is_less)
     dark = outside | (two[:, None] & (reached == 0) & (reached[:, ::-1] >= FEW))
     left_out = outside[place]
     shines = np.bincount(patches.surface[left_out & patches.emission.any(axis=1)], minlength=n) > 0
-    kind[shines] = _BOTH
+    kind[shines] = Lit.BOTH
     left_out &= ~shines[patches.surface]
-    double = (kind == _BOTH) & (np.bincount(surface[two], minlength=n) > 0)
+    double = (kind == Lit.BOTH) & (np.bincount(surface[two], minlength=n) > 0)
     first = np.concatenate([[0], np.cumsum(np.where(double, 2, 1))])
     row = first[patches.surface] + np.where(double[patches.surface], patches.is_back, 0)
     rows = np.repeat(np.arange(n), np.diff(first))
@@ -66,17 +65,3 @@ def sides_of(solution) -> Sides:
     names = tuple(BACK if second else _NAMES.get(kind[s], FRONT) for s, second in zip(rows, is_second, strict=True))
     area = np.bincount(patches.surface[left_out], patches.area[left_out], n)[rows]
     return Sides(dark[place], left_out, rows, names, np.where(left_out, -1, row), area, ~double[rows])
-
-
-def _kinds(reached: np.ndarray, surface: np.ndarray, two: np.ndarray, n: int) -> np.ndarray:
-    """(n,) which sides of each surface count. A side is left out where all lines met the other one, and were many.
-
-    Args:
-        reached: (n_faces, 2) lines on fronts and backs.
-        two: (n_faces,) bool, the back radiates.
-    """
-    front, back = (np.bincount(surface[two], side[two], n) for side in reached.T)
-    twice = np.bincount(surface[two], reached[two].min(axis=1), n)  # lines on faces that were reached on both sides
-    stray = np.bincount(surface[two], np.where(reached.max(axis=1) < FEW, reached.sum(axis=1), 0)[two], n)
-    mixed = (front > 0) & (back > 0) & (twice == 0) & (stray <= STRAY * (front + back))
-    return np.select([(back == 0) & (front >= FEW), (front == 0) & (back >= FEW), mixed], [_FRONT, _BACK, _MIXED], _BOTH)
