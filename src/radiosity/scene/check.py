@@ -5,19 +5,11 @@ import warnings
 import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
-from . import contact_findings, leaks, topology
+from . import contact_findings, dark_sides, leaks, topology
 from .model import Scene
-from .reached import Lit, lit_sides
 from .report import NOTE, SERIOUS, WARNING, Finding, Report, surface_rows
 
 LITTLE = 0.01  # of the lines: that much is lost on the backs of lamps in many sound scenes
-MANY = 30  # lines on one side of a surface, from which on none on the other one says that it is dark
-ONE_SIDED = {
-    Lit.FRONT: "write sides = 1 for them in a .toml (docs/scene-toml.md)",
-    Lit.BACK: "write flip = true and sides = 1 for them in a .toml (docs/scene-toml.md): their fronts look outward",
-    Lit.MIXED: "let all their faces look inward in the modelling program (some look outward now), then write sides = 1 for them in "
-    "a .toml",
-}
 BOX_SIDES = ("x low", "x high", "y low", "y high", "z low", "z high")
 
 
@@ -114,29 +106,7 @@ def _lines(scene: Scene, power: np.ndarray, walks: int, seed: int, device: str):
         text = f"{_percent(fates.lost)} of {lines} lines land on absorbing backs (of {where}): {advice}"
         yield Finding(severity, "leaks", text)
     if power.any():
-        yield from _dark_sides(scene, fates)
-
-
-def _dark_sides(scene: Scene, fates: leaks.Fates):
-    """Two-sided faces that are lit on one side alone, as the walls of a room from OBJ, PLY and STL."""
-    seen, reached = fates.fate == leaks.SEEN, np.zeros((scene.n_faces, 2))
-    np.add.at(reached, (fates.hit[seen], (~fates.front[seen]).astype(int)), 1)
-    lit, area = lit_sides(scene, reached, MANY), np.bincount(scene.surface, scene.area, len(scene.names))
-    outside = np.where(reached[:, 0] >= reached[:, 1], power[1], power[0])
-    wasted = np.bincount(scene.surface, outside, len(scene.names))
-    for side, advice in ONE_SIDED.items():
-        for shines in (False, True):
-            here = np.flatnonzero((lit == side) & ((wasted > 0) == shines))
-            if not len(here):
-                continue
-            names = [scene.names[s] for s in here[np.argsort(-area[here], kind="stable")]]
-            text = f"the faces of {shown(names, 4)} are two-sided and enclose the scene: no line reaches their other side "
-            text += f"({area[here].sum():.4g} m²), "
-            if shines:
-                text += f"which emits {wasted[here].sum():.4g} {scene.power_unit} to where nothing is lit"
-            else:
-                text += "which tables leave out and patches are spent on"
-            yield Finding(WARNING if shines else NOTE, "two-sided faces", f"{text}; to make them one-sided, {advice}")
+        yield from dark_sides.findings(scene, fates, power)
 
 
 def _escapes(scene: Scene, fates: leaks.Fates) -> str:

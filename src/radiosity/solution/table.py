@@ -10,12 +10,12 @@ def surface_table(solution) -> list[dict]:
     ``dark`` tells the area of the other one, which no line reached.
 
     Keys: surface, side (front, back, or lit: fronts of some faces and backs of others), patches, area (m² of this side), dark
-    (m²), then for each band (suffix " [band]" where there are several): radiosity and irradiance (area means), emitted, received,
-    reflected, absorbed, left (emitted + reflected: the power that leaves), net (left - received = emitted - absorbed, above zero
-    where the surface gives more than it gets), all in W or lm; net_error (standard error of net), net_low and net_high (ends of
-    its 95 % interval); interval (half the 95 % interval of the mean irradiance, relative to it, the largest of the bands), error
-    (relative, RMS over the patches), arrivals, few (patches with few arrivals, those in the dark left out), unvisited (patches). What is
-    unknown is NaN.
+    (m²); then for each band (suffix " [band]" where there are several): radiosity and irradiance (area means), emitted, received,
+    reflected, absorbed, left (emitted + reflected: the power that leaves), net (left - received = emitted - absorbed: above zero
+    where the surface gives more than it gets), net_error (standard error of net), net_low and net_high (ends of its 95 %
+    interval), all of these in W or lm; then interval (half the 95 % interval of the mean irradiance, relative to it, the largest
+    of the bands), error (relative, RMS over the patches), arrivals, few (patches with few arrivals) and unvisited (patches), both
+    without patches in the dark. What is unknown is NaN.
     """
     patches, sides = solution.patches, solution.sides
     scene, n, some = patches.scene, len(sides.surface), sides.row >= 0
