@@ -148,6 +148,36 @@ class Snapshot:
         told = np.where(lines > 0, lines, 1.0)[:, known]
         return bool(known.any() and (FEW * (share**2 / told).sum(axis=0) <= 1 + 1e-9).all())
 
+    def error_of_mean(self, rows: np.ndarray, surfaces: np.ndarray) -> float:
+        """Relative standard error of the mean irradiance over some surfaces, the largest of the bands, NaN where nothing landed.
+
+        Args:
+            rows, surfaces: the same, as patches and as surfaces.
+        """
+        power = self.surface_power[0][:, surfaces].sum(axis=1)  # (replicates, n_bands)
+        mean, error = mean_and_error(power)
+        error = np.hypot(error, self._bias_of_sum(rows))
+        lit, blind = mean > 0, (mean <= 0) & (error > 0)
+        return float((error[lit] / mean[lit]).max()) if lit.any() and not blind.any() else float("nan")
+
+    def judged_mean(self, rows: np.ndarray) -> bool:
+        """`FEW` lines or more landed there, counted as in `judged`."""
+        patches, mean = self.problem.patches, self.irradiance[0]
+        power, line = (mean * patches.area[:, None])[rows], np.broadcast_to(self.line, mean.shape)[rows]
+        lines = np.minimum(np.divide(power, line, out=np.full(power.shape, np.inf), where=line > 0), self.arrivals[rows, None])
+        lit = power.sum(axis=0) > 0
+        return bool(lit.any() and (lines[:, lit].sum(axis=0) >= FEW).all())
+
+    def _bias_of_sum(self, rows: np.ndarray) -> np.ndarray:
+        """(n_bands,) W or lm: what the biases of some patches, where a tally tells them, add up to at most."""
+        if not isinstance(self.tally, AbstractBiasedTally):
+            return np.zeros(len(self.problem.groups.index))
+        groups, found = self.problem.groups, []
+        for group in range(groups.n_groups):
+            _, unit = self.tally.irradiance(self.problem, self.state, group)
+            found.append(np.abs(self.tally.bias(self.problem, self.state, group))[rows].sum() * unit)
+        return np.array(found)[groups.index] * groups.scale
+
     def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
         """How many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""
         area, groups, found = self.problem.patches.area[rows], self.problem.groups, []

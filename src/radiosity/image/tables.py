@@ -11,7 +11,7 @@ from typing import TextIO
 
 import numpy as np
 
-from ..solution.sides import sides_of
+from ..solution.columns import patch_columns
 from .look import Look
 from .output import replacing
 
@@ -32,35 +32,13 @@ def surfaces_path(path) -> Path:
 
 
 def _patches(solution, path: Path) -> None:
-    patches = solution.patches
-    bands, unit = [str(band) for band in solution.bands], solution.unit
-    names = np.array([_cells([name]) for name in patches.scene.names], object)
-    sides = np.array(["front", "back"], object)
-    columns = {"patch": np.arange(len(patches)), "surface": names[patches.surface], "side": sides[patches.is_back.astype(int)]}
-    for title, values in (("centroid", patches.centroid), ("normal", patches.normal)):
-        columns |= {f"{title} {axis}{' [m]' if title == 'centroid' else ''}": values[:, i] for i, axis in enumerate("xyz")}
-    columns["area [m²]"] = patches.area
-    for title, values, measure in (
-        ("reflectance", patches.reflectance, ""),
-        ("emission", patches.emission, unit),
-        ("radiosity", solution.radiosity, unit),
-        ("standard error of radiosity", solution.standard_error, unit),
-        ("irradiance", solution.irradiance, unit),
-        ("standard error of irradiance", solution.irradiance_standard_error, unit),
-    ):
-        for i, band in enumerate(bands):
-            label = f"{title} {band}" if len(bands) > 1 else title
-            columns[f"{label} [{measure}]" if measure else label] = np.asarray(values)[:, i]
-    columns["arrivals"] = np.asarray(solution.arrivals)
-    columns["few arrivals"] = (np.asarray(solution.few) & ~sides_of(solution).dark).astype(int)
-    low, high = solution.interval(0.95, "irradiance")
-    for title, values in (("irradiance, 95 % from", low), ("irradiance, 95 % to", high)):
-        for i, band in enumerate(bands):
-            columns[f"{title}{f' {band}' if len(bands) > 1 else ''} [{unit}]"] = values[:, i]
+    columns = patch_columns(solution)
+    names = np.array([_cells([name]) for name in solution.patches.scene.names], object)
+    columns["surface"] = names[solution.patches.surface]
     row = ",".join("%.9g" if value.dtype.kind == "f" else "%s" for value in columns.values()).__mod__
     with replacing(path) as temporary, _text(temporary) as file:
         file.write(_cells(columns) + "\n")
-        for begin in range(0, len(patches), CHUNK):
+        for begin in range(0, len(solution.patches), CHUNK):
             part = [value[begin : begin + CHUNK].tolist() for value in columns.values()]
             file.write("\n".join(map(row, zip(*part, strict=True))) + "\n")
 

@@ -1,4 +1,4 @@
-"""Two-sided faces that light reaches on one side alone, as the walls of a room from OBJ, PLY and STL: what `check` says of them."""
+"""What `check` says of two-sided faces that light reaches on one side alone, as the walls of a room from OBJ, PLY and STL."""
 
 from collections.abc import Iterator
 
@@ -36,8 +36,8 @@ def findings(scene: Scene, fates: leaks.Fates, power: np.ndarray) -> Iterator[Fi
             if not len(here):
                 continue
             names = [scene.names[s] for s in here[np.argsort(-area[here], kind="stable")]]
-            text = f"the faces of {shown(names, 4)} are two-sided and enclose the scene: no line reaches their other side "
-            text += f"({area[here].sum():.4g} m²), "
+            text = f"the faces of {shown(names, 4)} are two-sided and enclose the scene, or a body in it: no line reaches "
+            text += f"their other side ({area[here].sum():.4g} m²), "
             if shines:
                 text += f"which emits {wasted[here].sum():.4g} {scene.power_unit} to where nothing receives it"
             else:

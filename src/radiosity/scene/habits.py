@@ -81,7 +81,8 @@ def _check_values(name: str, m, source: str) -> None:
     for which in ("reflectance", "back_reflectance"):
         for v in getattr(m, which) or ():
             if not 0 <= v < LARGEST:
-                raise SceneError(f"{source}: {which.replace('_', ' ')} of surface '{name}' is {v:g}; it must lie in [0, 1)")
+                what = f"{which.replace('_', ' ')} of surface '{name}'"
+                raise SceneError(f"{source}: {what} is {v:g}; it must lie in [0, 1): strictly below 1")
     for v in (*m.emission, *(m.back_emission or ())):
         if not 0 <= v < LARGEST:
             text = f"it must be finite and not negative, below {LARGEST:g}"

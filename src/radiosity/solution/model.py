@@ -8,13 +8,14 @@ import numpy as np
 
 from ..patches.model import Patches
 from . import intervals, means
+from .brief import brief
 from .errors import relative_error
 from .sides import Sides, sides_of
 
 NOT_REACHED = "not reached"  # the status of runs that ended above the error they were to reach, or could not tell it
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Solution:
     """What `radiosity.solve` returns.
 
@@ -148,6 +149,37 @@ class Solution:
         from .table import surface_table
 
         return surface_table(self)
+
+    def __repr__(self) -> str:
+        """Five lines."""
+        return brief(self)
+
+    def _repr_html_(self) -> str:
+        """For notebooks: the same, and the table of surfaces."""
+        from .frames import html
+
+        return html(self)
+
+    def to_dataframe(self):
+        """A pandas DataFrame with a row for each patch: the columns of a .csv file, units in their names.
+
+        Raises:
+            OutputError: pandas is not installed.
+        """
+        from .frames import to_dataframe
+
+        return to_dataframe(self)
+
+    def to_xarray(self):
+        """An xarray Dataset over patch and band: radiosity, irradiance, their standard errors and 95 % intervals, reflectance and
+        emission, and over patch its surface, side, area, centroid, normal and arrivals; units are attributes.
+
+        Raises:
+            OutputError: xarray is not installed.
+        """
+        from .frames import to_xarray
+
+        return to_xarray(self)
 
     def report(self) -> str:
         """A summary in plain text."""
