@@ -69,7 +69,7 @@ def solve(
     Parameters
     ----------
     scene
-        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene: cornell-box, room, labyrinth.
+        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene: cornell-box, room, studio, labyrinth.
     output
         Files to write: .npz .glb .ply .vtp .csv .png .exr, several at once.
     rays

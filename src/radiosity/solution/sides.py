@@ -44,7 +44,9 @@ def sides_of(solution) -> Sides:
     patches = solution.patches
     scene, n = patches.scene, len(patches.scene.names)
     two, surface, place = scene.back == Back.RADIATES, scene.surface, (patches.face, patches.is_back.astype(int))
-    counts = solution.arrivals if np.any(solution.arrivals) else FEW * (np.nan_to_num(solution.irradiance) > 0).any(axis=1)
+    received = (np.nan_to_num(solution.irradiance) > 0).any(axis=1)
+    # baselines count no lines, and say so by few, which holds nowhere: there what receives anything is reached for certain
+    counts = np.where(solution.few | ~received, solution.arrivals, np.maximum(solution.arrivals, FEW))
     reached = np.zeros((scene.n_faces, 2))
     np.add.at(reached, place, counts)
     kind = lit_sides(scene, reached, FEW)
