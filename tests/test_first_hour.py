@@ -1,6 +1,7 @@
 """What a new user meets first: folders, extras, coordinates below zero, frames and five lines, lux, and results that warnings do
 not take away."""
 
+import itertools
 import re
 import subprocess
 import sys
@@ -133,7 +134,7 @@ def test_curves_that_coincide_stay_apart():
     assert len({look["marker"] for look in looks}) == 7
     widths = [look["linewidth"] for look in looks]
     assert (np.diff(widths) < -0.3).all()
-    assert all(one["markevery"] != other["markevery"] for one, other in zip(looks, looks[1:], strict=False))
+    assert all(one["markevery"] != other["markevery"] for one, other in itertools.pairwise(looks))
 
 
 def test_pages_agree_on_how_long_the_study_takes():
@@ -174,8 +175,8 @@ def test_what_is_not_known_is_not_shown(room):
 
 
 def test_markup_in_names_is_shown_as_it_is():
-    scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1]], [[0, 1, 2], [5, 4, 3]], 0.5, 1.0,
-                                 names=["<b>x</b>"])  # fmt: skip
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1]]
+    scene = rd.Scene.from_arrays(corners, [[0, 1, 2], [5, 4, 3]], 0.5, 1.0, names=["<b>x</b>"])
     shown = rd.solve(rd.subdivide(scene, cells=1), rays=5_000)._repr_html_()
     assert "&lt;b&gt;x&lt;/b&gt;" in shown
 
@@ -327,9 +328,3 @@ def test_the_studio_shows_colour():
     pixels = rd.image.render(solution, width=60).astype(float)
     assert np.ptp(pixels, axis=2).max() > 100
     assert 60 < pixels.mean() < 190
-
-
-def test_pictures_of_the_demo_are_pictures(box, tmp_path):
-    box.export(tmp_path / "a.png")
-    with Image.open(tmp_path / "a.png") as picture:
-        assert picture.size == (600, 600)
