@@ -53,7 +53,7 @@ $(VENV)/.made:
 
 $(VENV)/.user: pyproject.toml $(VENV)/.made
 	@echo 'installing radiosity into $(VENV)'
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[formats]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all]'
 	@touch $@
 
 $(VENV)/.developer: pyproject.toml $(VENV)/.made
