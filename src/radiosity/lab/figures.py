@@ -11,6 +11,7 @@ from .start import Start
 from .study import Arm
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")  # told apart by the colour-blind too
+NARROW = 18  # letters of an arm's name, below which four stand beside each other in the legend
 MARKS = ("o", "s", "^", "D", "v", "P", "X")
 STYLE: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.25, "axes.spines.top": False, "axes.spines.right": False,
               "svg.hashsalt": "radiosity", "svg.fonttype": "path", "legend.frameon": False}  # fmt: skip
@@ -55,7 +56,8 @@ def convergence(results: Results, arms: tuple[Arm, ...], scenes: tuple[str, ...]
                 _curve(panel, series.seconds if seconds else series.lines, errors, look)
             _guide(panel)
         handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, fontsize=9, loc="outside lower center", ncols=min(4, len(arms)), handlelength=4)
+        columns = min(4 if max(map(len, labels)) < NARROW else 3, len(labels))
+        figure.legend(handles, labels, fontsize=8.5, loc="outside lower center", ncols=columns, handlelength=3.5)
 
 
 def contests(found: dict, title: str, path: Path) -> None:

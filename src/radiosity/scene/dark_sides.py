@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import shown
 from . import leaks
-from .model import Scene
+from .model import Back, Scene
 from .reached import Lit, lit_sides
 from .report import NOTE, WARNING, Finding
 
@@ -26,10 +26,10 @@ def findings(scene: Scene, fates: leaks.Fates, power: np.ndarray) -> Iterator[Fi
         fates: of lines that follow the light.
         power: (2, n_faces), emitted by front and back.
     """
-    seen, reached, n = fates.fate == leaks.SEEN, np.zeros((scene.n_faces, 2)), len(scene.names)
-    np.add.at(reached, (fates.hit[seen], (~fates.front[seen]).astype(int)), 1)
-    lit, area = lit_sides(scene, reached, MANY), np.bincount(scene.surface, scene.area, n)
-    wasted = np.bincount(scene.surface, np.where(reached[:, 0] >= reached[:, 1], power[1], power[0]), n)
+    lit, back_is_dark = _lit(scene, fates)
+    n = len(scene.names)
+    area = np.bincount(scene.surface, scene.area, n)
+    wasted = np.bincount(scene.surface, np.where(back_is_dark, power[1], power[0]), n)
     for side, advice in ADVICE.items():
         for shines in (False, True):
             here = np.flatnonzero((lit == side) & ((wasted > 0) == shines))
@@ -43,3 +43,18 @@ def findings(scene: Scene, fates: leaks.Fates, power: np.ndarray) -> Iterator[Fi
             else:
                 text += "which tables leave out and patches are spent on"
             yield Finding(WARNING if shines else NOTE, "two-sided faces", f"{text}; to make them one-sided, {advice}")
+
+
+def inside(scene: Scene, fates: leaks.Fates) -> leaks.Fates:
+    """Without lines that begin on dark sides: what leaves the scene from the outside of a room is no leak."""
+    lit, back_is_dark = _lit(scene, fates)
+    known = lit[scene.surface[fates.face]] != Lit.BOTH
+    dark = known & (scene.back == Back.RADIATES)[fates.face] & (fates.back == back_is_dark[fates.face])
+    return fates.of(~dark) if dark.any() and not dark.all() else fates
+
+
+def _lit(scene: Scene, fates: leaks.Fates) -> tuple[np.ndarray, np.ndarray]:
+    """Which sides of surfaces lines met, and whether more of them met the front of a face, (n_faces,) bool."""
+    seen, reached = fates.fate == leaks.SEEN, np.zeros((scene.n_faces, 2))
+    np.add.at(reached, (fates.hit[seen], (~fates.front[seen]).astype(int)), 1)
+    return lit_sides(scene, reached, MANY), reached[:, 0] >= reached[:, 1]
