@@ -101,6 +101,7 @@ def _finish(path: Path, entry: dict, maps: Maps) -> Finish:
         emission=tuple(np.pi * v for v in radiance),
         back=Back.RADIATES,
         diffuse=not (glossy or _number(path, entry, "pm", 0.0) > 0),
+        origin=str(path),
     )
     return Finish(material, base, emissive if any(radiance) else None)
 
