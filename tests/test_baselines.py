@@ -113,6 +113,15 @@ def test_agrees_with_the_random_walk(scene, method, bound, request):
         assert book["emitted"] + book["rounding"] == pytest.approx(total, rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:.*standard errors of hemicubes")
+@pytest.mark.parametrize("factors", FACTORS)
+def test_replicates_of_a_matrix_are_not_alike(factors):
+    """Whatever is drawn for one is drawn anew for the next, or their error would be a certain zero."""
+    method = rd.Baseline(factors=factors, **({"resolution": 16} if factors == "hemicube" else {"samples": 3}))
+    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), method, replicates=2)
+    assert (solution.irradiance_standard_error > 0)[solution.irradiance > 0].all()
+
+
 def test_errors_fall_with_samples_and_with_patches_for_hemicubes(room):
     patches, reference = room
     errors = [error(rd.solve(patches, rd.Baseline(samples=samples)), reference) for samples in (4, 32, 256)]
