@@ -1,0 +1,34 @@
+"""trimesh as the second reader of PLY, OBJ and glTF."""
+
+import logging
+
+import numpy as np
+
+from .images import linear, means
+from .record import Reading, Refused, surface
+
+logging.getLogger("trimesh").setLevel(logging.CRITICAL)
+
+
+def ply(path) -> Reading:
+    import trimesh
+
+    try:
+        mesh = trimesh.load(path, process=False)
+    except Exception as error:  # of many classes
+        raise Refused(f"{type(error).__name__}: {error}") from None
+    if not hasattr(mesh, "faces"):
+        raise Refused(f"a {type(mesh).__name__} without faces")
+    return {path.stem: surface(mesh.triangles, reflectance=_painted(mesh))}
+
+
+def _painted(mesh) -> np.ndarray | None:
+    """(m, 3) mean linear colours of vertices or faces; None where the file gives none."""
+    kind = getattr(mesh.visual, "kind", None)
+    if kind == "vertex":
+        colors = linear(mesh.visual.vertex_colors[:, :3] / 255)[mesh.faces]
+        return colors.mean(axis=1)
+    if kind == "face":
+        colors = linear(mesh.visual.face_colors[:, :3] / 255)
+        return colors if len(colors) == len(mesh.faces) else np.full(3, np.nan)  # it does not repeat them where it cuts polygons
+    return None

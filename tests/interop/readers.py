@@ -1,0 +1,55 @@
+"""Which other programs read each format, and how."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from . import by_blender, by_mitsuba, by_trimesh, write_ply
+from .draw import Sample
+from .run import Reader, each
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format: what writes it, and who else reads it."""
+
+    write: Callable[[Path, int], Sample]
+    readers: dict[str, Reader]
+
+
+def _needs(module: str):
+    return lambda: None if find_spec(module) else f"'{module}' is not installed"
+
+
+def _blender_missing() -> str | None:
+    return None if by_blender.python() else f"'bpy' is not installed, and {by_blender.PYTHON} names no Python that has it"
+
+
+def _blender(name, **options) -> Reader:
+    """``name(path)`` makes a function from an object's and a material's name to ours."""
+
+    def read_all(paths, folder):
+        found = []
+        for path, records in by_blender.read_all(paths, folder).items():
+            try:
+                found.append(by_blender.reading(records, name(path), **options))
+            except by_blender.Refused as error:
+                found.append(error)
+        return found
+
+    return Reader(read_all, missing=_blender_missing)
+
+
+TRIMESH, MITSUBA = _needs("trimesh"), _needs("mitsuba")
+
+FORMATS = {
+    "ply": Format(
+        write_ply.write,
+        {
+            "trimesh": Reader(each(by_trimesh.ply), missing=TRIMESH),
+            "mitsuba": Reader(each(by_mitsuba.mesh), whole=True, spared=frozenset({"lists before"}), missing=MITSUBA),
+            "blender": _blender(lambda path: lambda thing, material: path.stem),
+        },
+    ),
+}

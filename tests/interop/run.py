@@ -1,0 +1,70 @@
+"""Writes files, reads each with both readers and compares."""
+
+import warnings
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import radiosity as rd
+from radiosity.errors import RadiosityWarning
+
+from .compare import Difference, Outcome, differences
+from .draw import Sample
+from .record import Reading, Refused, merged, ours
+
+ReadAll = Callable[[list[Path], Path], "list[Reading | Refused]"]
+
+
+@dataclass(frozen=True)
+class Reader:
+    """Another program that reads a format.
+
+    Attributes:
+        read: readings of files; the second argument is a folder for its own files.
+        whole: it knows no surfaces, only the whole file.
+        spared: features whose files it is not given, since it reads past what they hold.
+        missing: says why it cannot be used here, or None.
+    """
+
+    read: ReadAll
+    whole: bool = False
+    spared: frozenset[str] = frozenset()
+    missing: Callable[[], str | None] = lambda: None
+
+
+def each(read: Callable[[Path], Reading]) -> ReadAll:
+    """A reader of one file as a reader of many."""
+
+    def read_all(paths: list[Path], folder: Path):
+        found = []
+        for path in paths:
+            try:
+                found.append(read(path))
+            except Refused as error:
+                found.append(error)
+        return found
+
+    return read_all
+
+
+def run(folder: Path, write: Callable[[Path, int], Sample], seeds: Iterable[int], name: str, reader: Reader) -> Outcome:
+    """Compare our reader with another one."""
+    samples = [sample for seed in seeds if not (sample := write(folder, seed)).features & reader.spared]
+    outcome = Outcome()
+    for sample, theirs in zip(samples, reader.read([sample.path for sample in samples], folder), strict=True):
+        mine = read(sample.path)
+        if isinstance(theirs, Refused):
+            found = [Difference("*", "refused", "faces", [str(theirs)])]
+        elif reader.whole:
+            found = differences(merged(mine), merged(theirs))
+        else:
+            found = differences(mine, theirs)
+        outcome.add(sample, name, found)
+    return outcome
+
+
+def read(path: Path) -> Reading:
+    """What our reader gives. It may warn of what it takes differently; the comparison shows what that is."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RadiosityWarning)
+        return ours(rd.load_scene(path))
