@@ -63,7 +63,7 @@ def _part(mesh, triangles, matrix, material, suffix: str) -> dict:
         corners = np.stack([corners[..., 0], corners[..., 2], -corners[..., 1]], axis=-1)  # back to y up
     points = Points(mesh, triangles, POINTS)
     shader = _principled(material)
-    painted = bool(mesh.color_attributes) and suffix == ".ply"
+    painted = bool(mesh.color_attributes) and material is None
     color = points.attribute(mesh.color_attributes[0].name) if painted else value(shader, "Base Color", points)
     emitted = value(shader, "Emission Color", points) * value(shader, "Emission Strength", points)
     return {

@@ -22,6 +22,29 @@ def ply(path) -> Reading:
     return {path.stem: surface(mesh.triangles, reflectance=_painted(mesh))}
 
 
+def obj(path) -> Reading:
+    import trimesh
+
+    try:
+        scene = trimesh.load_scene(path, process=False, split_groups=True)
+    except Exception as error:
+        raise Refused(f"{type(error).__name__}: {error}") from None
+    return {
+        name: surface(mesh.triangles, reflectance=_simple(mesh, getattr(mesh.visual, "material", None)), sampled=True)
+        for name, mesh in scene.geometry.items()
+    }
+
+
+def _simple(mesh, material) -> np.ndarray | None:
+    """(m, 3) mean of Kd, to 1/255, times the texture."""
+    if material is None or not hasattr(material, "diffuse"):
+        return _painted(mesh)
+    diffuse = np.asarray(material.diffuse[:3]) / 255
+    if material.image is None:
+        return np.broadcast_to(diffuse, (len(mesh.faces), 3))
+    return diffuse * means(mesh.visual.uv[mesh.faces], linear(np.asarray(material.image.convert("RGB")) / 255))
+
+
 def _painted(mesh) -> np.ndarray | None:
     """(m, 3) mean linear colours of vertices or faces; None where the file gives none."""
     kind = getattr(mesh.visual, "kind", None)

@@ -94,7 +94,10 @@ class Draw(np.random.Generator):
         made = kind(self)
         shear = np.eye(4)
         shear[:3, :3] += self.uniform(-0.3, 0.3, (3, 3))
-        return made.moved(shear)
+        # texture coordinates of a parallelogram are those of its corners: only affine ones are alike however it is cut
+        skewed = self.has("skewed coordinates", 0.1)
+        uv = made.uv if skewed else (made.points @ self.uniform(-1, 1, (3, 2)) + self.uniform(-1, 1, 2)).round(4)
+        return Shape(made.points, made.polygons, uv).moved(shear)
 
 
 def rotation(quaternion) -> np.ndarray:

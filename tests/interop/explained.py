@@ -37,7 +37,25 @@ VERSIONS = {
 REFUSED = ("refused",)
 CUT = "cuts polygons in another way, and so weighs the colours of their corners otherwise"
 
+SPACE = ("area", "vector", "volume", "bounds")
+
+SKEWED = "cuts a parallelogram into two triangles; ours has the texture coordinates of all four corners between them"
+
 EXPLAINED = (
+    Explained("obj", "trimesh", "comments after a face", REFUSED, "refuses a comment on the line of a face"),
+    Explained("obj", "trimesh", "relative indices", (*SPACE, "names", "reflectance"), "counts back from the end of the file"),
+    Explained("obj", "trimesh", "texture scale", ("reflectance",), "does not load a map_Kd that has options"),
+    Explained("obj", "trimesh", "texture offset", ("reflectance",), "does not load a map_Kd that has options"),
+    Explained("obj", "trimesh", "concave polygon", ("area", "volume"), "cuts every polygon from its first corner"),
+    Explained("obj", "trimesh", "coloured polygons", ("reflectance",), CUT),
+    Explained("obj", "trimesh", "skewed coordinates", ("reflectance",), SKEWED),
+    Explained("obj", "blender", "skewed coordinates", ("reflectance", "power"), SKEWED),
+    Explained("obj", "mitsuba", "line continuation", SPACE, "does not know it, drops corners and says nothing"),
+    Explained("obj", "mitsuba", "relative indices", REFUSED, "does not know them"),
+    Explained("obj", "mitsuba", "more than four corners", SPACE, "reads the first four corners of a face and says nothing"),
+    Explained("obj", "blender", "Kd beside a texture", ("reflectance",), "takes the texture in place of Kd, not times Kd"),
+    Explained("obj", "blender", "Ke beside a texture", ("power",), "takes the texture in place of Ke, not times Ke"),
+    Explained("obj", "blender", "coloured polygons", ("reflectance",), CUT),
     Explained("ply", "trimesh", "lists before", REFUSED, "refuses lists of unequal length before the vertices"),
     Explained("ply", "trimesh", "binary, polygons of several sizes", REFUSED, "refuses them"),
     Explained("ply", "trimesh", "polygons with face colours", ("reflectance",), "loses face colours where it cuts polygons"),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from . import by_blender, by_mitsuba, by_trimesh, write_ply
+from . import by_blender, by_mitsuba, by_trimesh, write_obj, write_ply
 from .draw import Sample
 from .run import Reader, each
 
@@ -26,7 +26,7 @@ def _blender_missing() -> str | None:
     return None if by_blender.python() else f"'bpy' is not installed, and {by_blender.PYTHON} names no Python that has it"
 
 
-def _blender(name, **options) -> Reader:
+def _blender(name, called=str, **options) -> Reader:
     """``name(path)`` makes a function from an object's and a material's name to ours."""
 
     def read_all(paths, folder):
@@ -38,12 +38,28 @@ def _blender(name, **options) -> Reader:
                 found.append(error)
         return found
 
-    return Reader(read_all, missing=_blender_missing)
+    return Reader(read_all, called=called, missing=_blender_missing)
+
+
+def _last(name: str) -> str:
+    """An OBJ surface by its innermost group, and its material (those of ``write_obj`` begin with mat)."""
+    parts = name.split("/")
+    return "/".join(parts[-2:] if parts[-1].lower().startswith("mat") else parts[-1:])
 
 
 TRIMESH, MITSUBA = _needs("trimesh"), _needs("mitsuba")
 
 FORMATS = {
+    "obj": Format(
+        write_obj.write,
+        {
+            "trimesh": Reader(each(by_trimesh.obj), whole=True, missing=TRIMESH),
+            "mitsuba": Reader(each(by_mitsuba.mesh), whole=True, missing=MITSUBA),
+            "blender": _blender(
+                lambda path: lambda thing, material: f"{thing}/{material}" if material else thing, called=_last
+            ),
+        },
+    ),
     "ply": Format(
         write_ply.write,
         {

@@ -12,6 +12,7 @@ from .compare import Difference, Outcome, differences
 from .draw import Sample
 from .record import Reading, Refused, merged, ours
 
+TEXTURE_CELLS = 12
 ReadAll = Callable[[list[Path], Path], "list[Reading | Refused]"]
 
 
@@ -24,12 +25,14 @@ class Reader:
         whole: it knows no surfaces, only the whole file.
         spared: features whose files it is not given, since it reads past what they hold.
         missing: says why it cannot be used here, or None.
+        called: what it calls a surface of ours.
     """
 
     read: ReadAll
     whole: bool = False
     spared: frozenset[str] = frozenset()
     missing: Callable[[], str | None] = lambda: None
+    called: Callable[[str], str] = str
 
 
 def each(read: Callable[[Path], Reading]) -> ReadAll:
@@ -58,7 +61,7 @@ def run(folder: Path, write: Callable[[Path, int], Sample], seeds: Iterable[int]
         elif reader.whole:
             found = differences(merged(mine), merged(theirs))
         else:
-            found = differences(mine, theirs)
+            found = differences({reader.called(key): one for key, one in mine.items()}, theirs)
         outcome.add(sample, name, found)
     return outcome
 
@@ -67,4 +70,4 @@ def read(path: Path) -> Reading:
     """What our reader gives. It may warn of what it takes differently; the comparison shows what that is."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RadiosityWarning)
-        return ours(rd.load_scene(path))
+        return ours(rd.load_scene(path), cells=TEXTURE_CELLS if path.suffix not in (".stl",) else 1)
