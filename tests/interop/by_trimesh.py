@@ -39,6 +39,8 @@ def _simple(mesh, material) -> np.ndarray | None:
     """(m, 3) mean of Kd, to 1/255, times the texture."""
     if material is None or not hasattr(material, "diffuse"):
         return _painted(mesh)
+    if material.name == "material_0":
+        return np.full(3, 0.5)  # its default for a file without materials is another number than ours
     diffuse = np.asarray(material.diffuse[:3]) / 255
     if material.image is None:
         return np.broadcast_to(diffuse, (len(mesh.faces), 3))

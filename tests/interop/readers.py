@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from . import by_blender, by_mitsuba, by_trimesh, write_obj, write_ply
+from . import by_blender, by_mitsuba, by_numpy_stl, by_trimesh, write_obj, write_ply, write_stl
 from .draw import Sample
 from .run import Reader, each
 
@@ -26,7 +26,7 @@ def _blender_missing() -> str | None:
     return None if by_blender.python() else f"'bpy' is not installed, and {by_blender.PYTHON} names no Python that has it"
 
 
-def _blender(name, called=str, **options) -> Reader:
+def _blender(name, called=str, whole=False, **options) -> Reader:
     """``name(path)`` makes a function from an object's and a material's name to ours."""
 
     def read_all(paths, folder):
@@ -38,7 +38,7 @@ def _blender(name, called=str, **options) -> Reader:
                 found.append(error)
         return found
 
-    return Reader(read_all, called=called, missing=_blender_missing)
+    return Reader(read_all, called=called, whole=whole, missing=_blender_missing)
 
 
 def _last(name: str) -> str:
@@ -66,6 +66,13 @@ FORMATS = {
             "trimesh": Reader(each(by_trimesh.ply), missing=TRIMESH),
             "mitsuba": Reader(each(by_mitsuba.mesh), whole=True, spared=frozenset({"lists before"}), missing=MITSUBA),
             "blender": _blender(lambda path: lambda thing, material: path.stem),
+        },
+    ),
+    "stl": Format(
+        write_stl.write,
+        {
+            "numpy-stl": Reader(each(by_numpy_stl.read), missing=_needs("stl")),
+            "blender": _blender(lambda path: lambda thing, material: "all", whole=True, color=False),
         },
     ),
 }
