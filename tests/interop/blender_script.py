@@ -41,7 +41,9 @@ def _records(suffix: str) -> dict:
         for slot in sorted({t.material_index for t in mesh.loop_triangles}):
             triangles = [t for t in mesh.loop_triangles if t.material_index == slot]
             material = thing.material_slots[slot].material if slot < len(thing.material_slots) else None
-            key = f"{thing.name}|{material.name if material else ''}"
+            # instances of the extension hang below the node that has them, whose name write_gltf begins with "thing"
+            owner = thing.parent.name if thing.parent and thing.parent.name.startswith("thing") else thing.name
+            key = f"{owner}|{material.name if material else ''}"
             collected.setdefault(key, []).append(_part(mesh, triangles, matrix, material, suffix))
         thing.to_mesh_clear()
     return {key: _joined(parts) for key, parts in collected.items()}
@@ -50,7 +52,7 @@ def _records(suffix: str) -> dict:
 def _joined(parts: list[dict]) -> dict:
     result = dict(parts[0])
     for key in ("triangles", "reflectance", "radiance"):
-        result[key] = sum((part[key] for part in parts), [])
+        result[key] = [value for part in parts for value in part[key]]
     return result
 
 

@@ -45,8 +45,6 @@ def reading(records: dict, name, *, sides: bool = False, color: bool = True) -> 
     """
     if "error" in records:
         raise Refused(records["error"])
-    if not records:
-        raise Refused("nothing is read, and nothing is said")
     parts: dict[str, list[dict]] = {}
     for key, record in records.items():
         parts.setdefault(name(*key.split("|", 1)), []).append(record)

@@ -35,6 +35,27 @@ def obj(path) -> Reading:
     }
 
 
+def gltf(path) -> Reading:
+    """Geometry, with base colours that have no texture, by node and material."""
+    import trimesh
+
+    try:
+        scene = trimesh.load_scene(path, process=False)
+    except Exception as error:
+        raise Refused(f"{type(error).__name__}: {error}") from None
+    parts: dict[str, list] = {}
+    for node in scene.graph.nodes_geometry:
+        matrix, geometry = scene.graph[node]
+        mesh = scene.geometry[geometry]
+        if not hasattr(mesh, "faces"):
+            continue  # points and lines
+        corners = mesh.triangles @ matrix[:3, :3].T + matrix[:3, 3]
+        if np.linalg.det(matrix[:3, :3]) < 0:
+            corners = corners[:, ::-1]  # a mirrored node keeps its front
+        parts.setdefault("all", []).append(corners)
+    return {name: surface(np.concatenate(found)) for name, found in parts.items()}
+
+
 def _simple(mesh, material) -> np.ndarray | None:
     """(m, 3) mean of Kd, to 1/255, times the texture."""
     if material is None or not hasattr(material, "diffuse"):

@@ -1,11 +1,12 @@
 """Which other programs read each format, and how."""
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from . import by_blender, by_mitsuba, by_numpy_stl, by_trimesh, write_obj, write_ply, write_stl
+from . import by_blender, by_mitsuba, by_numpy_stl, by_trimesh, write_gltf, write_obj, write_ply, write_stl
 from .draw import Sample
 from .run import Reader, each
 
@@ -47,6 +48,16 @@ def _last(name: str) -> str:
     return "/".join(parts[-2:] if parts[-1].lower().startswith("mat") else parts[-1:])
 
 
+def _gltf_name(thing: str, material: str) -> str:
+    """Blender makes a default material where vertex colours have none."""
+    return thing if not material or material.startswith("DefaultMaterial") else f"{thing}/{material}"
+
+
+def _numbered(name: str) -> str:
+    """Blender's numbers of equal names."""
+    return re.sub(r"#(\d+)", lambda match: f".{int(match[1]) - 1:03d}", name)
+
+
 TRIMESH, MITSUBA = _needs("trimesh"), _needs("mitsuba")
 
 FORMATS = {
@@ -73,6 +84,13 @@ FORMATS = {
         {
             "numpy-stl": Reader(each(by_numpy_stl.read), missing=_needs("stl")),
             "blender": _blender(lambda path: lambda thing, material: "all", whole=True, color=False),
+        },
+    ),
+    "gltf": Format(
+        write_gltf.write,
+        {
+            "trimesh": Reader(each(by_trimesh.gltf), whole=True, missing=TRIMESH),
+            "blender": _blender(lambda path: _gltf_name, called=_numbered, sides=True),
         },
     ),
 }

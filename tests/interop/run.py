@@ -56,8 +56,8 @@ def run(folder: Path, write: Callable[[Path, int], Sample], seeds: Iterable[int]
     outcome = Outcome()
     for sample, theirs in zip(samples, reader.read([sample.path for sample in samples], folder), strict=True):
         mine = read(sample.path)
-        if isinstance(theirs, Refused):
-            found = [Difference("*", "refused", "faces", [str(theirs)])]
+        if isinstance(theirs, Refused) or not theirs:
+            found = [Difference("*", "refused", "faces", [str(theirs) if theirs else "nothing is read, and nothing is said"])]
         elif reader.whole:
             found = differences(merged(mine), merged(theirs))
         else:

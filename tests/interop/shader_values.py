@@ -38,9 +38,10 @@ class Points:
         return np.column_stack([uv, np.zeros(len(uv))])
 
     def attribute(self, name: str) -> np.ndarray:
-        layer = self._mesh.color_attributes.get(name)
-        if layer is None:
+        layers = self._mesh.color_attributes
+        if not layers or (name and name not in layers):
             return np.zeros((1, 4))
+        layer = layers[name] if name else layers[0]
         by_corner = layer.domain == "CORNER"
         return self.spread([
             [layer.data[i].color for i in (t.loops if by_corner else t.vertices)] for t in self._triangles

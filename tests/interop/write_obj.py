@@ -6,7 +6,6 @@ from pathlib import Path
 from .draw import Draw, Sample, Shape, star
 from .images import save_png
 
-
 HABITS = {
     "relative indices": 0.2, "line continuation": 0.1, "comments after a face": 0.1, "lines and points": 0.2, "smoothing": 0.3,
     "normals": 0.4, "coordinates": 0.4, "materials within an object": 0.4,
@@ -63,7 +62,7 @@ def _object(draw: Draw, text: Text, number: int, shape: Shape, materials: list[s
     if "smoothing" in draw.features:
         text.lines.append(draw.one("s 1", "s off"))
     first, first_uv = text.points, text.coordinates
-    with_uv = bool(materials) and bool(draw.features & {"textures", "emission textures"}) or "coordinates" in draw.features
+    with_uv = bool(draw.features & {"textures", "emission textures", "coordinates"})
     with_normals = "normals" in draw.features
     for row in shape.points:
         colors = [f"{v:.4f}" for v in draw.uniform(0.1, 0.9, 3)] if painted else []
