@@ -346,36 +346,3 @@ def test_faces_without_area_are_counted(tmp_path):
         scene = one(tmp_path, faces=[[0, 1, 2], [0, 2, 3], [0, 1, 1]])
     assert scene.n_faces == 1
     assert scene.area.tolist() == [1]
-
-
-def instanced(tmp_path, **columns):
-    """A square of area 1 with vertex colours, shown by EXT_mesh_gpu_instancing under these attributes."""
-    gltf = Gltf(extensionsUsed=["EXT_mesh_gpu_instancing"], extensionsRequired=["EXT_mesh_gpu_instancing"])
-    attributes = {name: gltf.accessor(values) for name, values in columns.items()}
-    colors = {"COLOR_0": gltf.accessor(np.repeat([[0.2], [0.4]], 2, axis=0) * [1, 1, 1])}
-    node = {"extensions": {"EXT_mesh_gpu_instancing": {"attributes": attributes}}, "scale": [2, 2, 2], "name": "tile"}
-    gltf.node(mesh=gltf.mesh(material=GREY, attributes=colors), **node)
-    return gltf.write(tmp_path / "i.glb")
-
-
-def test_instances_of_the_extension_are_shown_where_it_puts_them(tmp_path):
-    half = float(np.sqrt(0.5))
-    path = instanced(
-        tmp_path,
-        TRANSLATION=[[0, 0, 0], [5, 0, 0], [0, 0, 7]],
-        ROTATION=[[0, 0, 0, 1], [half, 0, 0, half], [0, 0, 0, 1]],
-        SCALE=[[1, 1, 1], [1, 1, 1], [-3, 1, 1]],
-    )
-    scene = rd.load_scene(path)
-    assert scene.names == ("tile/grey",)
-    np.testing.assert_allclose(scene.area, [4, 4, 12], rtol=1e-6)
-    # about x by a quarter turn: z becomes -y; a mirrored instance keeps its front
-    np.testing.assert_allclose(scene.normal, [[0, 0, 1], [0, -1, 0], [0, 0, 1]], atol=1e-6)
-    np.testing.assert_allclose(scene.bounds, [[-6, 0, 0], [12, 2, 14]], atol=1e-6)
-    np.testing.assert_allclose(rd.subdivide(scene, cells=1).reflectance, 0.15, rtol=1e-6)
-
-
-def test_instances_of_unequal_counts_are_an_error(tmp_path):
-    fails(instanced(tmp_path, TRANSLATION=[[0, 0, 0]], SCALE=[[1, 1, 1], [2, 2, 2]]), "tile", "[1, 2] instances", "one count")
-    fails(instanced(tmp_path, TRANSLATION=[[0, 0]]), "TRANSLATION", "2 numbers", "expected 3")
-    fails(instanced(tmp_path), "tile", "[] instances")

@@ -1,8 +1,13 @@
 """Mitsuba as the second reader: of its own scenes, and of the geometry of OBJ and PLY files."""
 
 import numpy as np
+from mitsuba_rays import mitsuba_hits, our_hits, random_rays
 
-from .record import Reading, Refused, surface
+from .compare import Difference
+from .record import Reading, Refused, Surface, surface
+
+ALONG = 40  # points along both axes of a shape, where a texture varies
+RAYS = 40
 
 
 def mesh(path) -> Reading:
@@ -12,6 +17,54 @@ def mesh(path) -> Reading:
     except RuntimeError as error:
         raise Refused(str(error)) from None
     return {"all": surface(_triangles(shape))}
+
+
+def scene(path) -> Reading:
+    """All shapes but instances, which Mitsuba hides; rays find those."""
+    mitsuba = _mitsuba()
+    try:
+        loaded = mitsuba.load_file(str(path), optimize=False)
+    except RuntimeError as error:
+        raise Refused(str(error)) from None
+    return {shape.id(): _surface(mitsuba, shape) for shape in loaded.shapes() if not str(shape).startswith("Instance")}
+
+
+def rays(path, ours, features: set[str]) -> list[Difference]:
+    """What random rays meet: distance, side and reflectance. Round shapes are flat faces to us, so their rays differ."""
+    if "round shapes" in features:
+        return []
+    origins, directions = random_rays(ours.bounds, RAYS, 5)
+    theirs, mine = mitsuba_hits(path, origins, directions), our_hits(ours, origins, directions)
+    both = np.isfinite(theirs[0]) & np.isfinite(mine[0])
+    alike = np.isclose(theirs[0], mine[0], rtol=1e-4) | (np.isinf(theirs[0]) & np.isinf(mine[0]))
+    found = [] if alike.all() else [Difference("*", "distances of rays", mine[0][~alike], theirs[0][~alike])]
+    side = both & alike & (theirs[1] != mine[1])
+    return found + ([Difference("*", "sides of rays", mine[1][side], theirs[1][side])] if side.any() else [])
+
+
+def _surface(mitsuba, shape) -> Surface:
+    textured = any(word in str(shape) for word in ("BitmapTexture", "Checkerboard"))
+    along = ALONG if textured else 1
+    grid = (np.arange(along) + 0.5) / along
+    reflectances, radiances, both = [], [], False
+    for u in grid:
+        for v in grid:
+            sample = shape.sample_position(0, [u, v])
+            si = mitsuba.SurfaceInteraction3f(sample, mitsuba.Color0f())
+            si.wi = [0, 0, 1]
+            reflectances.append(np.array(shape.bsdf().eval_diffuse_reflectance(si), float))
+            radiances.append(np.array(shape.emitter().eval(si), float) if shape.is_emitter() else np.zeros(3))
+            si.wi = [0, 0, -1]
+            both |= bool(np.any(np.array(shape.bsdf().eval(mitsuba.BSDFContext(), si, [0, 0, -1])) > 0))
+    area, box = float(shape.surface_area()), shape.bbox()
+    return Surface(
+        area=area,
+        bounds=np.array([box.min, box.max], float),
+        sides=2 if both else 1,
+        reflectance=np.mean(reflectances, axis=0),
+        power=np.pi * area * np.mean(radiances, axis=0),
+        sampled=textured,
+    )
 
 
 def _triangles(shape) -> np.ndarray:

@@ -8,7 +8,7 @@ from .explained import EXPLAINED, Explained
 from .record import Reading, Surface
 
 SINGLE = 2e-5  # relative: most readers hold single precision
-COLOR = 2e-4  # tables of sRGB, and half precision in some
+COLOR = 5e-4  # tables of sRGB, and half precision in some
 SAMPLED = 1e-2  # means over points of a texture
 
 

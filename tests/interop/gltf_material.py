@@ -6,10 +6,10 @@ from pathlib import Path
 from .draw import Draw
 from .gltf_buffer import Buffer
 from .images import save_png
+from .pending import TEXTURES
 
 REPEAT, MIRROR, CLAMP = 10497, 33648, 33071
 LINEAR, NEAREST = 9729, 9728
-WRAPS = False  # until textures are read with their wraps and filters
 
 
 def add_materials(draw: Draw, tree: dict, buffer: Buffer, folder: Path, seed: int) -> int:
@@ -58,7 +58,7 @@ def _texture(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str, ex
     texture = {"source": len(tree["images"]) - 1}
     if draw.has("samplers", 0.5):
         sampler = {"magFilter": LINEAR, "wrapS": REPEAT}
-        if WRAPS:
+        if TEXTURES:
             sampler = {"magFilter": draw.one(LINEAR, LINEAR, NEAREST)}
             sampler |= {key: draw.one(REPEAT, MIRROR, CLAMP) for key in ("wrapS", "wrapT") if draw.random() < 0.7}
             draw.features |= {"nearest filter"} if sampler["magFilter"] == NEAREST else set()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from . import by_blender, by_mitsuba, by_numpy_stl, by_trimesh, write_gltf, write_obj, write_ply, write_stl
+from . import by_blender, by_mitsuba, by_numpy_stl, by_trimesh, write_gltf, write_mitsuba, write_obj, write_ply, write_stl
 from .draw import Sample
 from .run import Reader, each
 
@@ -92,5 +92,9 @@ FORMATS = {
             "trimesh": Reader(each(by_trimesh.gltf), whole=True, missing=TRIMESH),
             "blender": _blender(lambda path: _gltf_name, called=_numbered, sides=True),
         },
+    ),
+    "mitsuba": Format(
+        write_mitsuba.write,
+        {"mitsuba": Reader(each(by_mitsuba.scene), missing=MITSUBA, hidden=("copy",), more=by_mitsuba.rays)},
     ),
 }

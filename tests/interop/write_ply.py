@@ -34,8 +34,7 @@ def write(folder: Path, seed: int) -> Sample:
     if draw.has("obj_info", 0.15):
         comments.append("obj_info num_cols 3")
     if {"u", "s", "texture_u"} & {name for name, _, _ in vertex} and draw.has("texture", 0.5):
-        pixels = np.tile(draw.image()[:1, :1], (3, 2, 1)) if not draw.has("varied texture", 0) else draw.image()
-        save_png(folder / f"{seed}.png", pixels)
+        save_png(folder / f"{seed}.png", draw.image())
         comments.append(f"comment TextureFile {seed}.png")
     before, after = draw.has("element before", 0.2), draw.has("element after", 0.2)
     head = ["ply", f"format {kind} 1.0", *comments]

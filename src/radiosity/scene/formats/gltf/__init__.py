@@ -1,4 +1,4 @@
-"""glTF 2.0 (.glb, .gltf): a part for every node x primitive; the instances of EXT_mesh_gpu_instancing are one part.
+"""glTF 2.0 (.glb, .gltf): a part for every node x primitive.
 
 Reflectance is base colour factor x texture x vertex colour; metallic and alpha are left out. Emission is factor x
 texture x emissive strength, a radiance L, so the exitance is pi L. A double-sided material radiates to both sides,
@@ -16,12 +16,10 @@ from ...model import Scene
 from ..textures import warn_of_means, with_means
 from .accessor import accessor
 from .file import GltfFile, load
-from .instances import placements
 from .material import Finish, Materials, Texture
 from .nodes import cameras, walk
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
-MOST_FACES = 50_000_000  # of a primitive, its instances together
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -44,15 +42,16 @@ def read(path: Path, options: ReadOptions) -> Scene:
             left_out.setdefault("skins (taken in their bind pose)", []).append(name)
         if any(info.get("weights") or mesh.get("weights") or ()):
             left_out.setdefault("morph targets", []).append(name)
-        places = placements(file, info, matrix, name)
         for number, primitive in enumerate(file.items(mesh, "primitives")):
             primitive = file.dictionary(primitive, f"primitive {number} of '{name}'")
             if primitive.get("mode", TRIANGLES) not in (TRIANGLES, STRIP, FAN):
                 left_out.setdefault("points and lines", []).append(name)
                 continue
-            parts.append(_part(file, name, primitive, places, materials, clamped))
+            parts.append(_part(file, name, primitive, matrix, materials, clamped))
     if any("extensions" in info and "KHR_lights_punctual" in info["extensions"] for _, info, _ in nodes):
         left_out["point lights (only surfaces emit: give one an emissive colour)"] = [n for n, i, _ in nodes if "extensions" in i]
+    if "EXT_mesh_gpu_instancing" in file.items(file.tree, "extensionsUsed"):
+        left_out["instances"] = ["EXT_mesh_gpu_instancing"]
     for what, names in left_out.items():
         warn(f"{path}: {what} are left out: {shown(dict.fromkeys(names))}")
     if clamped:
@@ -63,18 +62,17 @@ def read(path: Path, options: ReadOptions) -> Scene:
     return assemble(placed, str(path), options, cameras=cameras(file, nodes))
 
 
-def _part(file: GltfFile, name: str, primitive: dict, places: list, materials: Materials, clamped: dict) -> Part:
-    """The part of a primitive under each of the (4, 4) transforms."""
+def _part(file: GltfFile, name: str, primitive: dict, matrix: np.ndarray, materials: Materials, clamped: dict) -> Part:
     what = f"'{name}'"
     attributes = file.dictionary(primitive.get("attributes"), f"attributes of {what}")
     vertices = _attribute(file, attributes, "POSITION", (3,), what)
     faces = _triangles(file, primitive, len(vertices), what)
-    count = len(vertices)
-    if not places or len(places) * max(count, len(faces)) > MOST_FACES:
-        raise file.fail(f"{what} has {len(places)} instances of {len(faces)} faces; expected some, at most {MOST_FACES} faces")
+    vertices = vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    if np.linalg.det(matrix[:3, :3]) < 0:
+        faces = faces[:, ::-1]  # a mirrored instance keeps its front
     color = None
     if "COLOR_0" in attributes:
-        color = _attribute(file, attributes, "COLOR_0", (3, 4), what, count)[:, :3]
+        color = _attribute(file, attributes, "COLOR_0", (3, 4), what, len(vertices))[:, :3]
         if (color == 1).all():
             color = None
     if "material" in primitive:
@@ -82,16 +80,10 @@ def _part(file: GltfFile, name: str, primitive: dict, places: list, materials: M
         name = f"{name}/{finish.name}" if finish.name != name else name
     else:
         finish = Finish("", Material((1.0,) if "COLOR_0" in attributes else None))
-    uv = [_uv(file, attributes, texture, what, count, clamped) for texture in (finish.base, finish.emissive)]
-    # a mirrored instance keeps its front
-    turned = [faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else faces for matrix in places]
-    color, base_uv, emission_uv = (values if values is None else np.tile(values, (len(places), 1)) for values in (color, *uv))
+    uv = [_uv(file, attributes, texture, what, len(vertices), clamped) for texture in (finish.base, finish.emissive)]
     return Part(
-        name,
-        np.concatenate([vertices @ matrix[:3, :3].T + matrix[:3, 3] for matrix in places]),
-        np.concatenate([rows + number * count for number, rows in enumerate(turned)]),
-        finish.material, base_uv, color,
-        finish.base and finish.base.image, finish.emissive and finish.emissive.image, emission_uv,
+        name, vertices, faces, finish.material, uv[0], color,
+        finish.base and finish.base.image, finish.emissive and finish.emissive.image, uv[1],
     )  # fmt: skip
 
 

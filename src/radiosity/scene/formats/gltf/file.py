@@ -15,9 +15,7 @@ from ....errors import SceneError, shown
 from ...parts import ReadOptions
 from .glb import chunks
 
-KNOWN_EXTENSIONS = (
-    "KHR_texture_transform", "KHR_mesh_quantization", "KHR_lights_punctual", "EXT_texture_webp", "EXT_mesh_gpu_instancing",
-)  # fmt: skip
+KNOWN_EXTENSIONS = ("KHR_texture_transform", "KHR_mesh_quantization", "KHR_lights_punctual", "EXT_texture_webp")
 
 
 @dataclass(frozen=True, eq=False)

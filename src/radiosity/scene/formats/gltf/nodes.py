@@ -25,7 +25,7 @@ def walk(file: GltfFile) -> list[tuple[str, dict, np.ndarray]]:
         if index in seen:
             raise file.fail(f"node {index} has two parents or is its own ancestor; nodes must form a tree")
         seen.add(index)
-        matrix = parent @ local_matrix(file, info, f"node {index}")
+        matrix = parent @ _matrix(file, info, f"node {index}")
         result.append((_unique(_name(file, info, index), taken), info, matrix))
         stack += [(child, matrix) for child in reversed(file.items(info, "children"))]
     return result
@@ -91,8 +91,7 @@ def _unique(name: str, taken: dict[str, int]) -> str:
     return _unique(f"{name}#{taken[name]}", taken)
 
 
-def local_matrix(file: GltfFile, info: dict, what: str) -> np.ndarray:
-    """(4, 4) of a node's ``matrix``, or of its ``translation``, ``rotation`` and ``scale``."""
+def _matrix(file: GltfFile, info: dict, what: str) -> np.ndarray:
     if "matrix" in info:
         return np.array(file.numbers(info, "matrix", tuple(np.eye(4).ravel()), what)).reshape(4, 4).T
     x, y, z, w = np.array(file.numbers(info, "rotation", (0.0, 0.0, 0.0, 1.0), what))
