@@ -34,6 +34,7 @@ VERSIONS = {
     "radiance": "Radiance's mgf2rad and rtrace of pyradiance 1.3.1",
 }  # with which the table was made
 
+COLORS = ("reflectance", "power")
 REFUSED = ("refused",)
 CUT = "cuts polygons in another way, and so weighs the colours of their corners otherwise"
 
@@ -60,9 +61,14 @@ EXPLAINED = (
     Explained("gltf", "trimesh", "buffer name with a blank", REFUSED, "does not decode %20 in the name of a file"),
     Explained("gltf", "trimesh", "fans", (*SPACE, "refused"), "leaves fans of triangles out and says nothing"),
     Explained("gltf", "trimesh", "instancing extension", SPACE, "shows the mesh once"),
-    Explained("xml", "mitsuba", "round shapes", ("bounds",), "has them round; ours are flat faces of equal area, a little outside"),
-    Explained("xml", "mitsuba", "conductors", ("reflectance", "sides"), "gives the mirror's value; ours, the diffuse albedo, is 0"),
-    Explained("xml", "mitsuba", "constant radiance", ("power",), "makes a constant spectrum reddish; ours is grey in a grey scene"),
+    Explained("xml", "mitsuba", "round shapes", ("bounds",), "has them round; ours are flat, of equal area"),
+    Explained("xml", "mitsuba", "conductors", ("reflectance", "sides"), "gives the mirror's value, not the diffuse one"),
+    Explained("xml", "mitsuba", "constant radiance", ("power",), "has it reddish; ours is grey in a grey scene"),
+    Explained("mgf", "radiance", "curved primitives", (*SPACE, "power"), "has them round; ours have 20 inscribed edges"),
+    Explained("mgf", "radiance", "specular", ("reflectance",), "gives rd and rs one colour between them"),
+    Explained("mgf", "radiance", "mixed spectra", COLORS, "mixes spectra that it makes of chromaticities; ours mixes chromaticities"),
+    Explained("mgf", "radiance", "spectra", COLORS, "keeps spectra; mgfilt hands us their chromaticity to four digits"),
+    Explained("mgf", "radiance", "colour temperatures", COLORS, "the same"),
     Explained("stl", "blender", "upper case", REFUSED, "reads no facet where the keywords are capitals, and says nothing"),
     Explained("ply", "trimesh", "lists before", REFUSED, "refuses lists of unequal length before the vertices"),
     Explained("ply", "trimesh", "binary, polygons of several sizes", REFUSED, "refuses them"),

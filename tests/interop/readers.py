@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from . import by_blender, by_mitsuba, by_numpy_stl, by_trimesh, write_gltf, write_mitsuba, write_obj, write_ply, write_stl
+from . import by_blender, by_mitsuba, by_numpy_stl, by_radiance, by_trimesh, write_gltf, write_mgf, write_mitsuba, write_obj, write_ply, write_stl
 from .draw import Sample
 from .run import Reader, each
 
@@ -96,5 +96,9 @@ FORMATS = {
     "mitsuba": Format(
         write_mitsuba.write,
         {"mitsuba": Reader(each(by_mitsuba.scene), missing=MITSUBA, hidden=("copy",), more=by_mitsuba.rays)},
+    ),
+    "mgf": Format(
+        write_mgf.write,
+        {"radiance": Reader(each(by_radiance.read), missing=_needs("pyradiance"), more=by_radiance.rays)},
     ),
 }
