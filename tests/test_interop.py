@@ -6,6 +6,7 @@ where RADIOSITY_BPY_PYTHON names a Python that has it.
 
 from dataclasses import replace
 from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from interop.explained import EXPLAINED
 from interop.readers import FORMATS
 from interop.record import surface
 from interop.run import run
+from interop.table import rows
 
 QUICK, LONG = 8, 240  # files
 PAIRS = [(name, reader) for name, form in FORMATS.items() for reader in form.readers]
@@ -46,6 +48,11 @@ def test_many_files(tmp_path, name, reader):
     known = {why for why in EXPLAINED if why.reader == reader and why.format in outcome.formats}
     assert not known - set(outcome.used), "explained, but seen in no file"
     assert outcome.alike >= outcome.files / 4
+
+
+def test_the_page_shows_every_explained_difference():
+    page = (Path(__file__).resolve().parents[1] / "docs" / "interop.md").read_text()
+    assert not [row for row in rows() if row not in page], "python tests/interop/table.py prints the table"
 
 
 SQUARE = np.array([[(0, 0, 0), (1, 0, 0), (1, 1, 0)], [(0, 0, 0), (1, 1, 0), (0, 1, 0)]], float)

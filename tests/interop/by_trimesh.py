@@ -36,14 +36,14 @@ def obj(path) -> Reading:
 
 
 def gltf(path) -> Reading:
-    """Geometry, with base colours that have no texture, by node and material."""
+    """All nodes as one surface; colours where no texture and no vertex colour has a part in them."""
     import trimesh
 
     try:
         scene = trimesh.load_scene(path, process=False)
     except Exception as error:
         raise Refused(f"{type(error).__name__}: {error}") from None
-    parts: dict[str, list] = {}
+    result = {}
     for node in scene.graph.nodes_geometry:
         matrix, geometry = scene.graph[node]
         mesh = scene.geometry[geometry]
@@ -52,8 +52,22 @@ def gltf(path) -> Reading:
         corners = mesh.triangles @ matrix[:3, :3].T + matrix[:3, 3]
         if np.linalg.det(matrix[:3, :3]) < 0:
             corners = corners[:, ::-1]  # a mirrored node keeps its front
-        parts.setdefault("all", []).append(corners)
-    return {name: surface(np.concatenate(found)) for name, found in parts.items()}
+        result[node] = surface(corners, **_physical(getattr(mesh.visual, "material", None), mesh), sampled=True)
+    return result
+
+
+def _physical(material, mesh) -> dict:
+    """Base colour, to 1/255, and emission of a glTF material."""
+    if material is None or not hasattr(material, "emissiveFactor"):
+        return {}
+    plain = material.baseColorTexture is None and "color" not in mesh.visual.vertex_attributes
+    factor = [255] * 3 if material.baseColorFactor is None else material.baseColorFactor[:3]
+    sides = 2 if material.doubleSided else 1
+    emitted = np.zeros(3) if material.emissiveFactor is None else np.asarray(material.emissiveFactor, float)
+    return {
+        "reflectance": np.asarray(factor) / 255 if plain else None,
+        "exitance": np.pi * sides * emitted if material.emissiveTexture is None or not emitted.any() else None,
+    }
 
 
 def _simple(mesh, material) -> np.ndarray | None:

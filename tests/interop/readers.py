@@ -6,7 +6,19 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from . import by_blender, by_mitsuba, by_numpy_stl, by_radiance, by_trimesh, write_gltf, write_mgf, write_mitsuba, write_obj, write_ply, write_stl
+from . import (
+    by_blender,
+    by_mitsuba,
+    by_numpy_stl,
+    by_radiance,
+    by_trimesh,
+    write_gltf,
+    write_mgf,
+    write_mitsuba,
+    write_obj,
+    write_ply,
+    write_stl,
+)
 from .draw import Sample
 from .run import Reader, each
 
