@@ -32,20 +32,20 @@ class Outcome:
     Attributes:
         files: how many were compared.
         alike: how many showed no difference at all.
-        formats: suffixes of the files.
+        features: all that were drawn.
         used: files that each explanation was needed for.
         faults: differences that nothing explains, each with its file.
     """
 
     files: int = 0
     alike: int = 0
-    formats: set[str] = field(default_factory=set)
+    features: set[str] = field(default_factory=set)
     used: dict[Explained, int] = field(default_factory=dict)
     faults: list[str] = field(default_factory=list)
 
     def add(self, sample, reader: str, found: list[Difference]) -> None:
         self.files += 1
-        self.formats.add(sample.format)
+        self.features |= sample.features
         self.alike += not found
         needed = set()
         for one in found:

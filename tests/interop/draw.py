@@ -11,7 +11,7 @@ class Sample:
     """A file and what is in it.
 
     Attributes:
-        format: suffix, without the dot; both kinds of glTF are "gltf".
+        format: a key of ``readers.FORMATS``.
         features: what was drawn for it.
     """
 

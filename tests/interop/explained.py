@@ -8,7 +8,7 @@ class Explained:
     """A difference that files with a feature show.
 
     Attributes:
-        format: suffix of the file.
+        format: a key of ``readers.FORMATS``.
         reader: the other program, a key of ``VERSIONS``.
         feature: of the file.
         quantities: what may differ.
@@ -36,51 +36,48 @@ VERSIONS = {
 
 COLORS = ("reflectance", "power")
 REFUSED = ("refused",)
-CUT = "cuts polygons in another way, and so weighs the colours of their corners otherwise"
-
 SPACE = ("area", "vector", "volume", "bounds")
-
-SKEWED = "cuts a parallelogram into two triangles; ours has the texture coordinates of all four corners between them"
+CUT = "cuts polygons otherwise, and so weighs the colours of their corners otherwise"
+FAN = "cuts every polygon from its first corner"
+OPTIONS = "does not load a map_Kd that has options"
+SKEWED = "cuts a parallelogram into triangles; ours looks up between all four corners"
 
 EXPLAINED = (
+    Explained("gltf", "trimesh", "sparse", SPACE + COLORS, "leaves sparse values out and says nothing"),
+    Explained("gltf", "trimesh", "fans", (*SPACE, *COLORS, "refused"), "leaves fans of triangles out and says nothing"),
+    Explained("gltf", "trimesh", "instancing extension", SPACE + COLORS, "shows the mesh once"),
+    Explained("gltf", "trimesh", "buffer name with a blank", REFUSED, "does not decode %20 in the name of a file"),
+    Explained("gltf", "trimesh", "emissive strength", ("power",), "does not read KHR_materials_emissive_strength"),
     Explained("obj", "trimesh", "comments after a face", REFUSED, "refuses a comment on the line of a face"),
-    Explained("obj", "trimesh", "relative indices", (*SPACE, "names", "reflectance"), "counts back from the end of the file"),
-    Explained("obj", "trimesh", "texture scale", ("reflectance",), "does not load a map_Kd that has options"),
-    Explained("obj", "trimesh", "texture offset", ("reflectance",), "does not load a map_Kd that has options"),
-    Explained("obj", "trimesh", "concave polygon", ("area", "volume", "reflectance"), "cuts every polygon from its first corner"),
+    Explained("obj", "trimesh", "relative indices", (*SPACE, "reflectance"), "counts back from the end of the file"),
+    Explained("obj", "trimesh", "texture scale", ("reflectance",), OPTIONS),
+    Explained("obj", "trimesh", "texture offset", ("reflectance",), OPTIONS),
+    Explained("obj", "trimesh", "concave polygon", ("area", "volume", "reflectance"), FAN),
     Explained("obj", "trimesh", "coloured polygons", ("reflectance",), CUT),
     Explained("obj", "trimesh", "skewed coordinates", ("reflectance",), SKEWED),
-    Explained("obj", "blender", "skewed coordinates", ("reflectance", "power"), SKEWED),
     Explained("obj", "mitsuba", "line continuation", SPACE, "does not know it, drops corners and says nothing"),
     Explained("obj", "mitsuba", "relative indices", REFUSED, "does not know them"),
     Explained("obj", "mitsuba", "more than four corners", SPACE, "reads the first four corners of a face and says nothing"),
     Explained("obj", "blender", "Kd beside a texture", ("reflectance",), "takes the texture in place of Kd, not times Kd"),
     Explained("obj", "blender", "Ke beside a texture", ("power",), "takes the texture in place of Ke, not times Ke"),
     Explained("obj", "blender", "coloured polygons", ("reflectance",), CUT),
-    Explained("gltf", "trimesh", "sparse", SPACE, "leaves sparse values out and says nothing"),
-    Explained("gltf", "trimesh", "buffer name with a blank", REFUSED, "does not decode %20 in the name of a file"),
-    Explained("gltf", "trimesh", "sparse", COLORS, "and so has other areas"),
-    Explained("gltf", "trimesh", "fans", COLORS, "and so has other areas"),
-    Explained("gltf", "trimesh", "instancing extension", COLORS, "and so has other areas"),
-    Explained("gltf", "trimesh", "emissive strength", ("power",), "does not read KHR_materials_emissive_strength"),
-    Explained("gltf", "trimesh", "fans", (*SPACE, "refused"), "leaves fans of triangles out and says nothing"),
-    Explained("gltf", "trimesh", "instancing extension", SPACE, "shows the mesh once"),
-    Explained("xml", "mitsuba", "round shapes", ("bounds",), "has them round; ours are flat, of equal area"),
-    Explained("xml", "mitsuba", "conductors", ("reflectance", "sides"), "gives the mirror's value, not the diffuse one"),
-    Explained("xml", "mitsuba", "constant radiance", ("power",), "has it reddish; ours is grey in a grey scene"),
-    Explained("mgf", "radiance", "curved primitives", (*SPACE, "power"), "has them round; ours have 20 inscribed edges"),
-    Explained("mgf", "radiance", "specular", ("reflectance",), "gives rd and rs one colour between them"),
-    Explained("mgf", "radiance", "mixed spectra", COLORS, "mixes spectra; ours mixes chromaticities"),
-    Explained("mgf", "radiance", "spectra", COLORS, "keeps spectra; mgfilt hands us their chromaticity to four digits"),
-    Explained("mgf", "radiance", "colour temperatures", COLORS, "the same"),
-    Explained("stl", "blender", "upper case", REFUSED, "reads no facet where the keywords are capitals, and says nothing"),
+    Explained("obj", "blender", "skewed coordinates", COLORS, SKEWED),
     Explained("ply", "trimesh", "lists before", REFUSED, "refuses lists of unequal length before the vertices"),
     Explained("ply", "trimesh", "binary, polygons of several sizes", REFUSED, "refuses them"),
     Explained("ply", "trimesh", "polygons with face colours", ("reflectance",), "loses face colours where it cuts polygons"),
     Explained("ply", "trimesh", "coloured polygons", ("reflectance",), CUT),
-    Explained("ply", "trimesh", "concave polygon", ("area", "volume"), "cuts every polygon from its first corner"),
+    Explained("ply", "trimesh", "concave polygon", ("area", "volume"), FAN),
     Explained("ply", "mitsuba", "polygons", REFUSED, "reads triangles only"),
     Explained("ply", "mitsuba", "obj_info", REFUSED, "does not know the header line obj_info"),
     Explained("ply", "blender", "coloured polygons", ("reflectance",), CUT),
     Explained("ply", "blender", "texture", ("reflectance",), "does not read the comment TextureFile"),
+    Explained("stl", "blender", "upper case", REFUSED, "reads no facet whose keywords are capitals, and says nothing"),
+    Explained("mitsuba", "mitsuba", "round shapes", ("bounds",), "has them round; ours are flat faces of equal area"),
+    Explained("mitsuba", "mitsuba", "conductors", ("reflectance", "sides"), "gives the mirror's value, not the diffuse one"),
+    Explained("mitsuba", "mitsuba", "constant radiance", ("power",), "has it reddish; ours is grey in a grey scene"),
+    Explained("mgf", "radiance", "curved primitives", (*SPACE, "power"), "has them round; ours have 20 inscribed edges"),
+    Explained("mgf", "radiance", "specular", ("reflectance",), "gives rd and rs one colour between them"),
+    Explained("mgf", "radiance", "mixed spectra", COLORS, "mixes spectra; ours mixes chromaticities"),
+    Explained("mgf", "radiance", "spectra", COLORS, "keeps spectra; mgfilt hands us chromaticities of four digits"),
+    Explained("mgf", "radiance", "colour temperatures", COLORS, "keeps spectra; mgfilt hands us chromaticities of four digits"),
 )

@@ -5,20 +5,15 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from interop.explained import EXPLAINED, VERSIONS
-
-FORMATS = {"gltf": "glTF", "obj": "OBJ", "ply": "PLY", "stl": "STL", "xml": "Mitsuba XML", "mgf": "MGF"}
+from interop.explained import EXPLAINED
 
 
-def rows() -> list[str]:
-    """A line of Markdown for each explained difference."""
-    return [
-        f"| {FORMATS[one.format]} | {VERSIONS[one.reader]} | {one.feature} | {', '.join(one.quantities)} | {one.why} |"
-        for kind in FORMATS
-        for one in EXPLAINED
-        if one.format == kind
-    ]
+def rows(name: str) -> list[str]:
+    """A line of Markdown for each explained difference of a format."""
+    mine = [one for one in EXPLAINED if one.format == name]
+    return [f"| {one.reader} | {one.feature} | {', '.join(one.quantities)} | {one.why} |" for one in mine]
 
 
 if __name__ == "__main__":
-    print("\n".join(rows()))
+    for name in dict.fromkeys(one.format for one in EXPLAINED):
+        print(name, *rows(name), sep="\n")

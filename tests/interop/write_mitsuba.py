@@ -51,7 +51,7 @@ def write(folder: Path, seed: int) -> Sample:
     lines.append("</scene>")
     path = folder / f"{seed}.xml"
     path.write_text("\n".join(lines) + "\n")
-    return Sample(path, "xml", draw.features)
+    return Sample(path, "mitsuba", draw.features)
 
 
 def _shape(draw: Draw, folder: Path, seed: int, name: str, names: list[str], *, grouped: bool) -> list[str]:
