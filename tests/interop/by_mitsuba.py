@@ -4,9 +4,11 @@ import numpy as np
 from mitsuba_rays import mitsuba_hits, our_hits, random_rays
 
 from .compare import Difference
+from .images import centroids
 from .record import Reading, Refused, Surface, surface
 
-ALONG = 40  # points along both axes of a shape, where a texture varies
+ALONG = 60  # points along both axes of a round shape, where a texture varies
+EDGE = 20  # and along the edges of each triangle
 RAYS = 40
 
 
@@ -44,27 +46,40 @@ def rays(path, ours, features: set[str]) -> list[Difference]:
 
 def _surface(mitsuba, shape) -> Surface:
     textured = any(word in str(shape) for word in ("BitmapTexture", "Checkerboard"))
-    along = ALONG if textured else 1
-    grid = (np.arange(along) + 0.5) / along
-    reflectances, radiances, both = [], [], False
-    for u in grid:
-        for v in grid:
-            sample = shape.sample_position(0, [u, v])
-            si = mitsuba.SurfaceInteraction3f(sample, mitsuba.Color0f())
-            si.wi = [0, 0, 1]
-            reflectances.append(np.array(shape.bsdf().eval_diffuse_reflectance(si), float))
-            radiances.append(np.array(shape.emitter().eval(si), float) if shape.is_emitter() else np.zeros(3))
-            si.wi = [0, 0, -1]
-            both |= bool(np.any(np.array(shape.bsdf().eval(mitsuba.BSDFContext(), si, [0, 0, -1])) > 0))
+    reflectances, radiances, weights, both = [], [], [], False
+    for sample, weight in _points(mitsuba, shape, textured):
+        si = mitsuba.SurfaceInteraction3f(sample, mitsuba.Color0f())
+        si.wi = [0, 0, 1]
+        weights.append(weight)
+        reflectances.append(np.array(shape.bsdf().eval_diffuse_reflectance(si), float))
+        radiances.append(np.array(shape.emitter().eval(si), float) if shape.is_emitter() else np.zeros(3))
+        si.wi = [0, 0, -1]
+        both |= bool(np.any(np.array(shape.bsdf().eval(mitsuba.BSDFContext(), si, [0, 0, -1])) > 0))
     area, box = float(shape.surface_area()), shape.bbox()
     return Surface(
         area=area,
         bounds=np.array([box.min, box.max], float),
         sides=2 if both else 1,
-        reflectance=np.mean(reflectances, axis=0),
-        power=np.pi * area * np.mean(radiances, axis=0),
+        reflectance=np.average(reflectances, axis=0, weights=weights),
+        power=np.pi * area * np.average(radiances, axis=0, weights=weights),
         sampled=textured,
     )
+
+
+def _points(mitsuba, shape, textured: bool):
+    """Points of a shape with their weights: centroids of small triangles of a mesh, equal steps of a round shape's own."""
+    if not textured or not shape.is_mesh():
+        steps = (np.arange(ALONG if textured else 1) + 0.5) / (ALONG if textured else 1)
+        yield from ((shape.sample_position(0, [u, v]), 1.0) for u in steps for v in steps)
+        return
+    faces = np.array(shape.faces_buffer()).reshape(-1, 3)
+    uv = np.array(shape.vertex_texcoords_buffer(), float).reshape(-1, 2)[faces]
+    for corners, coordinates in zip(_triangles(shape), uv, strict=True):
+        area = np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0]))
+        for at in centroids(EDGE) @ coordinates:
+            sample = shape.sample_position(0, [0.5, 0.5])
+            sample.uv = at
+            yield sample, area
 
 
 def _triangles(shape) -> np.ndarray:

@@ -48,6 +48,7 @@ EXPLAINED = (
     Explained("gltf", "trimesh", "instancing extension", SPACE + COLORS, "shows the mesh once"),
     Explained("gltf", "trimesh", "buffer name with a blank", REFUSED, "does not decode %20 in the name of a file"),
     Explained("gltf", "trimesh", "emissive strength", ("power",), "does not read KHR_materials_emissive_strength"),
+    Explained("gltf", "blender", "unequal wraps", COLORS, "does not blend over the rim where u and v wrap differently"),
     Explained("obj", "trimesh", "comments after a face", REFUSED, "refuses a comment on the line of a face"),
     Explained("obj", "trimesh", "relative indices", (*SPACE, "reflectance"), "counts back from the end of the file"),
     Explained("obj", "trimesh", "texture scale", ("reflectance",), OPTIONS),

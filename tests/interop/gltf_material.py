@@ -62,7 +62,9 @@ def _texture(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str, ex
             sampler = {"magFilter": draw.one(LINEAR, LINEAR, NEAREST)}
             sampler |= {key: draw.one(REPEAT, MIRROR, CLAMP) for key in ("wrapS", "wrapT") if draw.random() < 0.7}
             draw.features |= {"nearest filter"} if sampler["magFilter"] == NEAREST else set()
-            draw.features |= {"wraps"} if {MIRROR, CLAMP} & set(sampler.values()) else set()
+            wraps = {sampler.get(key, REPEAT) for key in ("wrapS", "wrapT")}
+            draw.features |= {"wraps"} if wraps != {REPEAT} else set()
+            draw.features |= {"unequal wraps"} if len(wraps) > 1 else set()
         tree.setdefault("samplers", []).append(sampler)
         texture["sampler"] = len(tree["samplers"]) - 1
     tree.setdefault("textures", []).append(texture)

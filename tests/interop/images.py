@@ -13,6 +13,15 @@ def save_png(path: Path, pixels: np.ndarray) -> None:
     Image.fromarray(np.asarray(pixels, np.uint8)).save(path)
 
 
+def centroids(along: int) -> np.ndarray:
+    """(along², 3) weights of a triangle's corners at the centroids of equal small triangles, ``along`` of them at each edge."""
+    row, column = np.meshgrid(np.arange(along), np.arange(along))
+    upright = np.stack([row + 1 / 3, column + 1 / 3], -1)[row + column < along]
+    inverted = np.stack([row + 2 / 3, column + 2 / 3], -1)[row + column < along - 1]
+    ab = np.concatenate([upright, inverted]) / along
+    return np.column_stack([1 - ab.sum(axis=1), ab])
+
+
 def linear(srgb) -> np.ndarray:
     """Linear values of sRGB ones, 0 to 1 (IEC 61966-2-1)."""
     srgb = np.asarray(srgb, float)
@@ -28,11 +37,7 @@ def means(uv, image, *, colors=None, wrap=("repeat", "repeat"), nearest=False) -
         colors: (m, 3, 3) linear corner colours.
         wrap: of u and of v: repeat, mirror or clamp.
     """
-    row, column = np.meshgrid(np.arange(POINTS), np.arange(POINTS))
-    upright = np.stack([row + 1 / 3, column + 1 / 3], -1)[row + column < POINTS]
-    inverted = np.stack([row + 2 / 3, column + 2 / 3], -1)[row + column < POINTS - 1]
-    ab = np.concatenate([upright, inverted]) / POINTS  # centroids of equal small triangles
-    weights = np.column_stack([1 - ab.sum(axis=1), ab])
+    weights = centroids(POINTS)
     found = []
     for number in range(len(uv if uv is not None else colors)):
         values = np.ones((len(weights), 3))

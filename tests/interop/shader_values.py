@@ -1,6 +1,7 @@
 """Values of Blender's shader nodes at points of a mesh: the few nodes that importers make. Needs only numpy."""
 
 import numpy as np
+from images import centroids
 
 
 class Points:
@@ -11,11 +12,7 @@ class Points:
     """
 
     def __init__(self, mesh, triangles, along: int):
-        row, column = np.meshgrid(np.arange(along), np.arange(along))
-        upright = np.stack([row + 1 / 3, column + 1 / 3], -1)[row + column < along]
-        inverted = np.stack([row + 2 / 3, column + 2 / 3], -1)[row + column < along - 1]
-        ab = np.concatenate([upright, inverted]) / along
-        self.weights = np.column_stack([1 - ab.sum(axis=1), ab])
+        self.weights = centroids(along)
         self._mesh, self._triangles = mesh, triangles
 
     def spread(self, corners) -> np.ndarray:
@@ -67,8 +64,6 @@ def _output(node, socket: str, points: Points) -> np.ndarray:
 
 
 def _image(node, socket, points):
-    import bpy  # noqa: F401
-
     image = node.image
     width, height = image.size
     pixels = np.array(image.pixels[:]).reshape(height, width, 4)  # row 0 at the bottom
@@ -121,11 +116,13 @@ def _mapping(node, socket, points):
 def _math(node, socket, points):
     one, two = (value(node, node.inputs[i], points) for i in (0, 1))
     if node.operation == "PINGPONG":
-        two = np.maximum(two, 1e-30)
         return two - np.abs(np.mod(one, 2 * two) - two)
+    if node.operation == "WRAP":  # between the third and the second value
+        least = value(node, node.inputs[2], points)
+        return one - (two - least) * np.floor((one - least) / (two - least))
     table = {
         "MULTIPLY": np.multiply, "ADD": np.add, "SUBTRACT": np.subtract, "MINIMUM": np.minimum, "MAXIMUM": np.maximum,
-        "DIVIDE": np.divide, "FRACT": lambda a, b: a - np.floor(a), "WRAP": lambda a, b: np.mod(a, b),
+        "DIVIDE": np.divide, "FRACT": lambda a, b: a - np.floor(a),
     }  # fmt: skip
     result = table[node.operation](one, two)
     return np.clip(result, 0, 1) if node.use_clamp else result
