@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 from shader_values import Points, value
 
-POINTS = 64
+POINTS = 5000  # in a triangle
 
 
 def _import(path: str) -> None:

@@ -4,11 +4,11 @@ import numpy as np
 from mitsuba_rays import mitsuba_hits, our_hits, random_rays
 
 from .compare import Difference
-from .images import centroids
+from .images import spots
 from .record import Reading, Refused, Surface, surface
 
 ALONG = 60  # points along both axes of a round shape, where a texture varies
-EDGE = 20  # and along the edges of each triangle
+POINTS = 1500  # and in each triangle of a mesh
 RAYS = 40
 
 
@@ -67,17 +67,17 @@ def _surface(mitsuba, shape) -> Surface:
 
 
 def _points(mitsuba, shape, textured: bool):
-    """Points of a shape with their weights: centroids of small triangles of a mesh, equal steps of a round shape's own."""
+    """Points of a shape with their weights: in all triangles of a mesh, equal steps of a round shape's own."""
     if not textured or not shape.is_mesh():
         steps = (np.arange(ALONG if textured else 1) + 0.5) / (ALONG if textured else 1)
         yield from ((shape.sample_position(0, [u, v]), 1.0) for u in steps for v in steps)
         return
     faces = np.array(shape.faces_buffer()).reshape(-1, 3)
     uv = np.array(shape.vertex_texcoords_buffer(), float).reshape(-1, 2)[faces]
+    sample = shape.sample_position(0, [0.5, 0.5])  # only its texture coordinates count
     for corners, coordinates in zip(_triangles(shape), uv, strict=True):
         area = np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0]))
-        for at in centroids(EDGE) @ coordinates:
-            sample = shape.sample_position(0, [0.5, 0.5])
+        for at in spots(POINTS) @ coordinates:
             sample.uv = at
             yield sample, area
 

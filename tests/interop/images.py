@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-POINTS = 96  # points along an edge
+POINTS = 10_000  # in a triangle
 
 
 def save_png(path: Path, pixels: np.ndarray) -> None:
@@ -13,12 +13,11 @@ def save_png(path: Path, pixels: np.ndarray) -> None:
     Image.fromarray(np.asarray(pixels, np.uint8)).save(path)
 
 
-def centroids(along: int) -> np.ndarray:
-    """(along², 3) weights of a triangle's corners at the centroids of equal small triangles, ``along`` of them at each edge."""
-    row, column = np.meshgrid(np.arange(along), np.arange(along))
-    upright = np.stack([row + 1 / 3, column + 1 / 3], -1)[row + column < along]
-    inverted = np.stack([row + 2 / 3, column + 2 / 3], -1)[row + column < along - 1]
-    ab = np.concatenate([upright, inverted]) / along
+def spots(count: int) -> np.ndarray:
+    """(count, 3) weights of a triangle's corners at points that fill it evenly, along no axis (M. Roberts's sequence R2)."""
+    steps = np.arange(count)[:, None]
+    ab = (0.5 + steps * (0.7548776662466927, 0.5698402909980532)) % 1
+    ab = np.where(ab.sum(axis=1, keepdims=True) > 1, 1 - ab, ab)
     return np.column_stack([1 - ab.sum(axis=1), ab])
 
 
@@ -37,7 +36,7 @@ def means(uv, image, *, colors=None, wrap=("repeat", "repeat"), nearest=False) -
         colors: (m, 3, 3) linear corner colours.
         wrap: of u and of v: repeat, mirror or clamp.
     """
-    weights = centroids(POINTS)
+    weights = spots(POINTS)
     found = []
     for number in range(len(uv if uv is not None else colors)):
         values = np.ones((len(weights), 3))

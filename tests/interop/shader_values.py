@@ -1,18 +1,18 @@
 """Values of Blender's shader nodes at points of a mesh: the few nodes that importers make. Needs only numpy."""
 
 import numpy as np
-from images import centroids
+from images import spots
 
 
 class Points:
-    """Centroids of equal small triangles in each triangle of a mesh.
+    """Points in each triangle of a mesh.
 
     Attributes:
         weights: (k, 3) of the corners.
     """
 
-    def __init__(self, mesh, triangles, along: int):
-        self.weights = centroids(along)
+    def __init__(self, mesh, triangles, count: int):
+        self.weights = spots(count)
         self._mesh, self._triangles = mesh, triangles
 
     def spread(self, corners) -> np.ndarray:
