@@ -45,12 +45,13 @@ def rays(path, ours, features: set[str]) -> list[Difference]:
 
 
 def _surface(mitsuba, shape) -> Surface:
-    textured = any(word in str(shape) for word in ("BitmapTexture", "Checkerboard"))
-    reflectances, radiances, weights, both = [], [], [], False
-    for sample, weight in _points(mitsuba, shape, textured):
-        si = mitsuba.SurfaceInteraction3f(sample, mitsuba.Color0f())
-        si.wi = [0, 0, 1]
+    text = str(shape)
+    varied = any(word in text for word in ("BitmapTexture", "Checkerboard", "MeshAttribute"))
+    reflectances, radiances, normals, weights, both = [], [], [], [], False
+    for si, weight in (_mesh_points if shape.is_mesh() else _round_points)(mitsuba, shape, varied):
         weights.append(weight)
+        normals.append(np.array(si.sh_frame.n, float))
+        si.wi = [0, 0, 1]
         reflectances.append(np.array(shape.bsdf().eval_diffuse_reflectance(si), float))
         radiances.append(np.array(shape.emitter().eval(si), float) if shape.is_emitter() else np.zeros(3))
         si.wi = [0, 0, -1]
@@ -59,27 +60,33 @@ def _surface(mitsuba, shape) -> Surface:
     return Surface(
         area=area,
         bounds=np.array([box.min, box.max], float),
-        sides=2 if both else 1,
+        vector=area * np.average(normals, axis=0, weights=weights) if shape.is_mesh() else None,
+        sides=2 if both else 1 if np.any(reflectances) else None,  # of black ones both sides are alike
         reflectance=np.average(reflectances, axis=0, weights=weights),
         power=np.pi * area * np.average(radiances, axis=0, weights=weights),
-        sampled=textured,
+        sampled=varied,
     )
 
 
-def _points(mitsuba, shape, textured: bool):
-    """Points of a shape with their weights: in all triangles of a mesh, equal steps of a round shape's own."""
-    if not textured or not shape.is_mesh():
-        steps = (np.arange(ALONG if textured else 1) + 0.5) / (ALONG if textured else 1)
-        yield from ((shape.sample_position(0, [u, v]), 1.0) for u in steps for v in steps)
-        return
-    faces = np.array(shape.faces_buffer()).reshape(-1, 3)
-    uv = np.array(shape.vertex_texcoords_buffer(), float).reshape(-1, 2)[faces]
-    sample = shape.sample_position(0, [0.5, 0.5])  # only its texture coordinates count
-    for corners, coordinates in zip(_triangles(shape), uv, strict=True):
+def _mesh_points(mitsuba, shape, varied: bool):
+    """Points in all triangles, with their weights."""
+    ray, hit = mitsuba.Ray3f([0, 0, 0], [0, 0, 1]), mitsuba.PreliminaryIntersection3f()
+    hit.shape, hit.t = shape, 1.0
+    at = spots(POINTS) if varied else np.full((1, 3), 1 / 3)
+    for number, corners in enumerate(_triangles(shape)):
+        hit.prim_index = number
         area = np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0]))
-        for at in spots(POINTS) @ coordinates:
-            sample.uv = at
-            yield sample, area
+        for weights in at:
+            hit.prim_uv = weights[1:]
+            yield shape.compute_surface_interaction(ray, hit, mitsuba.RayFlags.All), area
+
+
+def _round_points(mitsuba, shape, varied: bool):
+    """Points at equal steps of a shape's own coordinates, by area."""
+    steps = (np.arange(ALONG if varied else 1) + 0.5) / (ALONG if varied else 1)
+    for u in steps:
+        for v in steps:
+            yield mitsuba.SurfaceInteraction3f(shape.sample_position(0, [u, v]), mitsuba.Color0f()), 1.0
 
 
 def _triangles(shape) -> np.ndarray:

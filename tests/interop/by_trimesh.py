@@ -19,7 +19,8 @@ def ply(path) -> Reading:
         raise Refused(f"{type(error).__name__}: {error}") from None
     if not hasattr(mesh, "faces"):
         raise Refused(f"a {type(mesh).__name__} without faces")
-    return {path.stem: surface(mesh.triangles, reflectance=_painted(mesh))}
+    image = getattr(getattr(mesh.visual, "material", None), "image", None)
+    return {path.stem: surface(mesh.triangles, reflectance=_painted(mesh), sampled=image is not None)}
 
 
 def obj(path) -> Reading:
@@ -91,4 +92,7 @@ def _painted(mesh) -> np.ndarray | None:
     if kind == "face":
         colors = linear(mesh.visual.face_colors[:, :3] / 255)
         return colors if len(colors) == len(mesh.faces) else np.full(3, np.nan)  # it does not repeat them where it cuts polygons
+    image = getattr(getattr(mesh.visual, "material", None), "image", None)
+    if kind == "texture" and image is not None and mesh.visual.uv is not None:
+        return means(mesh.visual.uv[mesh.faces], linear(np.asarray(image.convert("RGB")) / 255))
     return None

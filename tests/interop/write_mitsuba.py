@@ -7,6 +7,7 @@ from mitsuba_rays import obj_bytes, ply_bytes, serialized_bytes
 
 from .draw import Draw, Sample, Shape
 from .mitsuba_material import bsdf, emitter
+from .pending import FORMATS, TEXTURES
 
 HABITS = {
     "mirror": 0.3, "uneven scale": 0.4, "meshes": 0.5, "round shapes": 0.3, "instances": 0.25, "twosided": 0.5, "textures": 0.35,
@@ -77,10 +78,15 @@ def _shape(draw: Draw, folder: Path, seed: int, name: str, names: list[str], *, 
     shining = not grouped and "emission" in draw.features and draw.random() < 0.4
     if names and draw.random() < 0.7:
         inside.append(f'<ref id="{draw.one(*names)}"/>')
-    elif shining or draw.random() < 0.9:
+    elif "colours" in draw.features and kind == "ply" and TEXTURES and draw.has("mesh attributes", 0.7):
+        file = f"{seed}_{name}.ply"
+        (folder / file).write_bytes(_painted(draw, (folder / file).read_bytes()))
+        inside.append('<bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance">'
+                      '<string name="name" value="vertex_color"/></texture></bsdf>')  # fmt: skip
+    elif draw.random() < (0.85 if FORMATS or not shining else 1):
         inside.append(bsdf(draw, folder, f"{seed}_{name}", "", textured=textured))
     else:
-        draw.features.add("no BSDF")
+        draw.features.add("lamps without a BSDF" if shining else "no BSDF")
     if shining:
         inside.append(emitter(draw, folder, f"{seed}_{name}", textured=textured))
     return [f'<shape type="{kind}" id="{name}">', *inside, "</shape>"]
@@ -93,6 +99,16 @@ def _mesh(draw: Draw, kind: str, shape: Shape) -> bytes:
     normals = np.repeat(normals / np.linalg.norm(normals, axis=1, keepdims=True), 3, axis=0)
     given = normals if draw.has("normals", 0.5) else None
     return MESHES[kind](corners, given, np.arange(len(corners)).reshape(-1, 3))
+
+
+def _painted(draw: Draw, data: bytes) -> bytes:
+    """An ASCII PLY file with a colour for each vertex."""
+    head, body = data.decode().split("end_header\n")
+    head = head.replace("element face", "property float r\nproperty float g\nproperty float b\nelement face")
+    count = int(head.split("element vertex ")[1].split()[0])
+    rows = body.splitlines()
+    rows[:count] = [f"{row} " + " ".join(f"{v:.4f}" for v in draw.uniform(0.05, 0.9, 3)) for row in rows[:count]]
+    return (head + "end_header\n" + "\n".join(rows) + "\n").encode()
 
 
 def _transform(draw: Draw, *, even: bool) -> str:
