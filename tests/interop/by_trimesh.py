@@ -19,8 +19,10 @@ def ply(path) -> Reading:
         raise Refused(f"{type(error).__name__}: {error}") from None
     if not hasattr(mesh, "faces"):
         raise Refused(f"a {type(mesh).__name__} without faces")
-    image = getattr(getattr(mesh.visual, "material", None), "image", None)
-    return {path.stem: surface(mesh.triangles, reflectance=_painted(mesh), sampled=image is not None)}
+    named = b"TextureFile" in path.read_bytes()
+    if not named and mesh.visual.kind == "texture":
+        return {path.stem: surface(mesh.triangles)}  # coordinates alone: it takes an image of its own, and no colours
+    return {path.stem: surface(mesh.triangles, reflectance=_painted(mesh), sampled=named)}
 
 
 def obj(path) -> Reading:

@@ -34,6 +34,7 @@ def write(folder: Path, seed: int) -> Sample:
     if draw.has("obj_info", 0.15):
         comments.append("obj_info num_cols 3")
     if {"u", "s", "texture_u"} & {name for name, _, _ in vertex} and draw.has("texture", 0.5):
+        draw.features |= {"texture and colours"} if draw.features & {"vertex colours", "face colours"} else set()
         save_png(folder / f"{seed}.png", draw.image())
         comments.append(f"comment TextureFile {seed}.png")
     before, after = draw.has("element before", 0.2), draw.has("element after", 0.2)
