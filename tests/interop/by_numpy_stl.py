@@ -11,7 +11,7 @@ def read(path) -> Reading:
     from stl import Mode, mesh
 
     data = path.read_bytes()
-    binary = len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little")
+    binary = b"facet normal" not in data.lower() and len(data) >= 84 + 50 * int.from_bytes(data[80:84], "little")
     mode = Mode.BINARY if binary else Mode.ASCII
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

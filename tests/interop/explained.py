@@ -42,10 +42,19 @@ FAN = "cuts every polygon from its first corner"
 OPTIONS = "does not load a map_Kd that has options"
 SKEWED = "cuts a parallelogram into triangles; ours looks up between all four corners"
 
+WHITE = "takes a material without a base colour as white; we say that it is unknown and take 0.5"
+
 EXPLAINED = (
     Explained("gltf", "trimesh", "sparse", SPACE + COLORS, "leaves sparse values out and says nothing"),
     Explained("gltf", "trimesh", "fans", (*SPACE, *COLORS, "refused"), "leaves fans of triangles out and says nothing"),
     Explained("gltf", "trimesh", "instancing extension", SPACE + COLORS, "shows the mesh once"),
+    Explained("gltf", "trimesh", "morphs", SPACE + COLORS, "leaves the morphs out"),
+    Explained("gltf", "trimesh", "skins", SPACE + COLORS, "leaves the skins out and places the node"),
+    Explained("gltf", "trimesh", "hidden nodes", SPACE + COLORS, "shows them"),
+    Explained("gltf", "trimesh", "no base colour", ("reflectance",), WHITE),
+    Explained("gltf", "blender", "hidden nodes", ("names",), "shows them"),
+    Explained("gltf", "blender", "no base colour", ("reflectance",), WHITE),
+    Explained("gltf", "blender", "instances of morphs", REFUSED, "its importer fails"),
     Explained("gltf", "trimesh", "buffer name with a blank", REFUSED, "does not decode %20 in the name of a file"),
     Explained("gltf", "trimesh", "emissive strength", ("power",), "does not read KHR_materials_emissive_strength"),
     Explained("gltf", "blender", "unequal wraps", COLORS, "does not blend over the rim where u and v wrap differently"),

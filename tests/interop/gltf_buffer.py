@@ -5,7 +5,7 @@ import numpy as np
 from .draw import Draw
 
 KINDS = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
-TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 
 class Buffer:
@@ -15,6 +15,11 @@ class Buffer:
         self._draw = draw
         self.data = b""
         self.tree: dict = {"accessors": [], "bufferViews": []}
+
+    def uses(self, extension: str, *, required: bool = False) -> None:
+        """Notes an extension."""
+        for key in ("extensionsUsed", "extensionsRequired") if required else ("extensionsUsed",):
+            self.tree[key] = sorted({*self.tree.get(key, []), extension})
 
     def view(self, data: bytes, **more) -> int:
         self.data += b"\0" * (-len(self.data) % 4)
@@ -41,7 +46,7 @@ class Buffer:
 
     def positions(self, points: np.ndarray, *, quantized: bool) -> int:
         if quantized:
-            self.tree["extensionsUsed"] = self.tree["extensionsRequired"] = ["KHR_mesh_quantization"]
+            self.uses("KHR_mesh_quantization", required=True)
             return self.accessor(points, "i2", bounds=True)
         if "sparse" not in self._draw.features:
             return self.accessor(points, "f4", bounds=True)

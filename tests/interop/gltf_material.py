@@ -15,20 +15,19 @@ LINEAR, NEAREST = 9729, 9728
 def add_materials(draw: Draw, tree: dict, buffer: Buffer, folder: Path, seed: int) -> int:
     """Adds materials to the tree; how many."""
     draw.has("second coordinates", 0.25)
-    extensions: set[str] = set()
-    tree["materials"] = [_material(draw, tree, buffer, folder, f"{seed}_{number}", number, extensions) for number in range(3)]
-    if extensions:
-        buffer.tree["extensionsUsed"] = sorted({*buffer.tree.get("extensionsUsed", []), *extensions})
+    tree["materials"] = [_material(draw, tree, buffer, folder, f"{seed}_{number}", number) for number in range(3)]
     return len(tree["materials"])
 
 
-def _material(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str, number: int, extensions: set[str]) -> dict:
+def _material(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str, number: int) -> dict:
     metal: dict = {"baseColorFactor": [*draw.color(), 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}
     material: dict = {"name": f"mat{number}", "pbrMetallicRoughness": metal}
     if draw.has("base textures", 0.25):
-        metal["baseColorTexture"] = _texture(draw, tree, buffer, folder, f"{stem}b", extensions)
+        metal["baseColorTexture"] = _texture(draw, tree, buffer, folder, f"{stem}b")
         if draw.random() < 0.4:
             del metal["baseColorFactor"]
+    elif "no base colour" in draw.features and number == 0 and "vertex colours" not in draw.features:
+        del metal["baseColorFactor"]
     if draw.has("double-sided", 0.4):
         material["doubleSided"] = True
     if draw.has("emission", 0.4):
@@ -36,15 +35,15 @@ def _material(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str, n
         if draw.has("emissive strength", 0.5):
             strength = round(float(draw.uniform(0.5, 20)), 3)
             material["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
-            extensions.add("KHR_materials_emissive_strength")
+            buffer.uses("KHR_materials_emissive_strength")
         if draw.has("emission textures", 0.25):
-            material["emissiveTexture"] = _texture(draw, tree, buffer, folder, f"{stem}e", extensions)
+            material["emissiveTexture"] = _texture(draw, tree, buffer, folder, f"{stem}e")
     if draw.has("transparency", 0.1):
         material["alphaMode"] = draw.one("BLEND", "MASK")
     return material
 
 
-def _texture(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str, extensions: set[str]) -> dict:
+def _texture(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str) -> dict:
     path = folder / f"{stem}.png"
     save_png(path, draw.image())
     kind = draw.one("view", "file", "data")
@@ -76,5 +75,5 @@ def _texture(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str, ex
         if draw.random() < 0.6:
             move["rotation"] = round(float(draw.uniform(-3, 3)), 3)
         use["extensions"] = {"KHR_texture_transform": move}
-        extensions.add("KHR_texture_transform")
+        buffer.uses("KHR_texture_transform")
     return use

@@ -27,6 +27,12 @@ def _single(draw: Draw, folder: Path, stem: str, words: str, textured: bool) -> 
     return f'<bsdf type="{kind}"{words}>{_color(draw, folder, stem, name, textured)}</bsdf>'
 
 
+def no_bsdf(draw: Draw) -> str:
+    """Of a lamp: nothing, or one that lines pass through."""
+    draw.features.add("lamps without a BSDF")
+    return draw.one("", '<bsdf type="null"/>')
+
+
 def emitter(draw: Draw, folder: Path, stem: str, *, textured: bool) -> str:
     if "constant spectra" in draw.features and draw.random() < 0.5:
         draw.features.add("constant radiance")

@@ -9,6 +9,7 @@ import numpy as np
 from .draw import Draw, Sample, Shape, rotation
 from .gltf_buffer import Buffer
 from .gltf_material import add_materials
+from .gltf_skin import add_skin, add_weights
 from .pending import FORMATS
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
@@ -16,14 +17,18 @@ HABITS = {
     "mirror": 0.3, "uneven scale": 0.4, "matrices": 0.4, "nested nodes": 0.5, "instances": 0.4, "quantized": 0.15,
     "interleaved": 0.15, "sparse": 0.15, "strips": 0.15, "fans": 0.15, "no indices": 0.2, "normals": 0.3, "unnamed nodes": 0.12,
     "points and lines": 0.15, "several primitives": 0.5, "vertex colours": 0.3, "no material": 0.1, "second scene": 0.15,
-    "nodes outside the scene": 0.15, "cameras": 0.15, "instancing extension": 0.1 if FORMATS else 0,
+    "nodes outside the scene": 0.15, "cameras": 0.15,
 }  # fmt: skip  # chance that a file has any of it
+LATE = {"instancing extension": 0.1, "morphs": 0.12, "skins": 0.12, "hidden nodes": 0.1, "no base colour": 0.08}
+DEFORMED = {"morphs", "skins"}  # their positions are not quantized
 
 
 def write(folder: Path, seed: int) -> Sample:
     draw = Draw("gltf", seed)
-    for feature, chance in HABITS.items():
+    for feature, chance in (HABITS | (LATE if FORMATS else {})).items():
         draw.has(feature, chance)
+    if {"morphs", "instancing extension"} <= draw.features:
+        draw.features.add("instances of morphs")
     buffer = Buffer(draw)
     tree = {"asset": {"version": "2.0"}, "nodes": [], "meshes": []}
     materials = add_materials(draw, tree, buffer, folder, seed)
@@ -41,17 +46,24 @@ def _mesh(draw: Draw, tree: dict, buffer: Buffer, materials: int, number: int) -
     count = int(draw.integers(1, 4)) if "several primitives" in draw.features else 1
     for part in range(min(count, materials)):
         shape = draw.shape()
-        if "quantized" in draw.features:
+        if "quantized" in draw.features and not draw.features & DEFORMED:
             scale, shape = _quantized(shape)
         primitive = _primitive(draw, buffer, shape)
+        if "morphs" in draw.features:
+            count = buffer.tree["accessors"][primitive["attributes"]["POSITION"]]["count"]
+            moves = [buffer.accessor(draw.normal(0, 0.2, (count, 3)), "f4", bounds=True) for _ in "ab"]
+            primitive["targets"] = [{"POSITION": number} for number in moves]
+        if "skins" in draw.features and number == 0:
+            add_weights(draw, buffer, primitive)
         if not ("no material" in draw.features and part == 0):
             used.append(int(draw.integers(materials)))
             primitive["material"] = used[-1]
         primitives.append(primitive)
-    if "points and lines" in draw.features:
+    if "points and lines" in draw.features and "morphs" not in draw.features:
         points = buffer.accessor(np.eye(4)[:, :3], "f4", bounds=True)
         primitives.append({"attributes": {"POSITION": points}, "mode": draw.one(0, 1, 3)})
-    tree["meshes"].append({"name": f"mesh{number}", "primitives": primitives})
+    morphs = {"weights": draw.random(2).tolist()} if "morphs" in draw.features else {}
+    tree["meshes"].append({"name": f"mesh{number}", "primitives": primitives, **morphs})
     return {"index": number, "scale": scale}
 
 
@@ -71,7 +83,8 @@ def _primitive(draw: Draw, buffer: Buffer, shape: Shape) -> dict:
     points, uv = shape.points, shape.uv
     if draw.random() < 0.5 or "no indices" in draw.features:  # every corner a vertex of its own
         points, uv, index = points[index], uv[index], np.arange(len(index))
-    attributes = {"POSITION": buffer.positions(points, quantized="quantized" in draw.features)}
+    quantized = "quantized" in draw.features and not draw.features & DEFORMED
+    attributes = {"POSITION": buffer.positions(points, quantized=quantized)}
     if "normals" in draw.features:
         attributes["NORMAL"] = buffer.accessor(np.tile([0.0, 0.0, 1.0], (len(points), 1)), "f4")
     attributes["TEXCOORD_0"] = buffer.coordinates(uv)
@@ -108,7 +121,14 @@ def _nodes(draw: Draw, tree: dict, buffer: Buffer, meshes: list[dict]) -> list[i
                 "SCALE": buffer.accessor(scales, "f4"),
             }
             node["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
-            tree["extensionsUsed"] = ["EXT_mesh_gpu_instancing"]
+            buffer.uses("EXT_mesh_gpu_instancing")
+        if "morphs" in draw.features and draw.random() < 0.5:
+            node["weights"] = draw.uniform(-0.5, 1, 2).tolist()
+        if "skins" in draw.features and mesh["index"] == 0 and "extensions" not in node:
+            node["skin"] = 0
+        if "hidden nodes" in draw.features and number == count - 1 and number:
+            node.setdefault("extensions", {})["KHR_node_visibility"] = {"visible": False}
+            buffer.uses("KHR_node_visibility")
         tree["nodes"].append(node)
         index = len(tree["nodes"]) - 1
         if "nested nodes" in draw.features and draw.random() < 0.6:
@@ -118,6 +138,8 @@ def _nodes(draw: Draw, tree: dict, buffer: Buffer, meshes: list[dict]) -> list[i
                 tree["nodes"].append(parent)
                 index = len(tree["nodes"]) - 1
         roots.append(index)
+    if "skins" in draw.features:
+        roots += add_skin(draw, tree, buffer)
     if "cameras" in draw.features:
         tree["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}]
         tree["nodes"].append({"name": "eye", "camera": 0, "translation": [0.0, 1.0, 5.0]})

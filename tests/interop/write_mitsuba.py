@@ -6,7 +6,7 @@ import numpy as np
 from mitsuba_rays import obj_bytes, ply_bytes, serialized_bytes
 
 from .draw import Draw, Sample, Shape
-from .mitsuba_material import bsdf, emitter
+from .mitsuba_material import bsdf, emitter, no_bsdf
 from .pending import FORMATS, TEXTURES
 
 HABITS = {
@@ -85,8 +85,10 @@ def _shape(draw: Draw, folder: Path, seed: int, name: str, names: list[str], *, 
                       '<string name="name" value="vertex_color"/></texture></bsdf>')  # fmt: skip
     elif draw.random() < (0.85 if FORMATS or not shining else 1):
         inside.append(bsdf(draw, folder, f"{seed}_{name}", "", textured=textured))
+    elif shining:
+        inside.append(no_bsdf(draw))
     else:
-        draw.features.add("lamps without a BSDF" if shining else "no BSDF")
+        draw.features.add("no BSDF")
     if shining:
         inside.append(emitter(draw, folder, f"{seed}_{name}", textured=textured))
     return [f'<shape type="{kind}" id="{name}">', *inside, "</shape>"]

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from .draw import Draw, Sample, Shape
+from .pending import FORMATS
 
 
 def write(folder: Path, seed: int) -> Sample:
@@ -35,7 +36,8 @@ def _binary(draw: Draw, corners: np.ndarray) -> bytes:
     table["normal"], table["corners"] = _normals(draw, corners), corners
     if draw.has("attribute bytes", 0.3):
         table["attribute"] = draw.integers(0, 2**15, len(corners))
-    return head.ljust(80, draw.one(b"\0", b" ")) + struct.pack("<I", len(corners)) + table.tobytes()
+    more = bytes(draw.integers(0, 255, 37, np.uint8)) if FORMATS and draw.has("trailing bytes", 0.15) else b""
+    return head.ljust(80, draw.one(b"\0", b" ")) + struct.pack("<I", len(corners)) + table.tobytes() + more
 
 
 def _text(draw: Draw) -> str:
