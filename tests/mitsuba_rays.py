@@ -1,5 +1,7 @@
 """Rays into a scene that Mitsuba loaded, and the same rays into ours, for tests."""
 
+from contextlib import contextmanager
+
 import numpy as np
 
 
@@ -56,13 +58,23 @@ def random_rays(bounds, count, seed):
     return origins, directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
 
-def mitsuba_hits(path, origins, directions):
-    """Distance (inf: none), whether the front was hit, and the reflectance there, of each ray."""
+@contextmanager
+def scalar_mitsuba():
+    """Mitsuba in the variant scalar_rgb; the variant that was set before comes back."""
     import mitsuba as mi
 
     before = mi.variant()
     mi.set_variant("scalar_rgb")
     try:
+        yield mi
+    finally:
+        if before is not None:
+            mi.set_variant(before)
+
+
+def mitsuba_hits(path, origins, directions):
+    """Distance (inf: none), whether the front was hit, and the reflectance there, of each ray."""
+    with scalar_mitsuba() as mi:
         scene = mi.load_file(str(path), optimize=False)
         rows = []
         for origin, direction in zip(origins, directions, strict=True):
@@ -72,9 +84,6 @@ def mitsuba_hits(path, origins, directions):
                 continue
             albedo = np.array(si.bsdf().eval_diffuse_reflectance(si)) if si.wi.z > 0 else np.zeros(3)
             rows.append((float(si.t), si.wi.z > 0, albedo))
-    finally:
-        if before is not None:
-            mi.set_variant(before)
     return tuple(map(np.array, zip(*rows, strict=True)))
 
 

@@ -310,3 +310,33 @@ def test_not_text(load, tmp_path):
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(SceneError, match="no TOML"):
         rd.load_scene(path)
+
+
+def test_open_lamps_hide_nothing(tmp_path):
+    (tmp_path / "lamp.stl").write_bytes(stl_bytes(TRIANGLES))
+    text = 'geometry = "lamp.stl"\n[[surface]]\nname = "lamp"\nradiance = 1\nback = "open"\nreflectance = {}\n'
+    (tmp_path / "scene.toml").write_text(text.format(0))
+    assert rd.load_scene(tmp_path / "scene.toml").back.tolist() == [rd.Back.OPEN]
+    (tmp_path / "scene.toml").write_text(text.format(0.5))
+    with pytest.raises(rd.SceneError, match=r"surface 'lamp'\) is open.*0.5"):
+        rd.load_scene(tmp_path / "scene.toml")
+
+
+def test_surfaces_of_the_same_name_in_several_files_are_told(tmp_path):
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "lamp.stl").write_bytes(stl_bytes(TRIANGLES))
+    looks = '[[surface]]\nname = "*"\nreflectance = 0.5\n'
+    (tmp_path / "scene.toml").write_text(f'geometry = ["a/lamp.stl", "b/lamp.stl"]\n{looks}')
+    with pytest.warns(RadiosityWarning, match=r"same name in several geometry files become one; .*\[\[geometry\]\]: 'lamp'$"):
+        assert rd.load_scene(tmp_path / "scene.toml").names == ("lamp",)
+    named = '[[geometry]]\nfile = "a/lamp.stl"\nname = "one"\n[[geometry]]\nfile = "b/lamp.stl"\nname = "two"\n'
+    (tmp_path / "scene.toml").write_text(named + looks)
+    assert rd.load_scene(tmp_path / "scene.toml").names == ("one", "two")
+
+
+@pytest.mark.parametrize("codec", ["cp932", "utf-16"])
+def test_toml_of_other_encodings_says_what_to_do(tmp_path, codec):
+    (tmp_path / "scene.toml").write_bytes('geometry = "機能.stl"'.encode(codec))
+    with pytest.raises(SceneError, match=r"is no TOML.*save it as UTF-8"):
+        rd.load_scene(tmp_path / "scene.toml")

@@ -7,7 +7,7 @@ from importlib.metadata import PackageNotFoundError, version
 from ..errors import DeviceError
 
 EXTRAS = {
-    "formats": ("trimesh", "pyradiance", "pydantic"),
+    "formats": ("mapbox-earcut", "pyradiance", "pydantic"),
     "plots": ("matplotlib",),
     "lab": ("matplotlib", "xarray"),
 }

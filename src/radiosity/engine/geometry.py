@@ -66,7 +66,8 @@ class Geometry:
 
     @cached_property
     def some_backs_pass(self) -> bool:
-        return bool((self.scene.back == Back.PASSES).any())
+        """Lines go on through some faces, from behind or from both sides."""
+        return bool(np.isin(self.scene.back, (Back.PASSES, Back.OPEN)).any())
 
     @cached_property
     def some_backs_radiate(self) -> bool:

@@ -119,6 +119,17 @@ def check_values(value, what, surface, names, source) -> None:
         )
 
 
+def check_open(back, reflectance, surface, names, source) -> None:
+    """What lets all lines pass reflects none."""
+    wrong = (back == Back.OPEN) & (reflectance > 0).any(axis=1)
+    if wrong.any():
+        face = int(np.flatnonzero(wrong)[0])
+        raise SceneError(
+            f"{source}: face {face} (surface '{names[surface[face]]}') is open, so that lines pass, and has a reflectance of "
+            f"{reflectance[face].max():g}; set it to 0, or choose another back"
+        )
+
+
 def bands_of(bands, n_bands, source) -> tuple[str, ...]:
     if bands is None:
         bands = {1: ("grey",), 3: ("red", "green", "blue")}.get(n_bands, tuple(f"band {i}" for i in range(n_bands)))

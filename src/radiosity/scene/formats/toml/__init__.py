@@ -13,8 +13,9 @@ from ...arguments import LARGEST
 from ...assemble import Part, ReadOptions, warn
 from ...combine import combine
 from ...model import Back, Camera, Scene
+from ..beside import in_any_case, warn_of_case
 
-BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES}
+BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
 SIDES = {1: Back.ABSORBS, 2: Back.RADIATES}
 
 
@@ -29,13 +30,14 @@ def read(path: Path, options: ReadOptions) -> Scene:
     try:
         values = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        raise SceneError(f"{path}: is no TOML ({error})") from None
+        hint = "; save it as UTF-8" if isinstance(error, UnicodeDecodeError) else ""
+        raise SceneError(f"{path}: is no TOML ({error}){hint}") from None
     asked = checked(values, str(path))
     factors = [UNITS[entry.unit or asked.unit] * (entry.scale or asked.scale) for entry in asked.geometry]
 
     def dressed(looks: Looks) -> list[Scene]:
         each = zip(asked.geometry, factors, strict=True)
-        return [_geometry(path.parent / entry.file, factor, entry.name, looks, options, path) for entry, factor in each]
+        return [_geometry(entry.file, factor, entry.name, looks, options, path) for entry, factor in each]
 
     looks = Looks(asked.surface)
     scenes = dressed(looks)
@@ -44,6 +46,10 @@ def read(path: Path, options: ReadOptions) -> Scene:
     if any(name != one and _matches(name, one) for one in called for name in names):
         looks = Looks(asked.surface, called)  # known only now: lamp[1] is a surface here, and lamp1 another one
         scenes = dressed(looks)
+    several = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+    if several:
+        text = "surfaces of the same name in several geometry files become one; tell them apart by a name = of each [[geometry]]"
+        warn(f"{path}: {text}: {shown(several)}")
     for surface in asked.surface:
         if not any(_matches(name, surface.name) for name in names):
             warn(f"{path}: no surface is called '{surface.name}'; there are {shown(sorted(set(names)), 20)}")
@@ -114,10 +120,14 @@ class Looks:
         return replace(scene, emission=emission, back_emission=back)
 
 
-def _geometry(path: Path, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
+def _geometry(file: str, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
     from .. import read as read_any
 
+    path = source.parent / file
     options.admit(path, source)
+    if not path.exists() and (other := in_any_case(source.parent, file)):
+        warn_of_case(source, [(file, other)])
+        path = options.admit(other, source)
     if path.suffix.lower() == ".toml":
         raise SceneError(f"{source}: geometry '{path.name}' is a .toml file; name its geometry files instead")
 
