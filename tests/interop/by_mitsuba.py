@@ -8,7 +8,7 @@ from .images import spots
 from .record import Reading, Refused, Surface, surface
 
 ALONG = 60  # points along both axes of a round shape, where a texture varies
-POINTS = 1500  # and in each triangle of a mesh
+POINTS = 800  # and in each triangle of a mesh
 RAYS = 40
 
 

@@ -84,6 +84,8 @@ EXPLAINED = (
     Explained("ply", "mitsuba", "obj_info", REFUSED, "does not know the header line obj_info"),
     Explained("ply", "blender", "coloured polygons", ("reflectance",), CUT),
     Explained("ply", "blender", "texture", ("reflectance",), "does not read the comment TextureFile"),
+    Explained("stl", "numpy-stl", "solid, trailing bytes", REFUSED, "takes a binary file that begins with solid for text then"),
+    Explained("stl", "blender", "solid, trailing bytes", REFUSED, "takes a binary file that begins with solid for text then"),
     Explained("stl", "blender", "upper case", REFUSED, "reads no facet whose keywords are capitals, and says nothing"),
     Explained("mitsuba", "mitsuba", "round shapes", ("bounds",), "has them round; ours are flat faces of equal area"),
     Explained("mitsuba", "mitsuba", "conductors", ("reflectance", "sides"), "gives the mirror's value, not the diffuse one"),

@@ -1,4 +1,6 @@
-"""What the generators leave out until our readers have it. Delete this file when both are True."""
+"""What the generators leave out where our readers do not have it yet."""
 
-TEXTURES = False  # wraps, filters and means that do not depend on the patch size; PLY textures that vary
-FORMATS = False  # glTF instances
+from importlib.util import find_spec
+
+# wraps, filters, mesh attributes, -clamp, and means that do not depend on the patch size
+TEXTURES = find_spec("radiosity.scene.sampler") is not None

@@ -7,7 +7,7 @@ from mitsuba_rays import obj_bytes, ply_bytes, serialized_bytes
 
 from .draw import Draw, Sample, Shape
 from .mitsuba_material import bsdf, emitter, no_bsdf
-from .pending import FORMATS, TEXTURES
+from .pending import TEXTURES
 
 HABITS = {
     "mirror": 0.3, "uneven scale": 0.4, "meshes": 0.5, "round shapes": 0.3, "instances": 0.25, "twosided": 0.5, "textures": 0.35,
@@ -83,7 +83,7 @@ def _shape(draw: Draw, folder: Path, seed: int, name: str, names: list[str], *, 
         (folder / file).write_bytes(_painted(draw, (folder / file).read_bytes()))
         inside.append('<bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance">'
                       '<string name="name" value="vertex_color"/></texture></bsdf>')  # fmt: skip
-    elif draw.random() < (0.85 if FORMATS or not shining else 1):
+    elif draw.random() < 0.85:
         inside.append(bsdf(draw, folder, f"{seed}_{name}", "", textured=textured))
     elif shining:
         inside.append(no_bsdf(draw))
