@@ -15,20 +15,20 @@ def files(folder):
     triangles = np.array([(4 * i + a, 4 * i + b, 4 * i + c) for i in range(6) for a, b, c in ((0, 1, 2), (0, 2, 3))])
     names = {}
     for has in (False, True):
-        for plugin, write in (("obj", _obj), ("ply", _ply), ("serialized", _serialized)):
+        for plugin, write in (("obj", obj_bytes), ("ply", ply_bytes), ("serialized", serialized_bytes)):
             names[plugin, has] = f"cube{int(has)}.{plugin}"
             (folder / names[plugin, has]).write_bytes(write(corners, directions if has else None, triangles))
     return names
 
 
-def _obj(points, normals, triangles):
+def obj_bytes(points, normals, triangles):
     lines = ["v {} {} {}".format(*p) for p in points]
     lines += ["vn {} {} {}".format(*n) for n in ([] if normals is None else normals)]
     word = "{0}" if normals is None else "{0}//{0}"
     return "\n".join(lines + ["f " + " ".join(word.format(i + 1) for i in t) for t in triangles]).encode()
 
 
-def _ply(points, normals, triangles):
+def ply_bytes(points, normals, triangles):
     names = ["x", "y", "z"] + ([] if normals is None else ["nx", "ny", "nz"])
     table = points if normals is None else np.hstack([points, normals])
     head = ["ply", "format ascii 1.0", f"element vertex {len(points)}", *(f"property float {n}" for n in names)]
@@ -37,7 +37,7 @@ def _ply(points, normals, triangles):
     return "\n".join(head + rows).encode() + b"\n"
 
 
-def _serialized(points, normals, triangles):
+def serialized_bytes(points, normals, triangles):
     import struct
     import zlib
 
