@@ -155,7 +155,7 @@ def _korean(before: str, character: str, after: str) -> float:
     if character in KOREAN:
         return -math.log(300)
     data = character.encode("cp949", "ignore")
-    return -math.log(2350) - 1 if len(data) == 2 and 0xB0 <= data[0] <= 0xC8 and data[1] >= 0xA1 else RARE
+    return -math.log(2350) if len(data) == 2 and 0xB0 <= data[0] <= 0xC8 and data[1] >= 0xA1 else RARE
 
 
 def _western(before: str, character: str, after: str) -> float:
