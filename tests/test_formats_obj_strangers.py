@@ -96,6 +96,11 @@ def test_marks_that_do_not_go_on_are_damage(tmp_path):
         rd.load_scene(tmp_path / "x.obj")
 
 
+def test_a_very_long_line_is_looked_through_once(recwarn):
+    """Looking for a byte from each place of the line on would take hours."""
+    assert len(decode(b"a" * 2_000_000 + b"\n\xe9\n", "x").text) == 2_000_003
+
+
 def test_bytes_that_no_code_page_has_do_not_end_the_reader(recwarn):
     assert decode(b"o a\x81\x8d\xff\xff b\n", "x").text.startswith("o a")
 

@@ -137,7 +137,7 @@ MISTAKES = (
             ("test_formats_gltf_strangers.py",), "weights of a skin are not normalised"),
     Mistake("scene/formats/mesh/ply_faces.py", "odd = (first - start[2:]) % 2 == 1", "odd = first % 2 == 1",
             ("test_formats_mesh.py",), "strips after the first turn the other way round"),
-    Mistake("scene/formats/encoding.py", "hint=hint", "hint=None", ("test_formats_obj_strangers.py",),
+    Mistake("scene/formats/encoding.py", "str(path), hint=hint", "str(path), hint=None", ("test_formats_obj_strangers.py",),
             "a library is read in a code page of its own"),
     Mistake("engine/demand.py", "one.group * groups", "one.group",
             ("test_memory.py::test_expected_memory_grows_with_bands_replicates_and_patches",),
