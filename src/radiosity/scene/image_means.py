@@ -10,6 +10,7 @@ from .sampler import Sampler
 THIN = 1e-4  # texels: what is narrower is taken to be so wide
 AT_ONCE = 1 << 24  # texels times bands of an image of which tables are made at a time
 CROSSINGS = (1 << 10, 1 << 14)  # lines between cells that an edge may cross, least and most; longer edges take larger texels
+OF_THOSE_BACK = 4  # times as many for edges that come back: what is left out at one place is left out at all of them
 ALL_CROSSINGS = 1 << 24  # what the edges of one call share
 NARROW = 8  # footprints are at least so many of those larger texels wide
 
@@ -51,10 +52,11 @@ class ImageMeans:
         owner, weight = np.tile(np.arange(len(origin)), len(starts)), np.ones(len(start))
         across = np.abs(area)[owner] / np.maximum(np.linalg.norm(edge, axis=1), 1e-300)
         x, y = self._tables(self.groups[0], 0).x, self._tables(self.groups[0], 0).y
+        back = np.zeros(len(start), bool)
         if x.period and y.period:
-            start, edge, weight, which = folded(start, edge, (x.period, y.period), across)
+            start, edge, weight, which, back = folded(start, edge, (x.period, y.period), across)
             owner, across = owner[which], across[which]
-        level = self._levels(start, edge, across)
+        level = self._levels(start, edge, across, back)
         for bands in self.groups:
             for which in np.unique(level):
                 at = np.flatnonzero(level == which)
@@ -66,11 +68,11 @@ class ImageMeans:
         total = mean + total / (area * (0.5 if triangles else 1.0))[:, None]
         return np.broadcast_to(np.clip(total, 0, None), (len(total), self.n_bands))
 
-    def _levels(self, start: np.ndarray, edge: np.ndarray, across: np.ndarray) -> np.ndarray:
+    def _levels(self, start: np.ndarray, edge: np.ndarray, across: np.ndarray, back: np.ndarray) -> np.ndarray:
         """The logarithm of the factor by which texels are larger for an edge; 0 where nothing is left out."""
         tables = self._tables(self.groups[0], 0)
         count = crossings(tables, start, edge)
-        most = np.clip(ALL_CROSSINGS // len(count), *CROSSINGS)
+        most = np.clip(ALL_CROSSINGS // len(count), *CROSSINGS) * np.where(back, OF_THOSE_BACK, 1)
         largest = np.floor(np.log2(np.maximum(across / NARROW, 1)))
         needed = [np.ceil(np.log2(np.maximum(count / bound, 1))) for bound in (most, CROSSINGS[1])]
         return np.maximum(np.minimum(needed[0], largest), needed[1]).astype(np.int64)
