@@ -10,8 +10,8 @@ FRACTIONS = np.array(sorted({(p / q, p, q) for q in range(1, HIGHEST + 1) for p 
 
 
 def folded(start: np.ndarray, edge: np.ndarray, period: tuple[float, float], width: np.ndarray):
-    """The edges with which to go on: starts, vectors, how often each counts, the number of the edge that it stands for, and
-    whether its direction is one that comes back.
+    """The edges with which to go on: starts, vectors, how often each counts, and the number of the edge that it stands for; and
+    (m,) of the given edges the periods that they run over if their direction is one that comes back, or infinity.
 
     Args:
         start, edge: (m, 2), and the periods along x and y, in texels.
@@ -33,4 +33,4 @@ def folded(start: np.ndarray, edge: np.ndarray, period: tuple[float, float], wid
     edges = [edge[other], once, edge[again] - once * many]
     count = [np.ones(len(other)), times[again], np.ones(len(again))]
     which = np.concatenate([other, again, again])
-    return np.concatenate(starts), np.concatenate(edges), np.concatenate(count), which, back[which]
+    return np.concatenate(starts), np.concatenate(edges), np.concatenate(count), which, np.where(back, longer, np.inf)
