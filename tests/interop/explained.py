@@ -40,9 +40,9 @@ SPACE = ("area", "vector", "volume", "bounds")
 CUT = "cuts polygons otherwise, and so weighs the colours of their corners otherwise"
 FAN = "cuts every polygon from its first corner"
 OPTIONS = "does not load a map_Kd that has options"
-SKEWED = "cuts a parallelogram into triangles; ours looks up between all four corners"
+SKEWED = "cuts a parallelogram into triangles; ours looks up between four corners"
 
-WHITE = "takes a material without a base colour as white; we say that it is unknown and take 0.5"
+WHITE = "takes it as white; we say that it is unknown and take 0.5"
 
 EXPLAINED = (
     Explained("gltf", "trimesh", "sparse", SPACE + COLORS, "leaves sparse values out and says nothing"),
@@ -84,6 +84,7 @@ EXPLAINED = (
     Explained("ply", "mitsuba", "obj_info", REFUSED, "does not know the header line obj_info"),
     Explained("ply", "blender", "coloured polygons", ("reflectance",), CUT),
     Explained("ply", "blender", "texture", ("reflectance",), "does not read the comment TextureFile"),
+    Explained("stl", "trimesh", "trailing bytes", REFUSED, "refuses bytes after the last triangle"),
     Explained("stl", "numpy-stl", "solid, trailing bytes", REFUSED, "takes a binary file that begins with solid for text then"),
     Explained("stl", "blender", "solid, trailing bytes", REFUSED, "takes a binary file that begins with solid for text then"),
     Explained("stl", "blender", "upper case", REFUSED, "reads no facet whose keywords are capitals, and says nothing"),
