@@ -14,12 +14,15 @@ from radiosity.method.baseline import CHOICES, USED
 from radiosity.scene import Back, Camera
 from radiosity.scene.combine import combine
 from radiosity.scene.paint import Paint
+from radiosity.scene.sampler import Sampler
 
 
 def paint(random, n: int, limit: float) -> Paint:
     images = (random.random((3, 2, 2)).astype(np.float32), random.random((1, 4, 1)).astype(np.float32))
     uv = random.random((n, 4, 2)).astype(np.float32)
-    return Paint(images, np.arange(n, dtype=np.int32) % 3 - 1, uv, 1 - random.random((n, 4, 2)).astype(np.float32) / 2, limit)
+    color = 1 - random.random((n, 4, 2)).astype(np.float32) / 2
+    samplers = Sampler(("clamp", "mirror"), "linear"), Sampler(("mirror", "repeat"), "nearest")
+    return Paint(images, np.arange(n, dtype=np.int32) % 3 - 1, uv, color, limit, samplers)
 
 
 def everything() -> rd.Scene:
@@ -215,6 +218,10 @@ def test_the_hash_sees_every_field_that_results_depend_on(name):
             old = getattr(value, inner.name)
             if inner.name == "images":
                 new = (old[0], old[1] + 1)
+            elif inner.name == "samplers":
+                new = (old[0], replace(old[1], filter="linear"))
+                turned = (replace(old[0], wrap=old[0].wrap[::-1]), old[1])
+                assert replace(scene, **{name: replace(value, samplers=turned)}).hash != scene.hash
             else:
                 new = old + 1
             assert replace(scene, **{name: replace(value, **{inner.name: new})}).hash != scene.hash, inner.name

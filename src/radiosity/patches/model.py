@@ -8,8 +8,7 @@ import numpy as np
 
 from ..scene.model import Back, Scene
 from . import cells
-
-SAMPLES = 4  # texture look-ups along a cell's edge
+from .paint_means import cell_means
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,26 +114,18 @@ class Patches:
         return self._of_side(self.scene.emission, self.scene.back_emission, self.scene.emission_paint)
 
     def _of_side(self, front, back, paint) -> np.ndarray:
-        value = np.where(self.is_back[:, None], back[self.face], front[self.face])
-        return value if paint is None else np.minimum(value * self._mean(paint), paint.limit)
-
-    def _mean(self, paint) -> np.ndarray:
-        """Mean of a paint over each patch, from a regular grid of points."""
-        column, row, inverted = self.place
-        face = self.face
-        quad = self.scene.is_quad[face]
-        total = np.zeros((len(self), paint.color.shape[2]))
-        for (a, b), (c, d) in zip(*_samples(), strict=True):
-            s, t = np.where(quad, a, c), np.where(quad, b, d)
-            s, t = np.where(inverted, 1 - s, s), np.where(inverted, 1 - t, t)
-            total += paint.factor(face, (column + s) / self.columns[face], (row + t) / self.rows[face], quad)
-        return total / SAMPLES**2
-
-
-def _samples() -> tuple[np.ndarray, np.ndarray]:
-    """Points of a square and of a triangle, (SAMPLES², 2) each: the centroids of congruent cells, exact for linear paints."""
-    cell = np.arange(SAMPLES**2)
-    column, row, inverted = cells.place(cell, np.full(len(cell), SAMPLES), np.zeros(len(cell), bool))
-    middle = np.where(inverted, 2 / 3, 1 / 3)
-    square = np.column_stack([cell % SAMPLES + 0.5, cell // SAMPLES + 0.5])
-    return square / SAMPLES, np.column_stack([column + middle, row + middle]) / SAMPLES
+        if paint is None:
+            return np.where(self.is_back[:, None], back[self.face], front[self.face])
+        scene = self.scene
+        result = np.empty((len(self), front.shape[1]))
+        radiates = scene.back == Back.RADIATES
+        own = radiates & (back != front).any(axis=1)
+        means = cell_means(paint, front, self.columns, self.rows, scene.is_quad)
+        result[~self.is_back] = means
+        twice = np.repeat(radiates & ~own, self.cells_per_face)
+        result[self.is_back & ~own[self.face]] = means[twice]
+        if own.any():
+            rows = np.flatnonzero(own)
+            means = cell_means(paint.take(rows), back[rows], self.columns[rows], self.rows[rows], scene.is_quad[rows])
+            result[self.is_back & own[self.face]] = means
+        return np.minimum(result, np.where(paint.painted, paint.limit, np.inf)[self.face, None])

@@ -113,7 +113,7 @@ def check_values(value, what, surface, names, source) -> None:
     wrong = ~((value >= 0) & (value < top))
     if wrong.any():
         face, band = np.argwhere(wrong)[0]
-        rule = "must lie in [0, 1)" if top == 1.0 else f"must be finite and not negative, below {LARGEST:g}"
+        rule = "must lie in [0, 1): strictly below 1" if top == 1.0 else f"must be finite and not negative, below {LARGEST:g}"
         raise SceneError(
             f"{source}: {what} of face {face} (surface '{names[surface[face]]}', band {band}) is {value[face, band]:g}; it {rule}"
         )

@@ -1,5 +1,7 @@
 """`Scene.from_arrays`: plain arrays, checked, become a scene."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..errors import SceneError, shown
@@ -68,7 +70,7 @@ def split_paint(paint: Paint, scene: Scene, rows: np.ndarray, faces: np.ndarray)
     """A paint of input faces, carried to the scene's faces where quadrilaterals were split."""
     corner = np.argmax(faces[rows][:, None, :] == scene.faces[:, :, None], axis=2)
     at = np.arange(len(rows))[:, None]
-    return Paint(paint.images, paint.image[rows], paint.uv[rows][at, corner], paint.color[rows][at, corner], paint.limit)
+    return replace(paint, image=paint.image[rows], uv=paint.uv[rows][at, corner], color=paint.color[rows][at, corner])
 
 
 def _crossed(vertices, faces) -> np.ndarray:

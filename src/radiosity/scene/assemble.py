@@ -4,13 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import SceneError
+from ..errors import SceneError, shown
 from .arrays import build_rows, split_paint
+from .bends import straightened
 from .habits import DEFAULT_REFLECTANCE, settle, warn
 from .model import Camera, Scene
 from .paint_parts import emission_paint, reflectance_paint
 from .parts import Material, Part, ReadOptions
 from .quads import merge_triangles
+from .texture_memory import SMALL
 
 __all__ = ["DEFAULT_REFLECTANCE", "Material", "Part", "ReadOptions", "assemble", "warn"]
 
@@ -33,7 +35,7 @@ def assemble(parts: list[Part], source: str, options: ReadOptions, *, photometri
     if options.edit is not None:
         parts = options.edit(parts)
     bands = ("red", "green", "blue") if any(part.n_bands == 3 for part in parts) else ("grey",)
-    parts = settle(parts, source, options)
+    parts = [straightened(part) for part in settle(parts, source, options)]
     names = tuple(dict.fromkeys(part.name for part in parts))
     index = {name: i for i, name in enumerate(names)}
     starts = np.cumsum([0] + [len(part.vertices) for part in parts])
@@ -61,6 +63,10 @@ def assemble(parts: list[Part], source: str, options: ReadOptions, *, photometri
     paints = (reflectance_paint(parts, len(bands), options.max_reflectance), emission_paint(parts, len(bands)))
     of_reflectance, of_emission = (paint and split_paint(paint, scene, rows, faces) for paint in paints)
     scene = replace(scene, reflectance_paint=of_reflectance, emission_paint=of_emission)
+    if options.textures.averaged:
+        warn(f"{source}: images that are too large, alone or together, are averaged to {SMALL} pixels along an edge, and small "
+             f"parts of them run into each other; scale them down, or cut them: {shown(options.textures.averaged)}")  # fmt: skip
+        options.textures.averaged.clear()
     sizes_asked = np.full(len(names), np.nan)
     for part in parts:
         if np.isfinite(part.patch_size):

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from .camera import Camera
 from .paint import Paint
 from .precision import median_centre, plane_reach
+from .sampler import DEFAULT_SAMPLER
 
 
 class Back(IntEnum):
@@ -184,6 +185,8 @@ class Scene:
         for paint in (self.reflectance_paint, self.emission_paint):
             for array in () if paint is None else (*paint.images, paint.image, paint.uv, paint.color, np.array(paint.limit)):
                 digest.update(np.ascontiguousarray(array).tobytes())
+            if paint is not None and any(sampler != DEFAULT_SAMPLER for sampler in paint.samplers):
+                digest.update(repr(paint.samplers).encode())  # plain ones as if there were none: older files have the same hash
         digest.update(repr((self.names, self.bands, self.photometric)).encode())
         return digest.hexdigest()
 

@@ -9,6 +9,8 @@ import numpy as np
 
 from ..errors import SceneError
 from .model import Back
+from .sampler import DEFAULT_SAMPLER, Sampler
+from .texture_memory import TextureMemory
 
 
 @dataclass(frozen=True)
@@ -21,6 +23,8 @@ class Material:
         back: what the back does.
         back_reflectance, back_emission: of a radiating back; None: as the front.
         diffuse: False where the file's material is not diffuse and was taken by its diffuse albedo.
+        given: the user's own .toml sets the reflectance, below 1: it is taken as it is.
+        origin: the file that sets the reflectance, where it is another one than the scene's.
     """
 
     reflectance: tuple[float, ...] | None = None
@@ -29,6 +33,8 @@ class Material:
     back_reflectance: tuple[float, ...] | None = None
     back_emission: tuple[float, ...] | None = None
     diffuse: bool = True
+    given: bool = False
+    origin: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +48,9 @@ class Part:
         material: of all its faces.
         uv: (n, 2) texture coordinates of the vertices, or None.
         color: (n, n_bands) linear vertex colours that multiply the reflectance, or None.
+        emission_color: the same for the emission.
         texture, emission_texture: (height, width, 1 or 3) linear images that multiply reflectance, emission; or None.
+        sampler, emission_sampler: how these images are continued.
         emission_uv: (n, 2) texture coordinates of the emission's texture; None: ``uv``.
         patch_size: metres, or NaN.
     """
@@ -57,12 +65,15 @@ class Part:
     emission_texture: np.ndarray | None = None
     emission_uv: np.ndarray | None = None
     patch_size: float = np.nan
+    sampler: Sampler = DEFAULT_SAMPLER
+    emission_sampler: Sampler = DEFAULT_SAMPLER
+    emission_color: np.ndarray | None = None
 
     @property
     def n_bands(self) -> int:
         m = self.material
         values = [m.reflectance, m.emission, m.back_reflectance, m.back_emission]
-        arrays = [self.color, self.texture, self.emission_texture]
+        arrays = [self.color, self.emission_color, self.texture, self.emission_texture]
         return max([1] + [len(v) for v in values if v is not None] + [a.shape[-1] for a in arrays if a is not None])
 
 
@@ -71,20 +82,22 @@ class ReadOptions:
     """How to take a file.
 
     Attributes:
-        max_reflectance: larger reflectances are brought down to this, with a warning.
+        max_reflectance: larger reflectances are brought down to this, with a warning; but not those of the user's own .toml.
         strict: faults that can be skipped are errors.
         edit: changes the parts that were read before they become a scene (the .toml reader's hook).
         root: the folder outside which no file is read, resolved; None: any file may be.
+        textures: how large images may be; it is used up while files are read.
     """
 
     max_reflectance: float = 0.95
     strict: bool = False
     edit: Callable[[list[Part]], list[Part]] | None = None
     root: Path | None = None
+    textures: TextureMemory = field(default_factory=TextureMemory)
 
     def __post_init__(self):
         if not 0 < self.max_reflectance < 1:
-            raise SceneError(f"max_reflectance is {self.max_reflectance}; it must lie between 0 and 1")
+            raise SceneError(f"max_reflectance is {self.max_reflectance}; it must be above 0 and strictly below 1, such as 0.95")
 
     def admit(self, file: Path, source) -> Path:
         """A file that the scene file ``source`` asks for, if it lies in the scene's folder: a scene of strangers is not to read

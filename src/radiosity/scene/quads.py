@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from .arrays import PARALLEL_TOLERANCE
+from .bends import tolerance
 from .model import Scene
 from .paint import Paint
 
@@ -92,7 +93,8 @@ def _same_paint(paint: Paint, one, two, shared) -> np.ndarray:
     same = paint.image[one] == paint.image[two]
     for values, used in ((paint.uv, paint.image[one] >= 0), (paint.color, np.ones(len(one), bool))):
         a, b, c, b_two, a_two, d = _corners(values, one, two, shared)
-        scale = 1e-5 * (1 + np.max([np.abs(x).max(axis=1, initial=0) for x in (a, b, c, d)], axis=0))
+        largest = np.max([np.abs(x).max(axis=1, initial=0) for x in (a, b, c, d)], axis=0)
+        scale = 1e-5 * (1 + largest) if values is paint.color else tolerance(np.ptp([a, b, c, d], axis=0).max(axis=1), largest)
         affine = np.abs(a + b - c - d).max(axis=1, initial=0) <= scale
         equal = (np.abs(a - a_two).max(axis=1, initial=0) <= scale) & (np.abs(b - b_two).max(axis=1, initial=0) <= scale)
         same &= ~used | affine & equal

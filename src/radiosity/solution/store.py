@@ -10,6 +10,7 @@ from ..errors import SceneError
 from ..patches.model import Patches
 from ..scene.model import Camera, Scene
 from ..scene.paint import Paint
+from ..scene.sampler import Sampler
 from .archive import check_sizes
 from .model import Solution
 from .validate import validate
@@ -30,6 +31,7 @@ SCENE_ARRAYS = (
 )
 PAINT_ARRAYS = ("image", "uv", "color")
 SOLUTION_ARRAYS = ("irradiance", "irradiance_standard_error", "arrivals")
+POWER_ARRAYS = ("surface_power", "side_power")  # which may be missing
 SCALARS = ("rays", "seconds", "quanta", "replicates", "books", "status", "provenance")
 
 
@@ -52,11 +54,13 @@ def save(solution: Solution, path: Path, *, derived: bool = True) -> None:
         if paint is not None:
             arrays |= {f"{which}_{name}": getattr(paint, name) for name in PAINT_ARRAYS}
             arrays |= {f"{which}_picture_{i}": picture for i, picture in enumerate(paint.images)}
-            paints[which] = {"images": len(paint.images), "limit": None if np.isinf(paint.limit) else paint.limit}
+            paints[which] = {
+                "images": len(paint.images), "limit": None if np.isinf(paint.limit) else paint.limit,
+                "samplers": [asdict(sampler) for sampler in paint.samplers],
+            }  # fmt: skip
     arrays |= {"patches_columns": patches.columns, "patches_rows": patches.rows}
     arrays |= {name: getattr(solution, name) for name in SOLUTION_ARRAYS}
-    if solution.surface_power is not None:
-        arrays["surface_power"] = solution.surface_power
+    arrays |= {name: getattr(solution, name) for name in POWER_ARRAYS if getattr(solution, name) is not None}
     if derived:
         arrays |= {"radiosity": solution.radiosity, "standard_error": solution.standard_error}
     arrays |= {f"state_{name}": value for name, value in solution.state.items()}
@@ -112,7 +116,9 @@ def _restore(arrays: dict, meta: dict) -> Solution:
     for which, facts in meta["paints"].items():
         images = tuple(arrays[f"{which}_picture_{i}"] for i in range(facts["images"]))
         limit = np.inf if facts["limit"] is None else facts["limit"]
-        paints[which] = Paint(images, **{name: arrays[f"{which}_{name}"] for name in PAINT_ARRAYS}, limit=limit)
+        samplers = tuple(Sampler(tuple(one["wrap"]), one["filter"]) for one in facts.get("samplers", ()))  # older files: none
+        held = {name: arrays[f"{which}_{name}"] for name in PAINT_ARRAYS}
+        paints[which] = Paint(images, **held, limit=limit, samplers=samplers)
     cameras = tuple(_camera(**fields) for fields in described["cameras"])
     scene = Scene(
         **{name: arrays[f"scene_{name}"] for name in SCENE_ARRAYS}, **paints, cameras=cameras,
@@ -123,7 +129,7 @@ def _restore(arrays: dict, meta: dict) -> Solution:
     state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
-    scalars |= {"state": state, "surface_power": arrays.get("surface_power")}
+    scalars |= {"state": state, **{name: arrays.get(name) for name in POWER_ARRAYS}}
     solution = Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars)
     validate(solution)
     return solution

@@ -40,9 +40,10 @@ def validate(solution: Solution) -> None:
     _array("arrivals", solution.arrivals, "iu", (n_patches,))
     _that((solution.arrivals >= 0).all() and solution.arrivals.sum(dtype=float) < 2**63, "arrivals out of range")
     _scalars(solution, bands)
-    if solution.surface_power is not None:
-        _array("powers", solution.surface_power, "f", (2, solution.replicates, len(scene.names), bands))
-        _that((np.abs(solution.surface_power) <= MOST).all(), "powers that are not finite")
+    for power, many in ((solution.surface_power, 1), (solution.side_power, 2)):
+        if power is not None:
+            _array("powers", power, "f", (2, solution.replicates, many * len(scene.names), bands))
+            _that((np.abs(power) <= MOST).all(), "powers that are not finite")
     history = solution.history
     _that(history.ndim == 2 and history.shape[1] == 2 and history.dtype.kind in "fiu", "a history of another shape")
 
@@ -81,6 +82,7 @@ def _scene(scene: Scene) -> None:
 
 
 def _paint(paint: Paint, n: int, bands: int) -> None:
+    _that(len(paint.samplers) in (0, len(paint.images)), "samplers of other images")
     for image in paint.images:
         _that(image.ndim == 3 and image.dtype.kind == "f" and image.size > 0, "an image of another shape")
         _that(image.shape[2] in (1, bands) and bool(((image >= 0) & (image < MOST_OF_PAINTS)).all()), "an image out of range")

@@ -6,20 +6,20 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import SceneError, shown
-from ..assemble import Part, warn
-
-LARGEST = 1024  # pixels along an edge: larger images are averaged, patches are larger than their texels
+from ..assemble import Part, ReadOptions, warn
 
 
-def linear_image(data: bytes, what: str) -> np.ndarray:
+def linear_image(data: bytes, what: str, options: ReadOptions, *, raw: bool = False) -> np.ndarray:
     """Decode a PNG, JPEG, WebP, TGA, ... whose values are sRGB encoded; alpha is left out.
 
     Args:
         data: the file's bytes.
         what: names the image in errors.
+        options: counts its texels.
+        raw: its values are linear.
 
     Returns:
-        (height, width, 1 or 3) float32, linear, row 0 at the top, at most `LARGEST` pixels high and wide.
+        (height, width, 1 or 3) float32, linear, row 0 at the top.
 
     Raises:
         SceneError: the bytes are no image that Pillow reads.
@@ -32,16 +32,21 @@ def linear_image(data: bytes, what: str) -> np.ndarray:
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             image = Image.open(io.BytesIO(data))
-            if image.mode.startswith("I"):  # 16 bits a pixel
-                return _reduced(np.asarray(image)[:, :, None], lambda block: decode_srgb(np.clip(block / 65535, 0, 1)))
+            wide = image.mode.startswith("I")  # 16 bits a pixel
             grey = image.mode in ("1", "L", "LA")
-            pixels = np.asarray(image.convert("L" if grey else "RGB"))
+            floating = image.mode == "F"
+            pixels: np.ndarray = np.asarray(image if wide else image.convert("L" if grey else "RGB"))
     except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
         raise SceneError(f"{what}: the image is too large ({error}); scale it down") from None
     except Exception as error:  # Pillow's decoders raise whatever they like on damaged files
         raise SceneError(f"{what}: the image cannot be decoded ({error}); save it as PNG or JPEG") from None
-    table = decode_srgb(np.arange(256) / 255).astype(np.float32)
-    return _reduced(pixels.reshape(*pixels.shape[:2], -1), lambda block: table[block])
+    if floating:
+        raise SceneError(f"{what}: images of floating point numbers are not read in this format; save it as PNG or JPEG")
+    most = 65535 if wide else 255
+    codes = np.arange(most + 1) / most
+    table = np.asarray(codes if raw else decode_srgb(codes), np.float32)
+    pixels = np.clip(pixels, 0, most) if wide else pixels
+    return reduced(pixels.reshape(*pixels.shape[:2], -1), table.take, what, options)
 
 
 def decode_srgb(value: np.ndarray) -> np.ndarray:
@@ -50,9 +55,10 @@ def decode_srgb(value: np.ndarray) -> np.ndarray:
     return np.where(value <= 0.04045, value / 12.92, ((np.maximum(value, 0) + 0.055) / 1.055) ** 2.4)
 
 
-def _reduced(pixels: np.ndarray, decode) -> np.ndarray:
-    """Decoded rows, averaged in blocks so that no edge is longer than `LARGEST`."""
-    height, width = (min(length, LARGEST) for length in pixels.shape[:2])
+def reduced(pixels: np.ndarray, decode, what: str, options: ReadOptions) -> np.ndarray:
+    """Decoded rows, float32; averaged in blocks where the image is too large (see `texture_memory`)."""
+    edge = options.textures.edge(pixels.shape, what)
+    height, width = (min(length, edge) for length in pixels.shape[:2])
     if (height, width) == pixels.shape[:2]:
         return np.ascontiguousarray(decode(pixels), np.float32)
     top = np.linspace(0, pixels.shape[0], height + 1).astype(int)

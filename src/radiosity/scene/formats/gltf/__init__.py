@@ -14,6 +14,7 @@ import numpy as np
 from ....errors import shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
+from ...sampler import DEFAULT_SAMPLER
 from ..beside import warn_of_case
 from ..textures import warn_of_means, with_means
 from .accessor import accessor
@@ -37,7 +38,6 @@ def read(path: Path, options: ReadOptions) -> Scene:
     nodes = walk(file)
     materials, skins = Materials(file), Skins(file)
     left_out: dict[str, list[str]] = {}
-    clamped: dict[str, bool] = {}
     parts = []
     for node in nodes:
         if node.hidden and {"mesh", "camera"} & set(node.info):
@@ -56,11 +56,9 @@ def read(path: Path, options: ReadOptions) -> Scene:
                 continue
             if mode not in (TRIANGLES, STRIP, FAN):
                 raise file.fail(f"mode of primitive {number} of '{node.name}' is {mode!r}; expected 0 to 6")
-            parts.append(_part(file, node, mesh, primitive, materials, skins, clamped))
+            parts.append(_part(file, node, mesh, primitive, materials, skins))
     for what, names in left_out.items():
         warn(f"{path}: {what} are left out: {shown(dict.fromkeys(names))}")
-    if clamped:
-        warn(f"{path}: textures that end at their rim or are mirrored are repeated instead: {shown(clamped)}")
     materials.report()
     warn_of_unread(file)
     warn_of_case(path, file.renamed)
@@ -69,7 +67,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
     return assemble(placed, str(path), options, cameras=cameras(file, [node for node in nodes if not node.hidden]))
 
 
-def _part(file: GltfFile, node: Node, mesh: dict, primitive: dict, materials: Materials, skins: Skins, clamped: dict) -> Part:
+def _part(file: GltfFile, node: Node, mesh: dict, primitive: dict, materials: Materials, skins: Skins) -> Part:
     name, what = node.name, f"'{node.name}'"
     attributes = file.dictionary(primitive.get("attributes"), f"attributes of {what}")
     vertices = _positions(file, attributes, primitive, what)
@@ -87,12 +85,13 @@ def _part(file: GltfFile, node: Node, mesh: dict, primitive: dict, materials: Ma
         name = f"{name}/{finish.name}" if finish.name != name else name
     else:
         finish = Finish("", Material((1.0,) if "COLOR_0" in attributes else None))
-    uv = [_uv(file, attributes, texture, what, count, clamped) for texture in (finish.base, finish.emissive)]
+    base, emissive = finish.base, finish.emissive
+    uv = [_uv(file, attributes, texture, what, count) for texture in (base, emissive)]
     copies = len(vertices) // max(count, 1)
     uv, (color,) = [_repeated(values, copies) for values in uv], [_repeated(color, copies)]
     return Part(
-        name, vertices, faces, finish.material, uv[0], color,
-        finish.base and finish.base.image, finish.emissive and finish.emissive.image, uv[1],
+        name, vertices, faces, finish.material, uv[0], color, base and base.image, emissive and emissive.image, uv[1],
+        sampler=base.sampler if base else DEFAULT_SAMPLER, emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
     )  # fmt: skip
 
 
@@ -133,14 +132,11 @@ def _attribute(file: GltfFile, attributes: dict, key: str, widths: tuple, what: 
     return values
 
 
-def _uv(file: GltfFile, attributes: dict, texture: Texture | None, what: str, count: int, clamped: dict) -> np.ndarray | None:
+def _uv(file: GltfFile, attributes: dict, texture: Texture | None, what: str, count: int) -> np.ndarray | None:
     key = f"TEXCOORD_{texture.coordinates}" if texture else ""
     if texture is None or key not in attributes:
         return None
-    uv = texture.uv(_attribute(file, attributes, key, (2,), what, count))
-    if not texture.repeats and (np.abs(uv - 0.5) > 0.501).any():
-        clamped[what.strip("'")] = True
-    return uv
+    return texture.uv(_attribute(file, attributes, key, (2,), what, count))
 
 
 def _triangles(file: GltfFile, primitive: dict, n_vertices: int, what: str) -> np.ndarray:

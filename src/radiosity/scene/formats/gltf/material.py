@@ -7,12 +7,14 @@ import numpy as np
 from ....errors import shown
 from ...assemble import DEFAULT_REFLECTANCE, Material, warn
 from ...model import Back
+from ...sampler import DEFAULT_SAMPLER, Sampler
 from ..textures import linear_image
 from .extensions import GLOSSY
 from .file import GltfFile
 
 GLOSSY_ROUGHNESS = 0.3  # a material that is explicitly smoother counts as not diffuse
-REPEAT = 10497
+WRAPS = {10497: "repeat", 33648: "mirror", 33071: "clamp"}
+FILTERS = {9728: "nearest", 9729: "linear"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +26,7 @@ class Texture:
     offset: tuple[float, ...] = (0.0, 0.0)
     rotation: float = 0.0
     scale: tuple[float, ...] = (1.0, 1.0)
-    repeats: bool = True
+    sampler: Sampler = DEFAULT_SAMPLER
 
     def uv(self, given: np.ndarray) -> np.ndarray:
         """glTF coordinates (origin at the upper left) to those of a paint (lower left)."""
@@ -137,10 +139,6 @@ class Materials:
             raise file.fail(
                 f"a texture of {what} has no image that is read (extensions {shown(info.get('extensions', {}))}); use PNG or JPEG"
             )
-        wraps: set[int] = set()
-        if "sampler" in info:
-            sampler = file.item("samplers", info["sampler"])
-            wraps = {sampler.get(key, REPEAT) for key in ("wrapS", "wrapT")}
         move = file.dictionary(
             file.dictionary(use.get("extensions", {}), "extensions").get("KHR_texture_transform", {}), "transform"
         )
@@ -150,15 +148,28 @@ class Materials:
             file.numbers(move, "offset", (0.0, 0.0), what),
             file.numbers({"rotation": [move.get("rotation", 0.0)]}, "rotation", (0.0,), what)[0],
             file.numbers(move, "scale", (1.0, 1.0), what),
-            wraps <= {REPEAT},
+            self._sampler(info, what),
         )
+
+    def _sampler(self, info: dict, what: str) -> Sampler:
+        """How a texture's image is continued; what is not said is repeated, and linear."""
+        if "sampler" not in info:
+            return DEFAULT_SAMPLER
+        held = self.file.item("samplers", info["sampler"])
+        values = []
+        for key, known in (("wrapS", WRAPS), ("wrapT", WRAPS), ("magFilter", FILTERS)):
+            value = held.get(key, 9729 if known is FILTERS else 10497)
+            if not isinstance(value, int) or value not in known:
+                raise self.file.fail(f"{key} of the sampler of a texture of {what} is {value!r}; expected one of {shown(known)}")
+            values.append(known[value])
+        return Sampler((values[0], values[1]), values[2])
 
     def _image(self, index) -> np.ndarray:
         info = self.file.item("images", index)
         if index not in self.images:
             what = f"image {index}" + (f" ('{info['name']}')" if info.get("name") else "")
             data = self.file.view(info["bufferView"])[0] if "bufferView" in info else self.file.resource(info.get("uri"), what)
-            self.images[index] = linear_image(data, f"{self.file.path}: {what}")
+            self.images[index] = linear_image(data, f"{self.file.path}: {what}", self.file.options)
         return self.images[index]
 
 

@@ -12,13 +12,13 @@ from ....errors import SceneError
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
 from ..faces import cut, warn_of_crossing
-from ..textures import decode_srgb, linear_image, warn_of_means, with_means
-from .ply import Ply, read_ply
+from ..textures import decode_srgb, warn_of_means, with_means
+from .ply import read_ply
+from .ply_faces import of_polygons
 from .ply_faces import polygons as polygons_of
 from .ply_rows import Columns
+from .ply_textures import NONE, of_corners, of_faces, of_vertices, textures
 from .stl import read_stl
-
-COORDINATES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -27,22 +27,22 @@ def read(path: Path, options: ReadOptions) -> Scene:
     Raises:
         SceneError: damaged, truncated, or without faces.
     """
-    parts = read_stl(path) if path.suffix.lower() == ".stl" else [_ply(path, options)]
+    parts = read_stl(path) if path.suffix.lower() == ".stl" else _ply(path, options)
     placed = [with_means(part, part.uv is None, False) for part in parts]
     warn_of_means(parts, placed, str(path))
     return assemble(placed, str(path), options)
 
 
-def _ply(path: Path, options: ReadOptions) -> Part:
+def _ply(path: Path, options: ReadOptions) -> list[Part]:
     ply = read_ply(path)
-    vertex, face = ply.columns.get("vertex", Columns({}, {})), ply.columns.get("face", Columns({}, {}))
+    vertex = ply.columns.get("vertex", Columns({}, {}))
     if not set("xyz") <= set(vertex.numbers):
         raise SceneError(f"{path}: the vertices have no x, y, z; the file is damaged")
     points = np.column_stack([vertex.numbers[axis] for axis in "xyz"]).astype(np.float64)
     polygons = polygons_of(path, ply)
     if polygons is None or not len(polygons.sizes):
         raise SceneError(f"{path}: the file holds {len(points)} points but no faces; export a surface, not a point cloud")
-    index = polygons.values
+    face, index = of_polygons(ply, polygons), polygons.values
     wrong = (index < 0) | (index >= len(points))
     if wrong.any():
         at = int(np.flatnonzero(wrong)[0])
@@ -56,11 +56,11 @@ def _ply(path: Path, options: ReadOptions) -> Part:
     crossed: list[int] = []
     faces = cut(points[index], polygons.sizes, crossed)
     warn_of_crossing(path, {path.stem: crossed})
-    color, face_color, wedges = _color(path, vertex), _color(path, face), face.lists.get("texcoord")
-    held = vertex.numbers
-    uv = next((np.column_stack([held[u], held[v]]) for u, v in COORDINATES if u in held and v in held), None)
-    if wedges is not None and (wedges.sizes == 2 * polygons.sizes).all():
-        uv = wedges.values.reshape(-1, 2)
+    polygon = np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)[faces[:, 0]]
+    color, face_color, uv = _color(path, vertex), _color(path, face), of_vertices(vertex)
+    wedges, placed = of_corners(path, face.lists.get("texcoord"), polygons.sizes)
+    if wedges is not None:
+        uv = wedges
         points, color = points[index], None if color is None else color[index]
     elif face_color is not None and color is None:
         points, uv = points[index], None if uv is None else uv[index]
@@ -68,10 +68,16 @@ def _ply(path: Path, options: ReadOptions) -> Part:
         faces = np.where(faces >= 0, index[faces], -1)  # every corner need not be a vertex of its own
     if face_color is not None and color is None:
         color = np.repeat(face_color, polygons.sizes, axis=0)
-    texture = _texture(path, ply, options)
-    material = Material() if color is None and texture is None else Material((1.0,))
-    part = Part(path.stem, points, faces, material, uv, color, texture)
-    return part
+    images = textures(path, ply, options)
+    number = of_faces(path, face, len(polygons.sizes), len(images))
+    if wedges is not None:
+        number = np.where(placed, number, NONE)
+    parts = []
+    for which in np.unique(number[polygon]):
+        image = None if which == NONE else images[which]
+        material = Material() if color is None and image is None else Material((1.0,))
+        parts.append(Part(path.stem, points, faces[number[polygon] == which], material, uv, color, image))
+    return parts
 
 
 def _color(path: Path, columns: Columns) -> np.ndarray | None:
@@ -88,17 +94,3 @@ def _color(path: Path, columns: Columns) -> np.ndarray | None:
     if color.min(initial=0) < 0 or color.max(initial=0) > largest:
         raise SceneError(f"{path}: colours reach from {color.min()} to {color.max()}; expected 0 to {largest}")
     return decode_srgb(color / largest)
-
-
-def _texture(path: Path, ply: Ply, options: ReadOptions) -> np.ndarray | None:
-    names = [comment.split(None, 1)[1].strip() for comment in ply.comments if comment.lower().startswith("texturefile ")]
-    for name in names[:1]:
-        options.admit(path.parent / name, path)
-        try:
-            return linear_image((path.parent / name).read_bytes(), str(path.parent / name))
-        except (SceneError, OSError, ValueError) as error:
-            text = f"{path}: the texture '{name}' cannot be read ({error})"
-            if options.strict:
-                raise SceneError(text) from None
-            warn(f"{text}; left out")
-    return None

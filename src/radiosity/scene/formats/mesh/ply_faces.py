@@ -27,6 +27,13 @@ def polygons(path: Path, ply: Ply) -> Lists | None:
     return faces
 
 
+def of_polygons(ply: Ply, polygons: Lists) -> Columns:
+    """The columns that have a row for each polygon; those of faces do not where the polygons come from strips."""
+    face = ply.columns.get("face", Columns({}, {}))
+    rows = {len(column) for column in face.numbers.values()} | {len(lists.sizes) for lists in face.lists.values()}
+    return face if rows <= {len(polygons.sizes)} else Columns({}, {})
+
+
 def _indices(path: Path, element: Columns | None) -> Lists | None:
     found = next((element.lists[name] for name in INDICES if element and name in element.lists), None)
     if found is None:

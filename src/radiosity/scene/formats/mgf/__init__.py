@@ -57,6 +57,7 @@ def _material(material: MgfMaterial) -> Material:
         emission=_colored(material.emittance, material.emittance_color),
         back=Back.PASSES if material.one_sided else Back.RADIATES,
         diffuse=not material.not_diffuse,
+        origin=material.file,
     )
 
 

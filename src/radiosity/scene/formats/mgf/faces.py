@@ -97,6 +97,7 @@ class FaceReader:
     def _mark(self, words) -> None:
         if len(words) == 2:
             self._at = int(words[1])
+            self.contexts.file = self._statements[self._at].file
 
     def _face(self, words) -> None:
         vertices = self.contexts.vertices

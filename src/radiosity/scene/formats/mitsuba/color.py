@@ -5,13 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ....errors import SceneError
+from ....errors import SceneError, shown
 from ...parts import ReadOptions
+from ...sampler import DEFAULT_SAMPLER, WRAPS, Sampler
 from .image import find_file, read_image
 from .node import Node, Spectrum
 
 PLAIN = {"srgb": "color", "uniform": "value", "rawconstant": "value", "d65": "color"}  # plugin: its argument
-CHECKER = 64  # pixels along an edge of the image that stands for a checkerboard
+FILTERS = {"bilinear": "linear", "nearest": "nearest"}
 
 Color = tuple[float, ...]
 
@@ -22,6 +23,7 @@ class Image:
 
     pixels: np.ndarray
     to_uv: np.ndarray
+    sampler: Sampler = DEFAULT_SAMPLER
 
     def coordinates(self, uv: np.ndarray) -> np.ndarray:
         """Mitsuba's texture coordinates (n, 2) to those of a paint, whose v grows from the last row to the first."""
@@ -35,7 +37,10 @@ class Image:
 
 @dataclass(frozen=True)
 class VertexColors:
-    """Colours that the mesh brings along."""
+    """Colours that the mesh brings along: an attribute of its vertices or faces, times a number."""
+
+    name: str
+    scale: float = 1.0
 
 
 def collapse(color) -> Color:
@@ -75,11 +80,15 @@ class Colors:
             raise SceneError(f"{node.place}: 'to_uv' of this '{node.plugin}' is {to_uv!r}; expected a transformation")
         to_uv = to_uv[np.ix_((0, 1, 3), (0, 1, 3))]
         if node.plugin == "bitmap":
-            return Image(self._bitmap(node), to_uv)
+            return Image(self._bitmap(node), to_uv, _sampler(node))
         if node.plugin == "checkerboard":
-            return Image(self._checkerboard(node), to_uv)
+            return Image(self._checkerboard(node), to_uv, Sampler(filter="nearest"))
         if node.plugin == "mesh_attribute":
-            return VertexColors()
+            name = node.values.get("name")
+            if not isinstance(name, str) or not name.startswith(("vertex_", "face_")):
+                text = f"{node.place}: the name of a mesh_attribute is {name!r}"
+                raise SceneError(f"{text}; expected one that begins with vertex_ or face_")
+            return VertexColors(name, node.number("scale", 1.0))
         if node.plugin in PLAIN:
             color = self.get(node, PLAIN[node.plugin], 1.0, emission=emission)
             scale = node.number("scale", 1.0)
@@ -95,7 +104,7 @@ class Colors:
         file = find_file(self._folders, name, node, self._options)
         raw = bool(node.values.get("raw", False))
         if (file, raw) not in self._images:
-            self._images[file, raw] = read_image(file, raw)
+            self._images[file, raw] = read_image(file, raw, self._options)
         return self._images[file, raw]
 
     def _checkerboard(self, node: Node) -> np.ndarray:
@@ -103,10 +112,19 @@ class Colors:
         plain = [color.mean if isinstance(color, Image) else color for color in colors if not isinstance(color, VertexColors)]
         if len(plain) < 2:
             raise SceneError(f"{node.place}: a checkerboard of mesh attributes is not read; give an rgb")
-        half = np.arange(CHECKER) < CHECKER // 2
+        half = np.array([True, False])
         width = max(map(len, plain))
         first, second = (np.broadcast_to(color, width) for color in plain)
         return np.where((half[:, None] == half)[..., None], first, second).astype(np.float32)
+
+
+def _sampler(node: Node) -> Sampler:
+    """How a bitmap is continued."""
+    wrap, kind = node.values.get("wrap_mode", "repeat"), node.values.get("filter_type", "bilinear")
+    if wrap not in WRAPS or kind not in FILTERS:
+        text = f"{node.place}: wrap_mode {wrap!r} and filter_type {kind!r} of a bitmap"
+        raise SceneError(f"{text}; expected one of {shown(WRAPS)}, and one of {shown(FILTERS)}")
+    return Sampler((str(wrap), str(wrap)), FILTERS[str(kind)])
 
 
 def equal_energy_rgb() -> np.ndarray:

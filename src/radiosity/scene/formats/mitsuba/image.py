@@ -7,7 +7,7 @@ import numpy as np
 from ....errors import SceneError
 from ...parts import ReadOptions
 from ..beside import in_any_case, warn_of_case
-from ..textures import decode_srgb, linear_image
+from ..textures import linear_image, reduced
 from .node import Node
 from .parse import message
 
@@ -33,26 +33,25 @@ def find_file(folders: list[Path], name: str, node: Node, options: ReadOptions) 
     raise SceneError(f"{node.place}: the file '{name}' of this '{node.plugin}' does not exist in {folders[0]}")
 
 
-def read_image(file: Path, raw: bool) -> np.ndarray:
+def read_image(file: Path, raw: bool, options: ReadOptions) -> np.ndarray:
     """(height, width, 1 or 3) float32; linear, or where ``raw`` the values as they are in the file.
 
     Raises:
         SceneError: it is no image.
     """
     if file.suffix.lower() in FLOAT_IMAGES:
-        return _float_image(file)
-    linear = linear_image(file.read_bytes(), str(file))
-    if not raw:
-        return linear
-    table = decode_srgb(np.linspace(0, 1, 4097))
-    return np.interp(linear, table, np.linspace(0, 1, 4097)).astype(np.float32)
+        return reduced(_float_image(file), lambda block: block, str(file), options)
+    return linear_image(file.read_bytes(), str(file), options, raw=raw)
 
 
 def _float_image(file: Path) -> np.ndarray:
     import mitsuba
 
     try:
-        bitmap = mitsuba.Bitmap(str(file)).convert(mitsuba.Bitmap.PixelFormat.RGB, mitsuba.Struct.Type.Float32, False)
+        bitmap = mitsuba.Bitmap(str(file))
+        grey = bitmap.pixel_format() in (mitsuba.Bitmap.PixelFormat.Y, mitsuba.Bitmap.PixelFormat.YA)
+        kind = mitsuba.Bitmap.PixelFormat.Y if grey else mitsuba.Bitmap.PixelFormat.RGB
+        bitmap = bitmap.convert(kind, mitsuba.Struct.Type.Float32, False)
     except Exception as error:  # of many classes
         raise SceneError(f"{file}: the image cannot be decoded ({message(error, file)})") from None
-    return np.array(bitmap)
+    return np.atleast_3d(np.array(bitmap))

@@ -10,8 +10,9 @@ import numpy as np
 from ....errors import SceneError
 from ..faces import cut, warn_of_crossing
 from ..mesh.ply import read_ply
-from ..mesh.ply_faces import polygons
+from ..mesh.ply_faces import of_polygons, polygons
 from ..obj.tables import parse
+from .attributes import ply_attributes
 from .node import Node
 from .shapes import Geometry
 
@@ -33,7 +34,7 @@ def read_mesh(node: Node, file: Path) -> Geometry:
     if uv is not None and node.values.get("flip_tex_coords", node.plugin == "obj"):
         uv = np.column_stack([uv[:, 0], 1 - uv[:, 1]])
     own_normals = geometry.own_normals and not node.values.get("face_normals", False)
-    return Geometry(geometry.vertices, geometry.faces, uv, geometry.color, own_normals)
+    return Geometry(geometry.vertices, geometry.faces, uv, geometry.attributes, own_normals)
 
 
 def _obj(node: Node, file: Path) -> Geometry:
@@ -51,7 +52,7 @@ def _obj(node: Node, file: Path) -> Geometry:
     has_uv = (corners[:, 1] >= 0).all()
     uv = np.array(tables.uv, float).reshape(-1, 2)[corners[:, 1]] if has_uv else None
     normals = re.search(rb"(?m)^\s*vn\s", file.read_bytes()) is not None
-    return Geometry(vertices, np.where(faces >= 0, index[faces], -1), uv, None, normals)
+    return Geometry(vertices, np.where(faces >= 0, index[faces], -1), uv, own_normals=normals)
 
 
 def _ply(node: Node, file: Path) -> Geometry:
@@ -68,8 +69,11 @@ def _ply(node: Node, file: Path) -> Geometry:
     faces = cut(points[corners], index.sizes, crossed)
     warn_of_crossing(file, {file.stem: crossed})
     uv = next((_columns(vertex, pair) for pair in (("u", "v"), ("s", "t")) if set(pair) <= set(vertex)), None)
-    color = _columns(vertex, ("r", "g", "b")) if {"r", "g", "b"} <= set(vertex) else None
-    return Geometry(points, np.where(faces >= 0, corners[faces], -1), uv, color, {"nx", "ny", "nz"} <= set(vertex))
+    polygon = np.repeat(np.arange(len(index.sizes)), index.sizes)[faces[:, 0]]
+    face = of_polygons(ply, index)
+    of_faces = ply_attributes(face.numbers, "face")
+    attributes = ply_attributes(vertex, "vertex") | {name: values[polygon] for name, values in of_faces.items()}
+    return Geometry(points, np.where(faces >= 0, corners[faces], -1), uv, attributes, {"nx", "ny", "nz"} <= set(vertex))
 
 
 def _columns(columns: dict, names: tuple[str, ...]) -> np.ndarray:
@@ -123,4 +127,5 @@ def _unpacked(stream: bytes, version: int, file: Path) -> Geometry:
     uv = take(n_vertices, 2, real).astype(np.float64) if flags & COORDINATES else None
     color = take(n_vertices, 3, real).astype(np.float64) if flags & COLORS else None
     faces = take(n_faces, 3, np.dtype("<u4" if n_vertices <= 0xFFFFFFFF else "<u8")).astype(np.int64)
-    return Geometry(points, _checked(faces, n_vertices, file), uv, color, bool(flags & NORMALS))
+    attributes = {} if color is None else {"vertex_color": color}
+    return Geometry(points, _checked(faces, n_vertices, file), uv, attributes, bool(flags & NORMALS))

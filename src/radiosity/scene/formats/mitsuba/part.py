@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....errors import SceneError
 from ...model import Back
 from ...parts import Material, Part
+from ...sampler import DEFAULT_SAMPLER
+from .attributes import mean_color, with_colors
 from .bsdf import Side, Sides
-from .color import Color, Colors, Image, VertexColors, equal_energy_rgb
+from .color import Color, Colors, Image, VertexColors, collapse, equal_energy_rgb
 from .node import Node, Spectrum
 from .shapes import Geometry
 
@@ -18,15 +19,18 @@ def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None,
     front, back = (sides.front, sides.back) if sides.opacity > 0 else (Side((0.0,)), None)
     averaged = back is not None and back != front and any(not isinstance(s.albedo, tuple | None) for s in (front, back))
     if back is not None and averaged:
-        front, back = _mean(front), _mean(back)
+        front, back = (_mean(side, geometry, name) for side in (front, back))
     image = front.albedo if isinstance(front.albedo, Image) else None
     emission, glow = _emission(emitter, colors)
+    held = [value if isinstance(value, VertexColors) else None for value in (front.albedo, glow)]
+    geometry, (color, emission_color) = with_colors(geometry, held, name)
+    glow = glow if isinstance(glow, Image) else None
     uv = geometry.uv
     material = Material(
-        reflectance=_base(front, geometry),
+        reflectance=_base(front),
         emission=emission,
         back=Back.OPEN if sides.opacity == 0 else Back.ABSORBS if back is None else Back.RADIATES,
-        back_reflectance=None if back is None or back == front else _base(back, geometry),
+        back_reflectance=None if back is None or back == front else _base(back),
         back_emission=(0.0,),
         diffuse=front.diffuse and (back is None or back.diffuse),
     )
@@ -36,10 +40,13 @@ def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None,
         geometry.faces,
         material,
         uv=None if image is None or uv is None else image.coordinates(uv),
-        color=geometry.color if isinstance(front.albedo, VertexColors) else None,
+        color=color,
+        emission_color=emission_color,
         texture=image and image.pixels,
         emission_texture=glow and glow.pixels,
         emission_uv=None if glow is None or uv is None else glow.coordinates(uv),
+        sampler=image.sampler if image else DEFAULT_SAMPLER,
+        emission_sampler=glow.sampler if glow else DEFAULT_SAMPLER,
     )
     return part, averaged
 
@@ -56,24 +63,22 @@ def as_srgb(part: Part) -> Part:
     return replace(part, material=replace(part.material, emission=emission))
 
 
-def _emission(emitter: Node | None, colors: Colors) -> tuple[Color, Image | None]:
-    """Exitance of the front, and a texture that multiplies it."""
+def _emission(emitter: Node | None, colors: Colors) -> tuple[Color, Image | VertexColors | None]:
+    """Exitance of the front, and what multiplies it."""
     if emitter is None:
         return (0.0,), None
     radiance = colors.get(emitter, "radiance", 1.0, emission=True)
-    if isinstance(radiance, VertexColors):
-        raise SceneError(f"{emitter.place}: a radiance that is a mesh attribute is not read; give an rgb or a bitmap")
-    if isinstance(radiance, Image):
+    if isinstance(radiance, Image | VertexColors):
         return (np.pi,), radiance
     return tuple(np.pi * v for v in radiance), None
 
 
-def _mean(side: Side) -> Side:
+def _mean(side: Side, geometry: Geometry, name: str) -> Side:
+    if isinstance(side.albedo, VertexColors):
+        return replace(side, albedo=collapse(mean_color(geometry, side.albedo, name)))
     return replace(side, albedo=side.albedo.mean) if isinstance(side.albedo, Image) else side
 
 
-def _base(side: Side, geometry: Geometry) -> Color | None:
+def _base(side: Side) -> Color | None:
     """What textures and vertex colours multiply, or the reflectance itself."""
-    if isinstance(side.albedo, VertexColors):
-        return None if geometry.color is None else (1.0,)
-    return (1.0,) if isinstance(side.albedo, Image) else side.albedo
+    return (1.0,) if isinstance(side.albedo, Image | VertexColors) else side.albedo

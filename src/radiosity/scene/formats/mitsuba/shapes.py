@@ -4,7 +4,7 @@ Rectangle and cube are exact. Round shapes become flat faces whose total area is
 their power; their corners lie a little outside the surface.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,14 +22,14 @@ class Geometry:
         vertices: (n, 3).
         faces: (m, 3) or (m, 4), -1 in the last column of a triangle; counterclockwise seen from the front.
         uv: (n, 2) Mitsuba's texture coordinates, or None.
-        color: (n, 1 or 3) linear vertex colours, or None.
+        attributes: colours and numbers by name: (n, 1 or 3) where it begins with vertex_, (m, 1 or 3) with face_.
         own_normals: a mirror leaves the front where it is, as where normals are given; else it turns with the corners.
     """
 
     vertices: np.ndarray
     faces: np.ndarray
     uv: np.ndarray | None = None
-    color: np.ndarray | None = None
+    attributes: dict[str, np.ndarray] = field(default_factory=dict)
     own_normals: bool = True
 
 

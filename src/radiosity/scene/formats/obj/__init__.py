@@ -13,6 +13,7 @@ import numpy as np
 from ....errors import SceneError, shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
+from ...sampler import DEFAULT_SAMPLER
 from ..beside import in_any_case, warn_of_case
 from ..faces import cut, warn_of_crossing
 from ..textures import decode_srgb, warn_of_means, with_means
@@ -97,7 +98,10 @@ def _part(name: str, material: str, rows, tables, finish: Finish | None, crossed
         if finish.material.reflectance is None:
             part = replace(part, material=replace(finish.material, reflectance=(1.0,)))
     base, emissive = finish.base, finish.emissive
-    part = replace(part, texture=base and base.image, emission_texture=emissive and emissive.image)
+    part = replace(
+        part, texture=base and base.image, emission_texture=emissive and emissive.image,
+        sampler=base.sampler if base else DEFAULT_SAMPLER, emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
+    )  # fmt: skip
     if (corners[:, 1] >= 0).all():
         own = uv[corners[:, 1]]
         return replace(part, uv=base and base.uv(own), emission_uv=emissive and emissive.uv(own))

@@ -57,6 +57,8 @@ def read_library(path: Path, options: ReadOptions, codec: str) -> dict[str, Fini
     _warn_of_rest(path, entries)
     if maps.lost:
         warn(f"{path}: textures that cannot be read are left out: {'; '.join(dict.fromkeys(maps.lost))}")
+    if maps.ignored:
+        warn(f"{path}: options of textures that are not followed: {shown(maps.ignored)}; bake them into the image")
     see_through = [
         name
         for name, entry in entries.items()
@@ -99,6 +101,7 @@ def _finish(path: Path, entry: dict, maps: Maps) -> Finish:
         emission=tuple(np.pi * v for v in radiance),
         back=Back.RADIATES,
         diffuse=not (glossy or _number(path, entry, "pm", 0.0) > 0),
+        origin=str(path),
     )
     return Finish(material, base, emissive if any(radiance) else None)
 

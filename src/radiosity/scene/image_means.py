@@ -1,0 +1,107 @@
+"""Means of an image over footprints: parallelograms and triangles in texture coordinates."""
+
+import numpy as np
+
+from .edge_integrals import along_edges, crossings
+from .image_tables import Tables, coarser
+from .repeats import folded
+from .sampler import Sampler
+
+THIN = 1e-4  # texels: what is narrower is taken to be so wide
+AT_ONCE = 1 << 24  # texels times bands of an image of which tables are made at a time
+CROSSINGS = (1 << 10, 1 << 14)  # lines between cells that an edge may cross, least and most; longer edges take larger texels
+ALL_CROSSINGS = 1 << 24  # what the edges of one call share
+NARROW = 8  # footprints are at least so many of those larger texels wide
+
+
+class ImageMeans:
+    """Of one image, (height, width, n_bands), with its sampler.
+
+    Means are exact, but for footprints over thousands of texels whose edges do not lie along the axes: texels at their rim
+    count by the means of larger ones, which errs by less than 0.1 %.
+    """
+
+    def __init__(self, image: np.ndarray, sampler: Sampler):
+        self.n_bands = image.shape[2]
+        self.image = image[:, :, :1] if (image == image[:, :, :1]).all() else image
+        self.sampler = sampler
+        together = max(1, AT_ONCE // (image.shape[0] * image.shape[1]))
+        bands = range(self.image.shape[2])
+        self.groups = [list(bands[i : i + together]) for i in range(0, len(bands), together)]
+        self._known: tuple[tuple, dict[int, Tables]] = ((), {})
+
+    def over(self, origin: np.ndarray, first: np.ndarray, second: np.ndarray, *, triangles: bool) -> np.ndarray:
+        """Means over footprints, (m, n_bands) float64.
+
+        Args:
+            origin, first, second: (m, 2) a corner and the two edges from it, in texture coordinates.
+            triangles: they are halves of parallelograms.
+        """
+        height, width = self.image.shape[:2]
+        origin = np.column_stack([origin[:, 0] * width, (1 - origin[:, 1]) * height])
+        first, second = (edge * (width, -height) for edge in (first, second))
+        origin, first, second, area = _widened(origin, first, second, 1 / 3 if triangles else 0.5)
+        if triangles:
+            starts, edges = [origin, origin + first, origin + second], [first, second - first, -second]
+        else:
+            starts = [origin, origin + first, origin + first + second, origin + second]
+            edges = [first, second, -first, -second]
+        total = np.zeros((len(origin), self.image.shape[2]))
+        start, edge = np.concatenate(starts), np.concatenate(edges)
+        owner, weight = np.tile(np.arange(len(origin)), len(starts)), np.ones(len(start))
+        across = np.abs(area)[owner] / np.maximum(np.linalg.norm(edge, axis=1), 1e-300)
+        x, y = self._tables(self.groups[0], 0).x, self._tables(self.groups[0], 0).y
+        if x.period and y.period:
+            start, edge, weight, which = folded(start, edge, (x.period, y.period), across)
+            owner, across = owner[which], across[which]
+        level = self._levels(start, edge, across)
+        for bands in self.groups:
+            for which in np.unique(level):
+                at = np.flatnonzero(level == which)
+                tables = self._tables(bands, int(which))
+                found = along_edges(tables, start[at], edge[at])
+                for number, band in enumerate(bands):
+                    total[:, band] += np.bincount(owner[at], found[number] * weight[at], len(origin))
+        mean = np.concatenate([self._tables(bands, 0).mean for bands in self.groups])
+        total = mean + total / (area * (0.5 if triangles else 1.0))[:, None]
+        return np.broadcast_to(np.clip(total, 0, None), (len(total), self.n_bands))
+
+    def _levels(self, start: np.ndarray, edge: np.ndarray, across: np.ndarray) -> np.ndarray:
+        """The logarithm of the factor by which texels are larger for an edge; 0 where nothing is left out."""
+        tables = self._tables(self.groups[0], 0)
+        count = crossings(tables, start, edge)
+        most = np.clip(ALL_CROSSINGS // len(count), *CROSSINGS)
+        largest = np.floor(np.log2(np.maximum(across / NARROW, 1)))
+        needed = [np.ceil(np.log2(np.maximum(count / bound, 1))) for bound in (most, CROSSINGS[1])]
+        return np.maximum(np.minimum(needed[0], largest), needed[1]).astype(np.int64)
+
+    def _tables(self, bands: list[int], level: int) -> Tables:
+        """Kept until other bands are asked for."""
+        if self._known[0] != tuple(bands):
+            self._known = (tuple(bands), {})
+        known = self._known[1]
+        level = min(level, max(self.image.shape[:2]).bit_length())
+        if level not in known:
+            image = self.image[:, :, bands]
+            if level == 0:
+                known[0] = Tables(image, self.sampler)
+            else:
+                image, scale = coarser(image, self.sampler, 2**level)
+                known[level] = Tables(image, Sampler(self.sampler.wrap, "nearest"), scale)
+        return known[level]
+
+
+def _widened(origin, first, second, centre: float):
+    """Footprints with an area: edges that are (nearly) parallel, or without a length, as if their smaller singular value were
+    `THIN`. The centre of a footprint stays where it is. Also twice a triangle's signed area, or a parallelogram's."""
+    area = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    longest = np.maximum(np.linalg.norm(first, axis=1), np.linalg.norm(second, axis=1))
+    thin = np.flatnonzero(np.abs(area) < 2 * THIN * np.maximum(longest, THIN))
+    if len(thin):
+        u, size, v = np.linalg.svd(np.stack([first[thin], second[thin]], axis=1))
+        edges = (u * np.maximum(size, THIN)[:, None, :]) @ v
+        origin, first, second = origin.copy(), first.copy(), second.copy()
+        origin[thin] += centre * (first[thin] + second[thin] - edges[:, 0] - edges[:, 1])
+        first[thin], second[thin] = edges[:, 0], edges[:, 1]
+        area[thin] = edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]
+    return origin, first, second, area
