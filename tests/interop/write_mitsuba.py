@@ -7,7 +7,6 @@ from mitsuba_rays import obj_bytes, ply_bytes, serialized_bytes
 
 from .draw import Draw, Sample, Shape
 from .mitsuba_material import bsdf, emitter, no_bsdf
-from .pending import TEXTURES
 
 HABITS = {
     "mirror": 0.3, "uneven scale": 0.4, "meshes": 0.5, "round shapes": 0.3, "instances": 0.25, "twosided": 0.5, "textures": 0.35,
@@ -78,7 +77,7 @@ def _shape(draw: Draw, folder: Path, seed: int, name: str, names: list[str], *, 
     shining = not grouped and "emission" in draw.features and draw.random() < 0.4
     if names and draw.random() < 0.7:
         inside.append(f'<ref id="{draw.one(*names)}"/>')
-    elif "colours" in draw.features and kind == "ply" and TEXTURES and draw.has("mesh attributes", 0.7):
+    elif "colours" in draw.features and kind == "ply" and draw.has("mesh attributes", 0.7):
         file = f"{seed}_{name}.ply"
         (folder / file).write_bytes(_painted(draw, (folder / file).read_bytes()))
         inside.append('<bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance">'

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from .draw import Draw, Sample, Shape, star
 from .images import save_png
-from .pending import TEXTURES
 
 HABITS = {
     "relative indices": 0.2, "line continuation": 0.1, "comments after a face": 0.1, "lines and points": 0.2, "smoothing": 0.3,
@@ -124,7 +123,7 @@ def _library(draw: Draw, folder: Path, seed: int, materials: list[str]) -> list[
 
 
 def _options(draw: Draw) -> str:
-    text = "-clamp on " if TEXTURES and draw.has("texture clamp", 0.2) else ""
+    text = "-clamp on " if draw.has("texture clamp", 0.2) else ""
     if draw.has("texture scale", 0.3):
         text += "-s {:.3f} {:.3f} 1 ".format(*draw.uniform(0.5, 2, 2))
     if draw.has("texture offset", 0.3):
