@@ -89,7 +89,7 @@ def _simple(mesh, material) -> np.ndarray | None:
     if material is None or not hasattr(material, "diffuse"):
         return _painted(mesh)
     if material.name == "material_0":
-        return np.full(3, 0.5)  # its default for a file without materials is another number than ours
+        return None  # its default for a file without materials, which has coordinates but no colours
     diffuse = np.asarray(material.diffuse[:3]) / 255
     if material.image is None:
         return np.broadcast_to(diffuse, (len(mesh.faces), 3))

@@ -40,8 +40,6 @@ SPACE = ("area", "vector", "volume", "bounds")
 CUT = "cuts polygons otherwise, and so weighs the colours of their corners otherwise"
 FAN = "cuts every polygon from its first corner"
 OPTIONS = "does not load a map_Kd that has options"
-SKEWED = "cuts a parallelogram into triangles; ours looks up between four corners"
-
 WHITE = "takes it as white; we say that it is unknown and take 0.5"
 
 EXPLAINED = (
@@ -65,7 +63,6 @@ EXPLAINED = (
     Explained("obj", "trimesh", "texture clamp", ("reflectance",), OPTIONS),
     Explained("obj", "trimesh", "concave polygon", ("area", "volume", "reflectance"), FAN),
     Explained("obj", "trimesh", "coloured polygons", ("reflectance",), CUT),
-    Explained("obj", "trimesh", "skewed coordinates", ("reflectance",), SKEWED),
     Explained("obj", "mitsuba", "line continuation", SPACE, "does not know it, drops corners and says nothing"),
     Explained("obj", "mitsuba", "relative indices", REFUSED, "does not know them"),
     Explained("obj", "mitsuba", "more than four corners", SPACE, "reads the first four corners of a face and says nothing"),
@@ -73,7 +70,6 @@ EXPLAINED = (
     Explained("obj", "blender", "Ke beside a texture", ("power",), "takes the texture in place of Ke, not times Ke"),
     Explained("obj", "blender", "texture clamp", ("reflectance",), "repeats the image whatever -clamp says"),
     Explained("obj", "blender", "coloured polygons", ("reflectance",), CUT),
-    Explained("obj", "blender", "skewed coordinates", COLORS, SKEWED),
     Explained("ply", "trimesh", "lists before", REFUSED, "refuses lists of unequal length before the vertices"),
     Explained("ply", "trimesh", "binary, polygons of several sizes", REFUSED, "refuses them"),
     Explained("ply", "trimesh", "polygons with face colours", ("reflectance",), "loses face colours where it cuts polygons"),

@@ -71,6 +71,9 @@ def _texture(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str) ->
         move = {"offset": draw.uniform(-1, 1, 2).round(3).tolist(), "scale": draw.uniform(0.5, 2, 2).round(3).tolist()}
         if draw.random() < 0.6:
             move["rotation"] = round(float(draw.uniform(-3, 3)), 3)
+        if "second coordinates" in draw.features and draw.random() < 0.4:
+            move["texCoord"] = 1 - use.get("texCoord", 0)
+            draw.features.add("coordinates of the transform")
         use["extensions"] = {"KHR_texture_transform": move}
         buffer.uses("KHR_texture_transform")
     return use
