@@ -261,9 +261,9 @@ def test_binary_ply_headers_of_any_line_end(tmp_path, order, ends):
 
 @pytest.mark.parametrize("order", ["<", ">", ""])
 def test_triangle_strips_of_ply(tmp_path, order):
-    """Two strips, a restart in one, and a corner twice to turn round; all face one way."""
+    """Three strips, of odd and even places, a restart in one; all face one way."""
     points = [[x, y, 0] for x in range(4) for y in (0, 1)]
-    strips = [[1, 0, 3, 2, 5, 4], [5, 4, 7, -1, 6, 7, 4]]
+    strips = [[1, 0, 3, 2, 5], [5, 2, 4], [5, 4, 7, -1, 6, 7, 4]]
     head = VERTICES.replace("4", "8") + f"element tristrips {len(strips)}\nproperty list int int vertex_indices\n"
     if order:
         name = {"<": "little", ">": "big"}[order]

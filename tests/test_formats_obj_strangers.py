@@ -73,6 +73,17 @@ def test_code_pages_of_comments_do_not_matter(load):
     assert load("# créé par X\n".encode("cp1252") + FACE.encode()).area.tolist() == [1]
 
 
+@pytest.mark.parametrize(("codec", "names"), [
+    ("gb18030", "书架 吊扇 烤箱"), ("gb18030", "毛巾 相框 电视"), ("cp950", "書架 吊扇 烤箱"), ("cp950", "圍欄 汽車 道路"),
+    ("cp932", "皿 植木鉢 柵"), ("cp932", "絨毯 引き出し 蛇口"), ("cp949", "책장 선풍기 오븐"), ("cp949", "접시 화분 울타리"),
+    ("cp1252", "piñón armário chão"), ("cp1251", "полка духовка зеркало"),
+])  # fmt: skip
+def test_three_names_tell_the_code_page(codec, names):
+    """Also names whose characters are none that the reader expects in rooms."""
+    with pytest.warns(RadiosityWarning, match="not UTF-8"):
+        assert decode(f"o {names}\n".encode(codec), "x").text == f"o {names}\n"
+
+
 def test_a_library_may_be_of_another_code_page_than_the_file(load):
     scene, told = texts(load, FACE.replace("grey", "Wände"), "newmtl Wände\nKd 0.3 0.3 0.3\n".encode("cp1252"))
     assert scene.reflectance.tolist() == [[0.3]]
@@ -83,6 +94,11 @@ def test_marks_that_do_not_go_on_are_damage(tmp_path):
     (tmp_path / "x.obj").write_bytes(b"\xff\xfev\0 ")
     with pytest.raises(SceneError, match=r"x\.obj: begins as UTF-16 text does.*damaged"):
         rd.load_scene(tmp_path / "x.obj")
+
+
+def test_a_very_long_line_is_looked_through_once(recwarn):
+    """Looking for a byte from each place of the line on would take hours."""
+    assert len(decode(b"a" * 2_000_000 + b"\n\xe9\n", "x").text) == 2_000_003
 
 
 def test_bytes_that_no_code_page_has_do_not_end_the_reader(recwarn):

@@ -47,18 +47,14 @@ class ImageMeans:
             starts = [origin, origin + first, origin + first + second, origin + second]
             edges = [first, second, -first, -second]
         total = np.zeros((len(origin), self.image.shape[2]))
-        start, edge = np.concatenate(starts), np.concatenate(edges)
-        owner, weight = np.tile(np.arange(len(origin)), len(starts)), np.ones(len(start))
+        start, edge, owner = np.concatenate(starts), np.concatenate(edges), np.tile(np.arange(len(origin)), len(starts))
         across = np.abs(area)[owner] / np.maximum(np.linalg.norm(edge, axis=1), 1e-300)
-        x, y = self._tables(self.groups[0], 0).x, self._tables(self.groups[0], 0).y
-        if x.period and y.period:
-            start, edge, weight, which = folded(start, edge, (x.period, y.period), across)
-            owner, across = owner[which], across[which]
-        level = self._levels(start, edge, across)
+        start, edge, weight, which, level = self._followed(start, edge, across)
+        owner = owner[which]
         for bands in self.groups:
-            for which in np.unique(level):
-                at = np.flatnonzero(level == which)
-                tables = self._tables(bands, int(which))
+            for scale in np.unique(level):
+                at = np.flatnonzero(level == scale)
+                tables = self._tables(bands, int(scale))
                 found = along_edges(tables, start[at], edge[at])
                 for number, band in enumerate(bands):
                     total[:, band] += np.bincount(owner[at], found[number] * weight[at], len(origin))
@@ -66,14 +62,25 @@ class ImageMeans:
         total = mean + total / (area * (0.5 if triangles else 1.0))[:, None]
         return np.broadcast_to(np.clip(total, 0, None), (len(total), self.n_bands))
 
-    def _levels(self, start: np.ndarray, edge: np.ndarray, across: np.ndarray) -> np.ndarray:
-        """The logarithm of the factor by which texels are larger for an edge; 0 where nothing is left out."""
+    def _followed(self, start: np.ndarray, edge: np.ndarray, across: np.ndarray):
+        """Edges as `folded` gives them, but for its last, and the logarithm of the factor by which texels are larger for each.
+
+        The factor is 1 where an edge crosses few texels. What edges that come back to a place leave out there is left out each
+        time, so they keep more.
+
+        Args:
+            start, edge: (m, 2) texel coordinates.
+            across: (m,) texels, the footprints' widths.
+        """
         tables = self._tables(self.groups[0], 0)
-        count = crossings(tables, start, edge)
-        most = np.clip(ALL_CROSSINGS // len(count), *CROSSINGS)
-        largest = np.floor(np.log2(np.maximum(across / NARROW, 1)))
-        needed = [np.ceil(np.log2(np.maximum(count / bound, 1))) for bound in (most, CROSSINGS[1])]
-        return np.maximum(np.minimum(needed[0], largest), needed[1]).astype(np.int64)
+        most = np.clip(ALL_CROSSINGS // len(start), *CROSSINGS)
+        wanted = np.ceil(np.log2(np.maximum(crossings(tables, start, edge) / most, 1)))
+        weight, which, run = np.ones(len(start)), np.arange(len(start)), np.full(len(start), np.inf)
+        if tables.x.period and tables.y.period:
+            start, edge, weight, which, run = folded(start, edge, (tables.x.period, tables.y.period), across)
+        largest = np.floor(np.log2(np.maximum(np.minimum(across / NARROW, np.sqrt(run)), 1)))
+        needed = np.ceil(np.log2(np.maximum(crossings(tables, start, edge) / CROSSINGS[1], 1)))
+        return start, edge, weight, which, np.maximum(np.minimum(wanted, largest)[which], needed).astype(np.int64)
 
     def _tables(self, bands: list[int], level: int) -> Tables:
         """Kept until other bands are asked for."""

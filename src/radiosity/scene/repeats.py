@@ -10,7 +10,8 @@ FRACTIONS = np.array(sorted({(p / q, p, q) for q in range(1, HIGHEST + 1) for p 
 
 
 def folded(start: np.ndarray, edge: np.ndarray, period: tuple[float, float], width: np.ndarray):
-    """The edges with which to go on: starts, vectors, how often each counts, and the number of the edge that it stands for.
+    """The edges with which to go on: starts, vectors, how often each counts, and the number of the edge that it stands for; and
+    (m,) of the given edges the periods that they run over if their direction is one that comes back, or infinity.
 
     Args:
         start, edge: (m, 2), and the periods along x and y, in texels.
@@ -23,11 +24,13 @@ def folded(start: np.ndarray, edge: np.ndarray, period: tuple[float, float], wid
     at -= ratio - FRACTIONS[at - 1, 0] < FRACTIONS[at, 0] - ratio
     miss = np.abs(ratio - FRACTIONS[at, 0]) * longer * max(period)
     times = np.floor(longer / FRACTIONS[at, 2])
-    fits = (np.abs(ratio - FRACTIONS[at, 0]) < TOLERANCE) & (miss * HIGHEST < width) & (times >= 2) & (ratio > 0)
+    back = (np.abs(ratio - FRACTIONS[at, 0]) < TOLERANCE) & (ratio > 0)
+    fits = back & (miss * HIGHEST < width) & (times >= 2)
     again, other = np.flatnonzero(fits), np.flatnonzero(~fits)
     once = edge[again] * (FRACTIONS[at, 2] / np.maximum(longer, 1e-300))[again, None]
     many = times[again, None]
     starts = [start[other], start[again], start[again] + once * many]
     edges = [edge[other], once, edge[again] - once * many]
     count = [np.ones(len(other)), times[again], np.ones(len(again))]
-    return np.concatenate(starts), np.concatenate(edges), np.concatenate(count), np.concatenate([other, again, again])
+    which = np.concatenate([other, again, again])
+    return np.concatenate(starts), np.concatenate(edges), np.concatenate(count), which, np.where(back, longer, np.inf)

@@ -69,17 +69,17 @@ def instances(file: GltfFile, node: Node, size: int) -> np.ndarray | None:
         return None
     what, given = f"the instances of '{node.name}'", {}
     attributes = file.dictionary(info.get("attributes", {}), f"attributes of {what}")
-    for key, width in INSTANCED.items():
-        if key in attributes:
-            given[key] = accessor(file, attributes[key]).astype(np.float64)
-            if given[key].shape[1] != width:
-                raise file.fail(f"{key} of {what} has {given[key].shape[1]} numbers each; expected {width}")
-    counts = {key: len(values) for key, values in given.items()}
+    held = {key: attributes[key] for key in INSTANCED if key in attributes}
+    counts = {key: file.whole(file.item("accessors", index), "count", what) for key, index in held.items()}
     if len(set(counts.values())) != 1:
         raise file.fail(f"the attributes of {what} have {counts or 'no'} entries; expected equal counts of {shown(INSTANCED)}")
     count = next(iter(counts.values()))
     if count * max(size, 1) > MOST_INSTANCED:
         raise file.fail(f"{what} are {count} of {size} faces or vertices; at most {MOST_INSTANCED} are read: split the scene")
+    for key, index in held.items():
+        given[key] = accessor(file, index).astype(np.float64)
+        if given[key].shape[1] != INSTANCED[key]:
+            raise file.fail(f"{key} of {what} has {given[key].shape[1]} numbers each; expected {INSTANCED[key]}")
     rotation = given.get("ROTATION", np.tile([0.0, 0.0, 0.0, 1.0], (count, 1)))
     if not rotation.any(axis=1).all():
         raise file.fail(f"ROTATION of {what} holds a zero; expected unit quaternions")
