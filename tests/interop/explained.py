@@ -62,7 +62,6 @@ EXPLAINED = (
     Explained("obj", "trimesh", "texture offset", ("reflectance",), OPTIONS),
     Explained("obj", "trimesh", "texture clamp", ("reflectance",), OPTIONS),
     Explained("obj", "trimesh", "concave polygon", ("area", "volume", "reflectance"), FAN),
-    Explained("obj", "trimesh", "coloured polygons", ("reflectance",), CUT),
     Explained("obj", "mitsuba", "line continuation", SPACE, "does not know it, drops corners and says nothing"),
     Explained("obj", "mitsuba", "relative indices", REFUSED, "does not know them"),
     Explained("obj", "mitsuba", "more than four corners", SPACE, "reads the first four corners of a face and says nothing"),
