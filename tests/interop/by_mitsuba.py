@@ -45,27 +45,32 @@ def rays(path, ours, features: set[str]) -> list[Difference]:
 
 
 def _surface(mitsuba, shape) -> Surface:
-    text = str(shape)
-    varied = any(word in text for word in ("BitmapTexture", "Checkerboard", "MeshAttribute"))
-    reflectances, radiances, normals, weights, both = [], [], [], [], False
-    for si, weight in (_mesh_points if shape.is_mesh() else _round_points)(mitsuba, shape, varied):
-        weights.append(weight)
-        normals.append(np.array(si.sh_frame.n, float))
-        si.wi = [0, 0, 1]
-        reflectances.append(np.array(shape.bsdf().eval_diffuse_reflectance(si), float))
-        radiances.append(np.array(shape.emitter().eval(si), float) if shape.is_emitter() else np.zeros(3))
-        si.wi = [0, 0, -1]
-        both |= bool(np.any(np.array(shape.bsdf().eval(mitsuba.BSDFContext(), si, [0, 0, -1])) > 0))
+    points = _mesh_points if shape.is_mesh() else _round_points
+    bsdf, lamp = shape.bsdf(), shape.emitter() if shape.is_emitter() else None
     area, box = float(shape.surface_area()), shape.bbox()
+
+    def mean(of, varied: bool) -> np.ndarray:
+        rows = [(np.array(of(si), float), weight) for si, weight in points(mitsuba, shape, varied)]
+        return np.average([value for value, _ in rows], axis=0, weights=[weight for _, weight in rows])
+
+    def back(si) -> float:
+        si.wi = [0, 0, -1]
+        return float(np.max(np.array(bsdf.eval(mitsuba.BSDFContext(), si, [0, 0, -1]))))
+
+    reflectance = mean(bsdf.eval_diffuse_reflectance, _varies(bsdf))
     return Surface(
         area=area,
         bounds=np.array([box.min, box.max], float),
-        vector=area * np.average(normals, axis=0, weights=weights) if shape.is_mesh() else None,
-        sides=2 if both else 1 if np.any(reflectances) else None,  # of black ones both sides are alike
-        reflectance=np.average(reflectances, axis=0, weights=weights),
-        power=np.pi * area * np.average(radiances, axis=0, weights=weights),
-        sampled=varied,
+        vector=area * mean(lambda si: si.sh_frame.n, False) if shape.is_mesh() else None,
+        sides=2 if mean(back, False) > 0 else 1 if reflectance.any() else None,  # of black ones both sides are alike
+        reflectance=reflectance,
+        power=np.pi * area * mean(lamp.eval, _varies(lamp)) if lamp else np.zeros(3),
+        sampled=_varies(bsdf) or (lamp is not None and _varies(lamp)),
     )
+
+
+def _varies(thing) -> bool:
+    return any(word in str(thing) for word in ("BitmapTexture", "Checkerboard", "MeshAttribute"))
 
 
 def _mesh_points(mitsuba, shape, varied: bool):
@@ -78,7 +83,9 @@ def _mesh_points(mitsuba, shape, varied: bool):
         area = np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0]))
         for weights in at:
             hit.prim_uv = weights[1:]
-            yield shape.compute_surface_interaction(ray, hit, mitsuba.RayFlags.All), area
+            si = shape.compute_surface_interaction(ray, hit, mitsuba.RayFlags.All)
+            si.wi = [0, 0, 1]
+            yield si, area
 
 
 def _round_points(mitsuba, shape, varied: bool):
@@ -86,7 +93,9 @@ def _round_points(mitsuba, shape, varied: bool):
     steps = (np.arange(ALONG if varied else 1) + 0.5) / (ALONG if varied else 1)
     for u in steps:
         for v in steps:
-            yield mitsuba.SurfaceInteraction3f(shape.sample_position(0, [u, v]), mitsuba.Color0f()), 1.0
+            si = mitsuba.SurfaceInteraction3f(shape.sample_position(0, [u, v]), mitsuba.Color0f())
+            si.wi = [0, 0, 1]
+            yield si, 1.0
 
 
 def _triangles(shape) -> np.ndarray:

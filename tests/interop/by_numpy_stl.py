@@ -1,4 +1,4 @@
-"""numpy-stl as the second reader of STL (our reader uses trimesh's, so trimesh cannot be it)."""
+"""numpy-stl as the second reader of STL, which tells solids apart by name."""
 
 import warnings
 

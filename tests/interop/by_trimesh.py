@@ -1,4 +1,4 @@
-"""trimesh as the second reader of PLY, OBJ and glTF."""
+"""trimesh as the second reader of PLY, OBJ, STL and glTF."""
 
 import logging
 
@@ -23,6 +23,17 @@ def ply(path) -> Reading:
     if not named and mesh.visual.kind == "texture":
         return {path.stem: surface(mesh.triangles)}  # coordinates alone: it takes an image of its own, and no colours
     return {path.stem: surface(mesh.triangles, reflectance=_painted(mesh), sampled=named)}
+
+
+def stl(path) -> Reading:
+    """All solids as one surface: it renames those without a name."""
+    import trimesh
+
+    try:
+        scene = trimesh.load_scene(path, process=False)
+    except Exception as error:
+        raise Refused(f"{type(error).__name__}: {error}") from None
+    return {name: surface(mesh.triangles) for name, mesh in scene.geometry.items()}
 
 
 def obj(path) -> Reading:
@@ -78,7 +89,7 @@ def _simple(mesh, material) -> np.ndarray | None:
     if material is None or not hasattr(material, "diffuse"):
         return _painted(mesh)
     if material.name == "material_0":
-        return np.full(3, 0.5)  # its default for a file without materials is another number than ours
+        return None  # its default for a file without materials, which has coordinates but no colours
     diffuse = np.asarray(material.diffuse[:3]) / 255
     if material.image is None:
         return np.broadcast_to(diffuse, (len(mesh.faces), 3))

@@ -40,9 +40,7 @@ SPACE = ("area", "vector", "volume", "bounds")
 CUT = "cuts polygons otherwise, and so weighs the colours of their corners otherwise"
 FAN = "cuts every polygon from its first corner"
 OPTIONS = "does not load a map_Kd that has options"
-SKEWED = "cuts a parallelogram into triangles; ours looks up between all four corners"
-
-WHITE = "takes a material without a base colour as white; we say that it is unknown and take 0.5"
+WHITE = "takes it as white; we say that it is unknown and take 0.5"
 
 EXPLAINED = (
     Explained("gltf", "trimesh", "sparse", SPACE + COLORS, "leaves sparse values out and says nothing"),
@@ -64,8 +62,6 @@ EXPLAINED = (
     Explained("obj", "trimesh", "texture offset", ("reflectance",), OPTIONS),
     Explained("obj", "trimesh", "texture clamp", ("reflectance",), OPTIONS),
     Explained("obj", "trimesh", "concave polygon", ("area", "volume", "reflectance"), FAN),
-    Explained("obj", "trimesh", "coloured polygons", ("reflectance",), CUT),
-    Explained("obj", "trimesh", "skewed coordinates", ("reflectance",), SKEWED),
     Explained("obj", "mitsuba", "line continuation", SPACE, "does not know it, drops corners and says nothing"),
     Explained("obj", "mitsuba", "relative indices", REFUSED, "does not know them"),
     Explained("obj", "mitsuba", "more than four corners", SPACE, "reads the first four corners of a face and says nothing"),
@@ -73,7 +69,6 @@ EXPLAINED = (
     Explained("obj", "blender", "Ke beside a texture", ("power",), "takes the texture in place of Ke, not times Ke"),
     Explained("obj", "blender", "texture clamp", ("reflectance",), "repeats the image whatever -clamp says"),
     Explained("obj", "blender", "coloured polygons", ("reflectance",), CUT),
-    Explained("obj", "blender", "skewed coordinates", COLORS, SKEWED),
     Explained("ply", "trimesh", "lists before", REFUSED, "refuses lists of unequal length before the vertices"),
     Explained("ply", "trimesh", "binary, polygons of several sizes", REFUSED, "refuses them"),
     Explained("ply", "trimesh", "polygons with face colours", ("reflectance",), "loses face colours where it cuts polygons"),
@@ -84,6 +79,7 @@ EXPLAINED = (
     Explained("ply", "mitsuba", "obj_info", REFUSED, "does not know the header line obj_info"),
     Explained("ply", "blender", "coloured polygons", ("reflectance",), CUT),
     Explained("ply", "blender", "texture", ("reflectance",), "does not read the comment TextureFile"),
+    Explained("stl", "trimesh", "trailing bytes", REFUSED, "refuses bytes after the last triangle"),
     Explained("stl", "numpy-stl", "solid, trailing bytes", REFUSED, "takes a binary file that begins with solid for text then"),
     Explained("stl", "blender", "solid, trailing bytes", REFUSED, "takes a binary file that begins with solid for text then"),
     Explained("stl", "blender", "upper case", REFUSED, "reads no facet whose keywords are capitals, and says nothing"),

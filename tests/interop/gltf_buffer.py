@@ -37,7 +37,9 @@ class Buffer:
             stride += 4 * int(self._draw.integers(0, 3))
         table = np.zeros((len(stored), stride), np.uint8)
         table[:, :row] = stored.view(np.uint8).reshape(len(stored), row)
-        info = {"bufferView": self.view(table.tobytes(), **({"byteStride": stride} if stride != row else {}))}
+        before = b"\7" * 4 * int(self._draw.integers(0, 3)) if self._draw.random() < 0.3 else b""
+        info: dict = {"bufferView": self.view(before + table.tobytes(), **({"byteStride": stride} if stride != row else {}))}
+        info |= {"byteOffset": len(before)} if before else {}
         info |= {"componentType": KINDS[dtype], "count": len(stored), "type": TYPES[width], **more}
         if bounds:
             info |= {"min": stored.min(axis=0).tolist(), "max": stored.max(axis=0).tolist()}

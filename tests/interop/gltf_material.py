@@ -6,7 +6,6 @@ from pathlib import Path
 from .draw import Draw
 from .gltf_buffer import Buffer
 from .images import save_png
-from .pending import TEXTURES
 
 REPEAT, MIRROR, CLAMP = 10497, 33648, 33071
 LINEAR, NEAREST = 9729, 9728
@@ -56,14 +55,12 @@ def _texture(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str) ->
     tree.setdefault("images", []).append(image)
     texture = {"source": len(tree["images"]) - 1}
     if draw.has("samplers", 0.5):
-        sampler = {"magFilter": LINEAR, "wrapS": REPEAT}
-        if TEXTURES:
-            sampler = {"magFilter": draw.one(LINEAR, LINEAR, NEAREST)}
-            sampler |= {key: draw.one(REPEAT, MIRROR, CLAMP) for key in ("wrapS", "wrapT") if draw.random() < 0.7}
-            draw.features |= {"nearest filter"} if sampler["magFilter"] == NEAREST else set()
-            wraps = {sampler.get(key, REPEAT) for key in ("wrapS", "wrapT")}
-            draw.features |= {"wraps"} if wraps != {REPEAT} else set()
-            draw.features |= {"unequal wraps"} if len(wraps) > 1 else set()
+        sampler = {"magFilter": draw.one(LINEAR, LINEAR, NEAREST)}
+        sampler |= {key: draw.one(REPEAT, MIRROR, CLAMP) for key in ("wrapS", "wrapT") if draw.random() < 0.7}
+        draw.features |= {"nearest filter"} if sampler["magFilter"] == NEAREST else set()
+        wraps = {sampler.get(key, REPEAT) for key in ("wrapS", "wrapT")}
+        draw.features |= {"wraps"} if wraps != {REPEAT} else set()
+        draw.features |= {"unequal wraps"} if len(wraps) > 1 else set()
         tree.setdefault("samplers", []).append(sampler)
         texture["sampler"] = len(tree["samplers"]) - 1
     tree.setdefault("textures", []).append(texture)
@@ -74,6 +71,9 @@ def _texture(draw: Draw, tree: dict, buffer: Buffer, folder: Path, stem: str) ->
         move = {"offset": draw.uniform(-1, 1, 2).round(3).tolist(), "scale": draw.uniform(0.5, 2, 2).round(3).tolist()}
         if draw.random() < 0.6:
             move["rotation"] = round(float(draw.uniform(-3, 3)), 3)
+        if "second coordinates" in draw.features and draw.random() < 0.4:
+            move["texCoord"] = 1 - use.get("texCoord", 0)
+            draw.features.add("coordinates of the transform")
         use["extensions"] = {"KHR_texture_transform": move}
         buffer.uses("KHR_texture_transform")
     return use

@@ -4,7 +4,6 @@ from pathlib import Path
 
 from .draw import Draw
 from .images import save_png
-from .pending import TEXTURES
 
 
 def bsdf(draw: Draw, folder: Path, stem: str, words: str, *, textured: bool = True) -> str:
@@ -70,10 +69,9 @@ def _bitmap(draw: Draw, folder: Path, stem: str, name: str) -> str:
     more = _to_uv(draw)
     if draw.has("raw images", 0.2):
         more += '<boolean name="raw" value="true"/>'
-    if TEXTURES:
-        wrap, filtered = draw.one("repeat", "mirror", "clamp"), draw.one("bilinear", "nearest")
-        draw.features |= {f"wrap {wrap}", f"filter {filtered}"}
-        more += f'<string name="wrap_mode" value="{wrap}"/><string name="filter_type" value="{filtered}"/>'
+    wrap, filtered = draw.one("repeat", "mirror", "clamp"), draw.one("bilinear", "nearest")
+    draw.features |= {f"wrap {wrap}", f"filter {filtered}"}
+    more += f'<string name="wrap_mode" value="{wrap}"/><string name="filter_type" value="{filtered}"/>'
     return f'<texture type="bitmap" name="{name}"><string name="filename" value="{stem}.png"/>{more}</texture>'
 
 

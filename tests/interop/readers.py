@@ -94,6 +94,7 @@ FORMATS = {
     "stl": Format(
         write_stl.write,
         {
+            "trimesh": Reader(each(by_trimesh.stl), whole=True, missing=TRIMESH),
             "numpy-stl": Reader(each(by_numpy_stl.read), missing=_needs("stl")),
             "blender": _blender(lambda path: lambda thing, material: "all", whole=True, color=False),
         },

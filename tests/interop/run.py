@@ -10,10 +10,8 @@ from radiosity.errors import RadiosityWarning
 
 from .compare import Difference, Outcome, differences
 from .draw import Sample
-from .pending import TEXTURES
 from .record import Reading, Refused, merged, ours
 
-CELLS = 1 if TEXTURES else 12  # our patches along an edge
 ReadAll = Callable[[list[Path], Path], "list[Reading | Refused]"]
 
 
@@ -61,7 +59,7 @@ def run(folder: Path, write: Callable[[Path, int], Sample], seeds: Iterable[int]
     outcome = Outcome()
     for sample, theirs in zip(samples, reader.read([sample.path for sample in samples], folder), strict=True):
         scene = load(sample.path)
-        mine = {key: one for key, one in ours(scene, CELLS).items() if not key.startswith(reader.hidden)}
+        mine = {key: one for key, one in ours(scene).items() if not key.startswith(reader.hidden)}
         if isinstance(theirs, Refused) or not theirs:
             found = [Difference("*", "refused", "faces", [str(theirs) if theirs else "nothing is read, and nothing is said"])]
         elif reader.whole:

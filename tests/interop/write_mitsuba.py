@@ -7,12 +7,11 @@ from mitsuba_rays import obj_bytes, ply_bytes, serialized_bytes
 
 from .draw import Draw, Sample, Shape
 from .mitsuba_material import bsdf, emitter, no_bsdf
-from .pending import TEXTURES
 
 HABITS = {
     "mirror": 0.3, "uneven scale": 0.4, "meshes": 0.5, "round shapes": 0.3, "instances": 0.25, "twosided": 0.5, "textures": 0.35,
-    "flipped normals": 0.15, "face normals": 0.2, "shared BSDFs": 0.4, "parameters": 0.2, "includes": 0.15, "merge": 0.1,
-    "other emitters": 0.15, "sensors": 0.2, "emission": 0.5, "plastics": 0.2, "conductors": 0.1, "spectra": 0.2,
+    "flipped normals": 0.15, "face normals": 0.2, "shared BSDFs": 0.4, "parameters": 0.2, "includes": 0.15,
+    "other emitters": 0.15, "sensors": 0.2, "look-at": 0.2, "emission": 0.5, "plastics": 0.2, "conductors": 0.1, "spectra": 0.2,
     "constant spectra": 0.15, "colours": 0.6,
 }  # fmt: skip  # chance that a file has any of it
 MESHES = {"obj": obj_bytes, "ply": ply_bytes, "serialized": serialized_bytes}
@@ -78,7 +77,7 @@ def _shape(draw: Draw, folder: Path, seed: int, name: str, names: list[str], *, 
     shining = not grouped and "emission" in draw.features and draw.random() < 0.4
     if names and draw.random() < 0.7:
         inside.append(f'<ref id="{draw.one(*names)}"/>')
-    elif "colours" in draw.features and kind == "ply" and TEXTURES and draw.has("mesh attributes", 0.7):
+    elif "colours" in draw.features and kind == "ply" and draw.has("mesh attributes", 0.7):
         file = f"{seed}_{name}.ply"
         (folder / file).write_bytes(_painted(draw, (folder / file).read_bytes()))
         inside.append('<bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance">'
@@ -126,6 +125,9 @@ def _transform(draw: Draw, *, even: bool) -> str:
     if "parameters" in draw.features:
         steps.append('<scale value="$size"/>')
     steps.append('<rotate x="{:.9f}" y="{:.9f}" z="{:.9f}" angle="{:.3f}"/>'.format(*axis, draw.uniform(0, 360)))
+    if "look-at" in draw.features and draw.random() < 0.5:
+        target = ", ".join(f"{v:.3f}" for v in draw.uniform(-5, 5, 3))
+        steps.append(f'<lookat origin="1, 2, 0.5" target="{target}" up="0.1, 0.2, 1"/>')
     if not even and draw.has("matrices", 0.2):
         shear = np.eye(4)
         shear[:3, :3] += draw.uniform(-0.2, 0.2, (3, 3))

@@ -5,11 +5,10 @@ from pathlib import Path
 
 from .draw import Draw, Sample, Shape, star
 from .images import save_png
-from .pending import TEXTURES
 
 HABITS = {
     "relative indices": 0.2, "line continuation": 0.1, "comments after a face": 0.1, "lines and points": 0.2, "smoothing": 0.3,
-    "normals": 0.4, "coordinates": 0.4, "materials within an object": 0.4,
+    "fourth coordinate": 0.1, "normals": 0.4, "coordinates": 0.4, "materials within an object": 0.4,
 }  # chance that a file has any of it
 
 
@@ -27,7 +26,7 @@ def write(folder: Path, seed: int) -> Sample:
     for feature, chance in HABITS.items():
         draw.has(feature, chance)
     text = Text(["# written at random"])
-    materials = [draw.one(f"mat{i}", f"mat.{i}", f"Mat-{i}") for i in range(int(draw.integers(1, 4)))]
+    materials = [draw.one(f"mat{i}", f"mat.{i}", f"Mat-{i}", f"mat of {i}") for i in range(int(draw.integers(1, 4)))]
     library = draw.one(f"{seed}.mtl", f"of {seed}.mtl") if draw.has("library name with a blank", 0.15) else f"{seed}.mtl"
     if draw.has("no library", 0.1):
         materials = []
@@ -67,10 +66,12 @@ def _object(draw: Draw, text: Text, number: int, shape: Shape, materials: list[s
     with_normals = "normals" in draw.features
     for row in shape.points:
         colors = [f"{v:.4f}" for v in draw.uniform(0.1, 0.9, 3)] if painted else []
+        colors = ["1.0"] if "fourth coordinate" in draw.features and not painted else colors
         text.lines.append(" ".join(["v", *(repr(float(v)) for v in row), *colors]))
     text.points += len(shape.points)
     if with_uv:
-        text.lines += [f"vt {u:.5f} {v:.5f}" for u, v in shape.uv]
+        third = " 0" if draw.has("third texture coordinate", 0.2) else ""
+        text.lines += [f"vt {u:.5f} {v:.5f}{third}" for u, v in shape.uv]
         text.coordinates += len(shape.uv)
     if with_normals:
         text.lines += ["vn 0 0 1"]
@@ -108,6 +109,8 @@ def _library(draw: Draw, folder: Path, seed: int, materials: list[str]) -> list[
         textured = draw.has("textures", 0.3)
         tinted = not textured or draw.has("Kd beside a texture", 0.4)
         lines.append("\tKd " + " ".join(f"{v}" for v in (draw.color() if tinted else [1.0] * 3)))
+        if draw.has("habits of programs", 0.3):
+            lines += ["Tf 1 1 1", "Ni 1.45", "sharpness 60", "map_Bump -bm 0.2 nothing.png"][: int(draw.integers(1, 4))]
         if draw.has("specular", 0.3):
             lines += ["Ks 0.3 0.3 0.3", "Ns 50", "illum 2"]
         if draw.has("transparency", 0.1):
@@ -124,7 +127,7 @@ def _library(draw: Draw, folder: Path, seed: int, materials: list[str]) -> list[
 
 
 def _options(draw: Draw) -> str:
-    text = "-clamp on " if TEXTURES and draw.has("texture clamp", 0.2) else ""
+    text = "-clamp on " if draw.has("texture clamp", 0.2) else ""
     if draw.has("texture scale", 0.3):
         text += "-s {:.3f} {:.3f} 1 ".format(*draw.uniform(0.5, 2, 2))
     if draw.has("texture offset", 0.3):
@@ -133,5 +136,6 @@ def _options(draw: Draw) -> str:
 
 
 def _image(draw: Draw, folder: Path, name: str) -> str:
+    name = f"image {name}" if draw.has("image name with a blank", 0.2) else name
     save_png(folder / name, draw.image())
     return name

@@ -436,6 +436,10 @@ MISTAKES = (
             ("test_cli_solve.py::test_check_prints_what_there_is",), "emitters come last"),
     Mistake("lab/sight.py", "seen = (hits.face >= 0) & hits.front", "seen = hits.face >= 0",
             ("test_lab_numbers.py",), "backs are seen as fronts"),
+    Mistake("scene/formats/mitsuba/inspection.py", "if angle and abs(length - 1) > UNIT", "if abs(length - 1) > UNIT",
+            ("test_formats_mitsuba_faults.py",), "rotations by no angle are told"),
+    Mistake("scene/formats/mitsuba/inspection.py", "_filled(text, defaults) for key, text in", "text for key, text in",
+            ("test_formats_mitsuba_faults.py",), "parameters of an axis are not seen"),
     # ---- of a fourth round, of 40 written down before any was run
     Mistake("engine/snapshot.py", "groups.index] * groups.scale / self.replicates", "groups.index] * groups.scale",
             ("test_few_lines.py", "test_intervals.py", "test_targets.py"), "a line of a replicate is taken for one of the mean"),
