@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.scene import Back
+from radiosity.scene import Back, image_means
 from radiosity.scene.assemble import Material, Part, ReadOptions, assemble
 from radiosity.scene.paint import Paint
 from radiosity.scene.ramp import mean_below
@@ -104,6 +104,16 @@ def test_limits_do_not_depend_on_the_patch_size():
         for cells in (1, 4, 32):  # texels of 0.16 and 0.6 where the colour is brightest
             found = rd.subdivide(replace(both, reflectance_paint=paint), cells=cells).reflectance
             np.testing.assert_allclose(found.mean(), 0.16 / 8 + 0.6 * 3 / 8, rtol=1e-3)
+
+
+def test_bands_of_large_images_one_after_another(monkeypatch):
+    image = generator(2).random((9, 7, 3))
+    scene, paint = painted(HALVES, image, CORNERS * 3.3, color=generator(3).random((4, 3)), limit=0.4,
+                           reflectance=[0.5, 0.9, 0.2], emission=[1, 1, 1])  # fmt: skip
+    scene = replace(scene, reflectance_paint=paint)
+    together = rd.subdivide(scene, cells=4).reflectance
+    monkeypatch.setattr(image_means, "AT_ONCE", 1)
+    np.testing.assert_allclose(rd.subdivide(scene, cells=4).reflectance, together, rtol=1e-12)
 
 
 def test_means_of_ramps_that_are_cut_off(random):
