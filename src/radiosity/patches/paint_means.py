@@ -16,8 +16,8 @@ from ..scene.paint import Paint, between
 from ..scene.ramp import mean_below
 from . import cells
 
-FINEST = 32  # parts along the edge of a cell
-PARTS = 64  # along the edge of a cell where colours vary by as much as the brightest
+FINEST = (32, 128)  # parts along the edge of a cell where there are many of them, and where there are few
+ALL_PARTS = 1 << 20  # what makes many
 BENT_PARTS = 16  # where texture coordinates are not linear
 BENT = 1e-4  # of their extent over a face: what differs less from linear is linear
 
@@ -149,11 +149,12 @@ def _parts(at: np.ndarray, colors: np.ndarray, grid: Grid) -> np.ndarray:
     top = np.maximum(colors[grid.owner].max(axis=1), 1e-30)
     across = (np.abs(color[0]) + np.abs(color[2])) / top / grid.columns[:, None]
     along = (np.abs(color[1]) + np.abs(color[2])) / top / grid.rows[:, None]
-    wanted = PARTS * np.maximum(across, along).max(axis=1)
+    finest = int(np.clip(np.sqrt(ALL_PARTS / max(len(grid.owner), 1)), *FINEST))
+    wanted = 2 * finest * np.maximum(across, along).max(axis=1)  # cells whose colours vary by half are cut into the finest parts
     extent, rounding = np.maximum(np.abs(uv[0]), np.abs(uv[1])).max(axis=1), 1e-6 * np.abs(at[grid.owner]).max(axis=(1, 2))
     bent = np.abs(uv[2]).max(axis=1) > BENT * extent + rounding
     wanted = np.where(bent, np.maximum(wanted, BENT_PARTS), wanted)
-    return 2 ** np.ceil(np.log2(np.clip(wanted, 1, FINEST))).astype(np.int64)
+    return 2 ** np.ceil(np.log2(np.clip(wanted, 1, finest))).astype(np.int64)
 
 
 def _steps(corners: np.ndarray, is_quad: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
