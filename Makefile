@@ -12,7 +12,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 p
 .PHONY: help demo test bench validate check ci clean
 
 help:
-	@echo 'make demo    solve the built-in room and write a picture, a mesh and the numbers into $(OUT)/'
+	@echo 'make demo    solve a furnished room in colour and write a picture, a mesh and the numbers into $(OUT)/'
 	@echo 'make test    run the tests (make test ARGS="-k name" for some of them)'
 	@echo 'make bench   print lines per second against the bare ray caster'
 	@echo 'make validate  compare with exact solutions, Mitsuba and Radiance, and write docs/validation (ARGS=--quick: a minute)'
@@ -21,8 +21,7 @@ help:
 	@echo 'make clean   remove what these made, except $(VENV)'
 
 demo: $(VENV)/.user
-	@mkdir -p $(OUT)
-	$(BIN)/radiosity solve room --rays 10M -o $(OUT)/room.png $(OUT)/room.glb $(OUT)/room.npz
+	$(BIN)/radiosity solve studio --rays 20M -o $(OUT)/studio.png $(OUT)/studio.glb $(OUT)/studio.npz
 
 test: $(VENV)/.developer
 	$(BIN)/python -m pytest $(ARGS)
@@ -54,7 +53,7 @@ $(VENV)/.made:
 
 $(VENV)/.user: pyproject.toml $(VENV)/.made
 	@echo 'installing radiosity into $(VENV)'
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[formats]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all]'
 	@touch $@
 
 $(VENV)/.developer: pyproject.toml $(VENV)/.made

@@ -52,6 +52,18 @@ def nothing_is_evaluated_in_recorded_loops():
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def warnings_after_a_run_are_errors_too():
+    """In all tests: a warning that would only be told, so that no result is lost, raises like others that no test expects."""
+
+    def raised(text: str) -> None:
+        raise rd.RadiosityWarning(text)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("radiosity.errors.tell_instead", raised)
+        yield
+
+
 @pytest.fixture
 def random() -> np.random.Generator:
     return np.random.Generator(np.random.Philox(7))

@@ -1,5 +1,7 @@
 """Rays into a scene that Mitsuba loaded, and the same rays into ours, for tests."""
 
+from contextlib import contextmanager
+
 import numpy as np
 
 
@@ -13,20 +15,20 @@ def files(folder):
     triangles = np.array([(4 * i + a, 4 * i + b, 4 * i + c) for i in range(6) for a, b, c in ((0, 1, 2), (0, 2, 3))])
     names = {}
     for has in (False, True):
-        for plugin, write in (("obj", _obj), ("ply", _ply), ("serialized", _serialized)):
+        for plugin, write in (("obj", obj_bytes), ("ply", ply_bytes), ("serialized", serialized_bytes)):
             names[plugin, has] = f"cube{int(has)}.{plugin}"
             (folder / names[plugin, has]).write_bytes(write(corners, directions if has else None, triangles))
     return names
 
 
-def _obj(points, normals, triangles):
+def obj_bytes(points, normals, triangles):
     lines = ["v {} {} {}".format(*p) for p in points]
     lines += ["vn {} {} {}".format(*n) for n in ([] if normals is None else normals)]
     word = "{0}" if normals is None else "{0}//{0}"
     return "\n".join(lines + ["f " + " ".join(word.format(i + 1) for i in t) for t in triangles]).encode()
 
 
-def _ply(points, normals, triangles):
+def ply_bytes(points, normals, triangles):
     names = ["x", "y", "z"] + ([] if normals is None else ["nx", "ny", "nz"])
     table = points if normals is None else np.hstack([points, normals])
     head = ["ply", "format ascii 1.0", f"element vertex {len(points)}", *(f"property float {n}" for n in names)]
@@ -35,7 +37,7 @@ def _ply(points, normals, triangles):
     return "\n".join(head + rows).encode() + b"\n"
 
 
-def _serialized(points, normals, triangles):
+def serialized_bytes(points, normals, triangles):
     import struct
     import zlib
 
@@ -56,13 +58,23 @@ def random_rays(bounds, count, seed):
     return origins, directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
 
-def mitsuba_hits(path, origins, directions):
-    """Distance (inf: none), whether the front was hit, and the reflectance there, of each ray."""
+@contextmanager
+def scalar_mitsuba():
+    """Mitsuba in the variant scalar_rgb; the variant that was set before comes back."""
     import mitsuba as mi
 
     before = mi.variant()
     mi.set_variant("scalar_rgb")
     try:
+        yield mi
+    finally:
+        if before is not None:
+            mi.set_variant(before)
+
+
+def mitsuba_hits(path, origins, directions):
+    """Distance (inf: none), whether the front was hit, and the reflectance there, of each ray."""
+    with scalar_mitsuba() as mi:
         scene = mi.load_file(str(path), optimize=False)
         rows = []
         for origin, direction in zip(origins, directions, strict=True):
@@ -72,9 +84,6 @@ def mitsuba_hits(path, origins, directions):
                 continue
             albedo = np.array(si.bsdf().eval_diffuse_reflectance(si)) if si.wi.z > 0 else np.zeros(3)
             rows.append((float(si.t), si.wi.z > 0, albedo))
-    finally:
-        if before is not None:
-            mi.set_variant(before)
     return tuple(map(np.array, zip(*rows, strict=True)))
 
 

@@ -42,7 +42,7 @@ class Gltf:
         values = np.asarray(values, "<" + dtype)
         width = values.shape[1] if values.ndim > 1 else 1
         info = {"bufferView": self.view(values.tobytes()), "componentType": self.KINDS[dtype], "count": len(values)}
-        kind = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}[width]
+        kind = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}[width]
         self.tree["accessors"].append({**info, "type": kind, **more})
         return len(self.tree["accessors"]) - 1
 

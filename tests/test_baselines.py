@@ -113,6 +113,15 @@ def test_agrees_with_the_random_walk(scene, method, bound, request):
         assert book["emitted"] + book["rounding"] == pytest.approx(total, rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:.*standard errors of hemicubes")
+@pytest.mark.parametrize("factors", FACTORS)
+def test_replicates_of_a_matrix_are_not_alike(factors):
+    """Whatever is drawn for one is drawn anew for the next, or their error would be a certain zero."""
+    method = rd.Baseline(factors=factors, **({"resolution": 16} if factors == "hemicube" else {"samples": 3}))
+    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), method, replicates=2)
+    assert (solution.irradiance_standard_error > 0)[solution.irradiance > 0].all()
+
+
 def test_errors_fall_with_samples_and_with_patches_for_hemicubes(room):
     patches, reference = room
     errors = [error(rd.solve(patches, rd.Baseline(samples=samples)), reference) for samples in (4, 32, 256)]
@@ -226,6 +235,16 @@ def test_rows_that_are_forgotten_change_nothing(room, monkeypatch):
     assert forgotten.rays > kept.rays
 
 
+def test_lines_of_forgotten_rows_still_count_after_an_interruption(monkeypatch):
+    """Rows that are made again to go on are no new lines, and take the place of none."""
+    monkeypatch.setattr(recent, "MOST_ENTRIES", 300)
+    patches, method = rd.subdivide(rd.load_scene("room"), cells=2), rd.Baseline("progressive", factors="lines", samples=64)
+    some = rd.solve(patches, method, quanta=100)
+    assert 0 < len(some.state["recent"]) < some.rays / 64 / 2
+    more = rd.solve(patches, method, quanta=101, resume=some)
+    assert some.rays <= more.rays <= some.rays + 64 * recent.AHEAD
+
+
 def test_shots_go_on_to_the_same_bits(room):
     patches, _ = room
     for method in (rd.Baseline("progressive"), rd.Baseline("progressive", factors="hemicube", resolution=16)):
@@ -240,6 +259,7 @@ def test_shots_go_on_to_the_same_bits(room):
 # ---- what users meet ---------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.filterwarnings("ignore:.*on this machine:radiosity.RadiosityWarning")  # which may be busy
 @pytest.mark.parametrize("name", [name for name, preset in rd.BASELINES.items()])
 def test_a_name_solves_a_scene_and_files_keep_it(name, tmp_path):
     solution = rd.solve(rd.load_scene("room"), name) if name == "full-matrix" else rd.solve(

@@ -133,8 +133,8 @@ def test_faces_that_are_not_cut_take_a_shorter_way_to_the_same_integers(two_side
     scene = rd.load_scene("room")
     tetrahedron = np.array([(0.3, 0.3, 0.2), (0.5, 0.3, 0.2), (0.3, 0.5, 0.2), (0.3, 0.3, 0.4)])
     corners, first = np.concatenate([scene.vertices, tetrahedron]), len(scene.vertices)
-    faces = np.concatenate([scene.faces, first + np.array([(0, 2, 1, -1), (0, 1, 3, -1), (1, 2, 3, -1), (2, 0, 3, -1)])])
-    faces[: len(scene.faces)][~scene.is_quad, 3] = -1
+    sides = np.column_stack([first + np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]), np.full(4, -1)])
+    faces = np.concatenate([scene.faces, sides])
     made = rd.Scene.from_arrays(corners, faces, 0.5, np.r_[1.0, np.zeros(len(faces) - 1)], two_sided=two_sided)
     patches = rd.subdivide(made, cells=1)
     assert Geometry(patches, None).whole_faces

@@ -127,8 +127,11 @@ def test_backs_that_swallow_light_are_named(cube):
     assert "leaks" not in kinds(check(two_sided))
 
 
-def test_normals_all_turned_round():
-    scene = join([("walls", 0.5, 1.0, box((0, 0, 0), (1, 1, 1)))], source="inside out")
+@pytest.mark.parametrize("lamp", [False, True], ids=["walls shine", "a lamp within"])
+def test_normals_all_turned_round(lamp):
+    """Lines leave the scene, or land on the backs of the walls."""
+    inside = [("lamp", 0.0, 10.0, [quad((0.4, 0.4, 0.3), (0.2, 0, 0), (0, 0.2, 0))])] if lamp else []
+    scene = join([("walls", 0.5, 1.0 - lamp, box((0, 0, 0), (1, 1, 1))), *inside], source="inside out")
     report = check(scene)
     assert report.serious
     assert "are the normals turned round?" in message(report, "leaks")

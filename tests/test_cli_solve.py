@@ -369,6 +369,8 @@ def test_progress_line():
     assert progress.facts(state) == "stage 3, 12.3M rays, 21.4M/s, error 1.2 %, 3 min 05 s left"
     state = Progress(0, 0, 0.0, float("nan"), None, None, "compiling")
     assert progress.facts(state) == "stage 1, 0 rays, 0/s"
+    told = ["0 s", "59 s", "1 min 00 s", "59 min 59 s", "2 h 10 min"]
+    assert [progress.duration(s) for s in (-1, 59.4, 60, 3599, 7800)] == told
 
 
 def test_no_progress_where_nobody_looks(capsys):

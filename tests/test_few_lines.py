@@ -108,6 +108,19 @@ def test_where_no_line_landed_at_all_the_power_of_one_is_known(blind):
     assert high[0] == pytest.approx(NONE * one / blind.patches.area.sum())
 
 
+@pytest.mark.parametrize("method", [rd.Method(estimator="gathering"), rd.Method(order="matrix")])
+def test_where_no_own_line_met_light_one_of_all_replicates_is_known(method):
+    """A patch's irradiance is a mean over its own lines: one more that met the lamp would have brought B = 1 over all of them."""
+    patches = squares(10.0, 10.0, size=0.5)
+    solution = rd.solve(patches, method, quanta=4000, replicates=4)
+    state = solution.state
+    fired = state["fired"].sum(axis=0) if "fired" in state else np.bincount(
+        state["keys"].astype(np.int64) >> 32, state["counts"], 4 * len(patches)).reshape(4, -1).sum(axis=0)  # fmt: skip
+    assert fired[0] > 2000
+    assert solution.irradiance[0, 0] == 0  # nothing shines upon the lamp
+    assert solution.irradiance_standard_error[0, 0] == pytest.approx(1 / fired[0])
+
+
 def test_reports_of_no_lines_say_unknown(blind):
     assert math.isnan(blind.error)
     assert "unknown: no line landed anywhere" in blind.report()
@@ -143,6 +156,21 @@ def test_a_surface_that_few_lines_reached_may_get_more():
     assert high[0, 0] == pytest.approx(1 + NONE * one * patches.area[1] / 2, rel=1e-6)  # the lamp's own light
 
 
+def test_few_lines_may_all_have_landed_where_it_is_dark():
+    """24 lines reached a surface whose patches reflect 0.1 and 0.9: they bound its irradiance from below, its radiosity only by
+    the light that it emits."""
+    alone, rho = squares(1.0, 1.0).scene, np.array([0, 0.1, 0.9])
+    scene = rd.Scene.from_arrays(alone.vertices, alone.faces, rho, alone.emission, surface=[0, 1, 1], names=list("ab"))
+    counts = np.tile([0, 2, 1], (8, 1))
+    solution = drawn(rd.subdivide(scene, cells=1), np.zeros(3), SimpleNamespace(poisson=lambda mean, shape: counts))
+    power = np.add.reduceat(1e-3 * np.stack([counts, counts * rho])[..., None], [0, 1], axis=2)
+    solution = replace(solution, surface_power=power)
+    assert solution.surface_interval()[0][1, 0] > 0
+    low, high = solution.surface_interval(0.95, "radiosity")
+    assert low[:, 0].tolist() == [1, 0]
+    assert high[1, 0] > power[1, 0, 1, 0] / 8e-4
+
+
 def test_lines_that_come_in_bunches_bound_surfaces_as_bunches():
     """Of two patches one or the other gets all lines of a replicate: their sum tells of no bunches, they themselves do."""
     alone = squares(1.0, 1.0, 1.0).scene
@@ -159,8 +187,10 @@ def test_lines_that_come_in_bunches_bound_surfaces_as_bunches():
         assert high[1, 0] == pytest.approx(NONE * bunch * one, rel=1e-9)
 
 
-def test_rare_lines_of_another_colour_have_their_own_power():
-    """Of the power a hundredth is red, along its own lines: where none landed, one would have brought a whole quantum of it."""
+@pytest.mark.parametrize("replicates", [2, 8])
+def test_rare_lines_of_another_colour_have_their_own_power(replicates):
+    """Of the power a hundredth is red, along its own lines: where none landed, one would have brought a whole quantum of it. Many
+    blue ones say nothing of that."""
     vertices, faces = [], []
     for x in (0.0, 3.0):
         for h, turned in ((0.0, False), (0.02 if x else 1.0, True)):
@@ -170,9 +200,9 @@ def test_rare_lines_of_another_colour_have_their_own_power():
     emission = np.array([[0.01, 0.0], [0, 0], [0, 1.0], [0, 0]])  # a dim red lamp far below a plate, a blue one close to its own
     scene = rd.Scene.from_arrays(vertices, faces, np.full((4, 2), 0.0), emission, surface=np.arange(4), names=list("abcd"),
                                  bands=("red", "blue"))  # fmt: skip
-    solution = rd.solve(rd.subdivide(scene, cells=1), quanta=40, replicates=2)
-    assert solution.arrivals[3] > 0
-    quantum = 1.01 / 40 / 2
+    solution = rd.solve(rd.subdivide(scene, cells=1), quanta=40, replicates=replicates)
+    assert solution.arrivals[3] > intervals.FEW
+    quantum = 1.01 / 40 / replicates
     here = (solution.arrivals == 0) | (solution.irradiance[:, 0] == 0)
     assert here[3]
     _, high = solution.interval(0.95, "irradiance")
@@ -193,6 +223,20 @@ METHODS = {
     "pooling": {"method": "transillumination"},
     "density": {"method": "density-estimation"},
 }
+
+
+ESCAPES = [rd.Method(), rd.Method(absorption="drawn"), rd.Method(absorption="fractional"), rd.Method(equation="continuous"),
+           *(rd.Method(estimator=name) for name in ("absorption", "survival", "gathering")),
+           *(rd.Method(order=name) for name in ("incremental", "regular", "matrix"))]  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ESCAPES, ids=str)
+def test_lines_that_escape_are_lines(method):
+    """A single triangle sends one for each quantum, and none comes back."""
+    scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.5, 1.0)
+    solution = rd.solve(rd.subdivide(scene, cells=1), method, quanta=1000, replicates=2)
+    assert solution.rays == 2000
+    assert solution.escaped[0] == solution.books[0]["emitted"] == 0.5
 
 
 @pytest.mark.parametrize("name", METHODS)

@@ -166,3 +166,140 @@ def test_faces_without_area_are_counted(tmp_path):
         scene = rd.load_scene(path)
     assert scene.n_faces == 1
     assert any("2 faces without area left out" in str(w.message) and "'flat'" in str(w.message) for w in caught)
+
+
+@pytest.mark.parametrize("tail", [b"\0\0", b"\n", b"made by x" * 20])
+@pytest.mark.parametrize("head", [b"made by x", b"solid x facet"])
+def test_bytes_after_the_triangles_of_a_stl_file_are_told(tmp_path, head, tail):
+    (tmp_path / "x.stl").write_bytes(head + stl_bytes(TRIANGLES)[len(head) :] + tail)
+    with pytest.warns(RadiosityWarning) as caught:
+        scene = rd.load_scene(tmp_path / "x.stl")
+    assert scene.area.tolist() == [1]
+    assert str(caught[0].message).endswith(f"x.stl: {len(tail)} bytes after the last of 2 triangles are left out")
+    assert len(caught) == 2  # and the missing material
+
+
+def test_binary_stl_files_may_begin_with_solid(tmp_path):
+    data = b"solid tile" + stl_bytes(TRIANGLES)[10:]
+    assert load(tmp_path / "tile.stl", data).area.tolist() == [1]
+
+
+def test_attributes_of_stl_triangles_are_told(tmp_path):
+    data = bytearray(stl_bytes(TRIANGLES))
+    data[-2:] = b"\x1f\x80"
+    (tmp_path / "x.stl").write_bytes(data)
+    with pytest.warns(RadiosityWarning) as caught:
+        rd.load_scene(tmp_path / "x.stl")
+    assert "colours, as some programs write them) of 1 triangles" in str(caught[0].message)
+
+
+def test_solids_of_a_stl_file(tmp_path):
+    """Names of several words, none, twice the same, other line ends, capitals."""
+    text = stl_text({"Lamp one": TRIANGLES, "": TRIANGLES + 1.0}) + stl_text({"Lamp one": TRIANGLES + 2.0})
+    for ends in ("\n", "\r\n", "\r"):
+        (tmp_path / "x.stl").write_bytes(text.replace("facet", "FACET").replace("\n", ends).encode())
+        with pytest.warns(RadiosityWarning) as caught:
+            scene = rd.load_scene(tmp_path / "x.stl")
+        assert scene.names == ("Lamp one", "x", "Lamp one#2")
+        assert scene.area.tolist() == [1, 1, 1]
+        assert str(caught[0].message).endswith("get numbers (name#2, ...) in the order of the file: 'Lamp one (2)'")
+
+
+def test_facets_of_four_corners_and_of_two_are_damage(tmp_path):
+    rows = "solid a\n" + "".join(
+        "facet normal 0 0 1\nouter loop\n" + "vertex 0 0 0\n" * corners + "endloop\nendfacet\n" for corners in (4, 2)
+    )
+    fails(tmp_path / "x.stl", rows + "endsolid a\n", "facets are complete")
+    fails(tmp_path / "x.stl", stl_text({"a": TRIANGLES}).replace("vertex 0 0 0\n", "vertex 0 0\n", 1), "line 4", "three numbers")
+
+
+def test_a_stl_file_without_its_end_is_told(tmp_path):
+    text = stl_text({"a": TRIANGLES})
+    (tmp_path / "x.stl").write_text(text[: text.rindex("endsolid")])
+    with pytest.warns(RadiosityWarning) as caught:
+        assert rd.load_scene(tmp_path / "x.stl").area.tolist() == [1]
+    assert "ends without endsolid" in str(caught[0].message)
+
+
+def test_names_of_stl_solids_in_code_pages(tmp_path):
+    (tmp_path / "x.stl").write_bytes(stl_text({"Wände": TRIANGLES}).encode("cp1252"))
+    with pytest.warns(RadiosityWarning, match=r"names are read as Latin-1|no material"):
+        assert rd.load_scene(tmp_path / "x.stl").names == ("Wände",)
+
+
+VERTICES = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+FACES = "element face 1\nproperty list uchar int vertex_indices\n"
+ROWS, FACE = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n", "4 0 1 2 3\n"
+PLY = "ply\nformat ascii 1.0\n{}end_header\n{}"
+
+
+@pytest.mark.parametrize("content", [
+    PLY.format(FACES + VERTICES, FACE + ROWS),
+    PLY.format("comment data follow end_header\nobj_info end_header soon\n" + VERTICES + FACES, ROWS + FACE),
+    PLY.format(VERTICES + "property list uchar float weights\n" + FACES, ROWS.replace("0\n", "0 2 9 9\n") + FACE),
+    PLY.format(VERTICES + FACES.replace("uchar int", "int uint"), ROWS + FACE),
+    PLY.format(VERTICES + FACES + "property list int float texcoord\nproperty uchar flags\n", ROWS + "4 0 1 2 3 0 7\n"),
+])  # fmt: skip
+def test_ply_headers_of_other_orders_and_types(tmp_path, content):
+    for ends in ("\n", "\r\n", "\r"):
+        scene = load(tmp_path / "tile.ply", content.replace("\n", ends))
+        assert (scene.area.tolist(), scene.normal.tolist()) == ([1], [[0, 0, 1]])
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
+def test_binary_ply_headers_of_any_line_end(tmp_path, order, ends):
+    """Also where the first byte of the data is that of a line's end."""
+    first = np.frombuffer(b"\n\n\n\x3f" if order == "<" else b"\n\x3f\n\n", order + "f4")[0]
+    vertices = [[first, 0, 0], *SQUARE[1:]]
+    data = ply_bytes(vertices, order=order)
+    at = data.index(b"end_header\n") + 11
+    assert data[at] == 10
+    scene = load(tmp_path / "tile.ply", data[:at].replace(b"\n", ends.encode()) + data[at:])
+    assert np.float32(scene.vertices[0, 0]) == first
+
+
+@pytest.mark.parametrize("order", ["<", ">", ""])
+def test_triangle_strips_of_ply(tmp_path, order):
+    """Three strips, of odd and even places, a restart in one; all face one way."""
+    points = [[x, y, 0] for x in range(4) for y in (0, 1)]
+    strips = [[1, 0, 3, 2, 5], [5, 2, 4], [5, 4, 7, -1, 6, 7, 4]]
+    head = VERTICES.replace("4", "8") + f"element tristrips {len(strips)}\nproperty list int int vertex_indices\n"
+    if order:
+        name = {"<": "little", ">": "big"}[order]
+        rows = b"".join(np.array([len(s), *s], order + "i4").tobytes() for s in strips)
+        content = f"ply\nformat binary_{name}_endian 1.0\n{head}end_header\n".encode()
+        content += np.array(points, order + "f4").tobytes() + rows
+    else:
+        content = PLY.format(head, "".join(" ".join(map(str, row)) + "\n" for row in [*points, *([len(s), *s] for s in strips)]))
+    scene = load(tmp_path / "strip.ply", content)
+    assert scene.area.sum() == pytest.approx(3)
+    np.testing.assert_array_equal(scene.normal, [[0, 0, 1]] * scene.n_faces)
+
+
+def test_strips_may_have_corners_twice_and_be_short(tmp_path):
+    head = VERTICES + "element tristrips 1\nproperty list int int vertex_indices\n"
+    scene = load(tmp_path / "s.ply", PLY.format(head, ROWS + "6 0 1 3 3 2 2\n"))
+    assert scene.area.tolist() == [0.5]
+    fails(tmp_path / "s.ply", PLY.format(head, ROWS + "2 0 1\n"), "no faces")
+    fails(tmp_path / "s.ply", PLY.format(head, ROWS + "3 0 1 9\n"), "names vertex 9")
+
+
+def test_elements_of_ply_that_are_left_out_are_told(tmp_path):
+    edges = "element edge 1\nproperty int vertex1\nproperty int vertex2\n"
+    strips = "element tristrips 1\nproperty list int int vertex_indices\n"
+    (tmp_path / "x.ply").write_text(PLY.format(VERTICES + edges + strips + FACES, ROWS + "0 1\n3 0 1 2\n" + FACE))
+    with pytest.warns(RadiosityWarning) as caught:
+        assert rd.load_scene(tmp_path / "x.ply").area.tolist() == [1]
+    told = [str(w.message).split(": ", 1)[1] for w in caught]
+    assert told[:2] == ["elements that are left out: 'edge (1)'", "strips of triangles beside faces are left out: 1"]
+
+
+def test_ply_faults_of_strangers(tmp_path):
+    path = tmp_path / "bad.ply"
+    fails(path, PLY.format(VERTICES + FACES.replace("uchar int", "uchar float"), ROWS + "4 0 1 2.5 3\n"), "vertex 2.5", "whole")
+    fails(path, PLY.format(VERTICES + VERTICES + FACES, ROWS + ROWS + FACE), "same name", "vertex (2)")
+    fails(path, "ply\nformat ascii 1.0\ncomment end_header\n", "no end")
+    mixed = ply_bytes(FIVE, MIXED[:2]).replace(b"list uchar", b"list char")
+    assert mixed[-13] == 3
+    fails(path, mixed[:-13] + b"\xff" + mixed[-12:], "truncated")

@@ -128,10 +128,37 @@ def test_included_files_with_transformations_and_odd_names(load, tmp_path):
     (tmp_path / "parts" / "face.inc").write_bytes(
         b"o caf\xe9\n" + CORNERS.encode() + b"m w\xe4nd =\r\n rd .3\r\nf a b \\\n c d\no\n"
     )
-    scene = load("i parts/face.inc -a 2 -t 0 0 5\ni parts/face.inc -mz -t 0 0 -1\n")
+    with pytest.warns(rd.RadiosityWarning, match="face.inc: is not UTF-8; its names are read as Latin-1") as caught:
+        scene = load("i parts/face.inc -a 2 -t 0 0 5\ni parts/face.inc -mz -t 0 0 -1\n")
+    assert len(caught) == 1  # an object that includes and arrays repeat is one
     assert scene.names == ("café/wänd",)
     np.testing.assert_allclose(sorted(scene.frames[0][:, 2]), (-1, 0, 5))
     np.testing.assert_allclose(sorted(scene.normal[:, 2]), (-1, 1, 1))
+
+
+@pytest.mark.parametrize(("codec", "name"), [("cp932", "機能"), ("cp950", "成功"), ("gb18030", "地板"), ("utf-16", "機能")])
+def test_names_of_code_pages(tmp_path, codec, name):
+    """A name whose last byte is a backslash's continues no line, and an included file of few names is read as the main one is."""
+    (tmp_path / "colour.inc").write_bytes(f"m {name} =\n\trd 0.3\n".encode(codec))
+    (tmp_path / "scene.mgf").write_bytes(f"o {name}\no {name}\ni colour.inc\n{CORNERS}f a b c d\no\no\n".encode(codec))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        scene = rd.load_scene(tmp_path / "scene.mgf")
+    assert scene.names == (f"{name}.{name}/{name}",)
+    assert scene.reflectance.tolist() == [[pytest.approx(0.3)]] * scene.n_faces
+    assert ["scene.mgf: is not UTF-8" in str(w.message) for w in caught] == [True] * (codec != "utf-16")
+
+
+def test_a_mark_at_the_beginning_is_no_statement(tmp_path):
+    (tmp_path / "scene.mgf").write_text("\ufeff" + CORNERS + GREY + "f a b c d\n", encoding="utf-8")
+    assert rd.load_scene(tmp_path / "scene.mgf").n_faces == 1
+
+
+def test_objects_of_the_same_name_become_one_and_are_told(load):
+    body = CORNERS + GREY + "f a b c d\n"
+    with pytest.warns(rd.RadiosityWarning, match=r"objects of the same name become one: 'chair \(2\)'$"):
+        scene = load(f"o chair\n{body}o\nxf -t 0 0 1 -a 3 -t 0 0 1\no chair\n{body}o\nxf\n")
+    assert len(scene.names) == 1
 
 
 def test_faces_with_holes_joined_by_seams(load):

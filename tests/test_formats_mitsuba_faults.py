@@ -143,3 +143,27 @@ def test_reflectance_of_one_is_brought_down(load):
     with pytest.warns(rd.RadiosityWarning, match="brought down"):
         scene = load(HEAD + QUAD.replace("0.7", "1.0") + TAIL)
     np.testing.assert_allclose(scene.reflectance, [[0.95]])
+
+
+@pytest.mark.parametrize(
+    ("rotation", "length"),
+    [
+        ('<rotate x="1" y="1" angle="90"/>', "1.414"),
+        ('<rotate x="$two" angle="5"/>', "2"),
+        ('<rotate value="0, 0.5, 0" angle="5"/>', "0.5"),
+        ('<rotate x="1" angle="5"/>', None),
+        ('<rotate x="0.6" z="-0.8" angle="5"/>', None),
+        ('<rotate x="0.577" y="0.577" z="0.577" angle="5"/>', None),
+        ('<rotate x="3" angle="0"/>', None),
+    ],
+)
+def test_rotations_that_are_none_are_told(load, rotation, length):
+    """Mitsuba does not make the axis one of unit length, and its matrix then is no rotation."""
+    place = f'<transform name="to_world">{rotation}</transform>'
+    text = f'{HEAD}<default name="two" value="2"/>\n<shape type="cube">{WHITE}{place}</shape>{TAIL}'
+    if length is None:
+        np.testing.assert_allclose(load(text).area.sum(), 24, rtol=2e-3)
+        return
+    with pytest.warns(rd.errors.RadiosityWarning, match=rf"axis of length 1: 'scene.xml, line 2 \(length {length}\)'"):
+        scene = load(text)
+    assert abs(scene.area.sum() / 24 - 1) > 0.001

@@ -137,6 +137,48 @@ def test_reflectances_follow_the_bound_for_files(load, tmp_path):
         assert read(tmp_path / "scene.toml", ReadOptions(max_reflectance=0.5)).reflectance.tolist() == [[0.5]]
 
 
+SHINY = '[[surface]]\nname = "*"\nreflectance = 0.97\nemission = 12.6\n'  # an emissivity of 0.03
+
+
+def test_reflectances_of_the_user_s_own_below_one_stay(load, tmp_path):
+    """In a scene with textures and colours too, where other surfaces are cut; emission and reflectance stay consistent."""
+    scene = load(f'geometry = ["lamp.stl"]\n{SHINY}')
+    assert scene.reflectance.tolist() == [[0.97]]
+    assert scene.emission.tolist() == [[12.6]]
+    (tmp_path / "painted.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float red\n"
+        "property float green\nproperty float blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0 1 1 1\n1 0 0 1 1 1\n1 1 0 1 .5 1\n3 0 1 2\n"
+    )
+    text = 'geometry = ["lamp.stl", "painted.ply"]\n[[surface]]\nname = "lamp"\nreflectance = [0.999, 0.97, 0.96]\n'
+    with pytest.warns(RadiosityWarning, match=r"painted\.ply: reflectance above 0\.95.*: 'painted'"):
+        patches = rd.subdivide(load(text), cells=1)
+    assert patches.reflectance[0].tolist() == [0.999, 0.97, 0.96]
+    assert patches.reflectance[patches.surface == 1].max() == 0.95
+
+
+def test_a_cut_reflectance_names_the_file_that_set_it(tmp_path):
+    (tmp_path / "white.mtl").write_text("newmtl white\nKd 0.98 0.98 0.98\n")
+    (tmp_path / "a.obj").write_text("mtllib white.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl white\nf 1 2 3\n")
+    (tmp_path / "a.toml").write_text('geometry = "a.obj"\n[[surface]]\nname = "none"\nreflectance = 0.5\n')
+    for name in ("a.obj", "a.toml"):
+        with pytest.warns(RadiosityWarning) as caught:
+            rd.load_scene(tmp_path / name)
+        (cut,) = (str(w.message) for w in caught if "brought down" in str(w.message))
+        assert cut.startswith(f"{tmp_path / 'white.mtl'}: reflectance above 0.95 brought down to it (at most 0.98): 'a/white'")
+    (tmp_path / "b.toml").write_text('geometry = "a.obj"\n[[surface]]\nname = "*"\nreflectance = 1.2\n')
+    with pytest.warns(RadiosityWarning, match=rf"^{tmp_path / 'b.toml'}: reflectance above 0.95 .*1.2"):
+        rd.load_scene(tmp_path / "b.toml")
+
+
+def test_a_cut_reflectance_of_an_included_mgf_names_that_file(tmp_path):
+    (tmp_path / "materials.mgf").write_text("m white =\n\tsides 1\n\trd 0.99\n")
+    corners = "".join(f"v v{i} =\n\tp {x} {y} 0\n" for i, (x, y) in enumerate(((0, 0), (1, 0), (1, 1))))
+    (tmp_path / "a.mgf").write_text(f"i materials.mgf\n{corners}m white\nf v0 v1 v2\n")
+    with pytest.warns(RadiosityWarning, match=r"materials\.mgf: reflectance above 0\.95"):
+        rd.load_scene(tmp_path / "a.mgf")
+
+
 def test_a_name_that_matches_nothing(load):
     with pytest.warns(RadiosityWarning, match="no surface is called 'wall.*'; there are 'room/floor/white', 'room/lamp/light'"):
         load('geometry = ["room.obj"]\n[[surface]]\nname = "wall*"\nreflectance = 0.5\n')
@@ -310,3 +352,33 @@ def test_not_text(load, tmp_path):
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(SceneError, match="no TOML"):
         rd.load_scene(path)
+
+
+def test_open_lamps_hide_nothing(tmp_path):
+    (tmp_path / "lamp.stl").write_bytes(stl_bytes(TRIANGLES))
+    text = 'geometry = "lamp.stl"\n[[surface]]\nname = "lamp"\nradiance = 1\nback = "open"\nreflectance = {}\n'
+    (tmp_path / "scene.toml").write_text(text.format(0))
+    assert rd.load_scene(tmp_path / "scene.toml").back.tolist() == [rd.Back.OPEN]
+    (tmp_path / "scene.toml").write_text(text.format(0.5))
+    with pytest.raises(rd.SceneError, match=r"surface 'lamp'\) is open.*0.5"):
+        rd.load_scene(tmp_path / "scene.toml")
+
+
+def test_surfaces_of_the_same_name_in_several_files_are_told(tmp_path):
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "lamp.stl").write_bytes(stl_bytes(TRIANGLES))
+    looks = '[[surface]]\nname = "*"\nreflectance = 0.5\n'
+    (tmp_path / "scene.toml").write_text(f'geometry = ["a/lamp.stl", "b/lamp.stl"]\n{looks}')
+    with pytest.warns(RadiosityWarning, match=r"same name in several geometry files become one; .*\[\[geometry\]\]: 'lamp'$"):
+        assert rd.load_scene(tmp_path / "scene.toml").names == ("lamp",)
+    named = '[[geometry]]\nfile = "a/lamp.stl"\nname = "one"\n[[geometry]]\nfile = "b/lamp.stl"\nname = "two"\n'
+    (tmp_path / "scene.toml").write_text(named + looks)
+    assert rd.load_scene(tmp_path / "scene.toml").names == ("one", "two")
+
+
+@pytest.mark.parametrize("codec", ["cp932", "utf-16"])
+def test_toml_of_other_encodings_says_what_to_do(tmp_path, codec):
+    (tmp_path / "scene.toml").write_bytes('geometry = "機能.stl"'.encode(codec))
+    with pytest.raises(SceneError, match=r"is no TOML.*save it as UTF-8"):
+        rd.load_scene(tmp_path / "scene.toml")

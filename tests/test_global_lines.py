@@ -12,6 +12,7 @@ from scipy import stats
 import radiosity as rd
 from radiosity.engine.device import choose, upload
 from radiosity.engine.geometry import Geometry
+from radiosity.engine.global_lines.hull import nothing_beyond
 from radiosity.engine.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
 from radiosity.engine.tree import REACH
 from radiosity.errors import MethodError
@@ -107,11 +108,10 @@ def test_ends_are_proportional_to_area(kind):
         assert abs(total.mean() / count - spans.ends_per_line.sum()) < SIGMAS * total.std(ddof=1) / 4 / count
 
 
-@pytest.mark.parametrize("name", ["room", "labyrinth"])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("kind", "name"), [*((kind, name) for kind in KINDS for name in ("room", "labyrinth")), ("spans", None)])
 def test_expected_ends_of_real_scenes(kind, name):
-    """Also where furniture has absorbing backs, and walls two sides."""
-    patches = rd.subdivide(rd.load_scene(name), cells=2)
+    """Also where furniture has absorbing backs, and walls two sides; and in a jumble that is seen through backs."""
+    patches = rd.subdivide(rd.load_scene(name) if name else jumble(True), cells=2)
     spans = spans_of(patches, kind, numbers="halton")
     count = 1 << 15
     ends = np.array([ends_of(spans.draw(r, 0, count), len(patches)) for r in range(16)]) / count
@@ -234,6 +234,21 @@ def test_lines_can_be_drawn_in_any_pieces(kind):
             assert np.array_equal(piece.one, whole.one[rows])
             assert np.array_equal(piece.other, whole.other[rows])
     assert len(spans.draw(0, 0, 0).line) == 0
+
+
+def test_a_small_thing_before_a_side_lies_beyond_it():
+    """Of a box that stands askew, with a triangle a millimetre above the middle of one side: no direction has it farthest."""
+    turn, _ = np.linalg.qr(np.random.Generator(np.random.Philox(5)).normal(size=(3, 3)))
+    turn *= np.sign(np.linalg.det(turn))
+    corners = np.concatenate(box((-1, -1, -1), (1, 1, 1)))
+    small = [(1.001, 0, 0), (1.001, 0.01, 0), (1.001, 0, 0.01)]
+    faces = [*np.arange(24).reshape(6, 4).tolist(), [24, 25, 26, -1]]
+    scene = rd.Scene.from_arrays(np.concatenate([corners, small]) @ turn.T, faces, 0.5, 1.0)
+    before, behind = nothing_beyond(Geometry(rd.subdivide(scene, cells=1), choose("cpu"))).T
+    under = (scene.normal @ turn)[:6, 0] > 0.9
+    assert under.sum() == 1
+    assert before.tolist() == [*~under, True]
+    assert not behind.any()
 
 
 def test_local_lines_have_no_spans():

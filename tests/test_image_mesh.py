@@ -11,12 +11,12 @@ from radiosity.image.display_mesh import build
 from radiosity.image.weld import weld
 
 
-def two_squares(names=("one",), surface=(0, 0), angle=0.0):
+def two_squares(names=("one",), surface=(0, 0), angle=0.0, **more):
     """Unit squares that share an edge, the second one folded up by an angle in degrees."""
     c, s = np.cos(np.deg2rad(angle)), np.sin(np.deg2rad(angle))
     left = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
     right = [[1, 0, 0], [1 + c, 0, s], [1 + c, 1, s], [1, 1, 0]]
-    return rd.Scene.from_arrays(left + right, [[0, 1, 2, 3], [4, 5, 6, 7]], 0.5, 0.0, surface=surface, names=names)
+    return rd.Scene.from_arrays(left + right, [[0, 1, 2, 3], [4, 5, 6, 7]], 0.5, 0.0, surface=surface, names=names, **more)
 
 
 def test_a_grid_of_two_by_two_shares_its_inner_points():
@@ -30,8 +30,11 @@ def test_an_edge_is_shared_unless_it_is_a_crease(angle, count):
     assert len(build(rd.subdivide(two_squares(angle=angle), cells=2)).vertices) == count
 
 
-def test_surfaces_share_no_vertices():
-    assert len(build(rd.subdivide(two_squares(("one", "two"), (0, 1)), cells=2)).vertices) == 18
+@pytest.mark.parametrize("two_sided", [False, True])
+def test_surfaces_share_no_vertices(two_sided):
+    """Nor do the back of one and the front of the next."""
+    scene = two_squares(("one", "two"), (0, 1), two_sided=two_sided)
+    assert len(build(rd.subdivide(scene, cells=2)).vertices) == 18 * (1 + two_sided)
 
 
 def test_sides_share_no_vertices():

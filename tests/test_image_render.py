@@ -64,7 +64,8 @@ def test_colours_of_three_bands():
     result = solution(rd.subdivide(scene, cells=1), [[1.0, 0.5, 0.0]])
     picture = render(result, camera=ABOVE, hits=plain_hits, scale=1.0)
     assert picture[15, 20].tolist() == [255, 188, 0]
-    assert render(result, camera=ABOVE, hits=plain_hits, scale=1.0, band="green")[15, 20].tolist() == [188, 188, 188]
+    for band, grey in (("green", 188), (1, 188), (2, 0)):
+        assert render(result, camera=ABOVE, hits=plain_hits, scale=1.0, band=band)[15, 20].tolist() == [grey] * 3
 
 
 def test_unknown_values_are_black_with_one_warning():
@@ -115,6 +116,7 @@ def test_real_lines_agree_with_plain_ones():
         ({"samples": 0}, "samples is 0"),
         ({"quantity": "light"}, "quantity 'light' does not exist; known are radiosity"),
         ({"band": "infrared"}, "band 'infrared'"),
+        ({"band": 1}, "band '1' does not exist; known are grey"),
         ({"camera": 3}, "camera 3 does not exist"),
         ({"false_color": True, "range": (2, 1)}, "range is 2.0 to 1.0"),
         ({"false_color": True, "range": (0, 1), "log": True}, "above 0"),

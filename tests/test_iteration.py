@@ -11,7 +11,8 @@ from iterations import VARIANTS, open_room
 from replicates import difference, powers
 
 import radiosity as rd
-from radiosity.engine.iteration.control import median, source_constant
+from radiosity.engine import budget
+from radiosity.engine.iteration.control import SHARE, median, source_constant
 
 SIGMAS = 6.0
 COLORS = [[0.8, 0.5, 0.1], [0.2, 0.5, 0.7], [0.6, 0.3, 0.3], [0.1, 0.7, 0.2], [0.5, 0.5, 0.6], [0.3, 0.3, 0.75]]
@@ -103,6 +104,25 @@ def test_black_walls_and_exact_constants_end():
             assert np.abs(solution.irradiance - 1 / (1 - rho)).max() < 0.2, name
             if "control" in name:
                 assert np.abs(solution.irradiance - 1 / (1 - rho)).max() < 2e-3, name
+
+
+@pytest.mark.parametrize("order", ["incremental", "regular"])
+def test_stages_share_out_their_probing_lines(order, monkeypatch):
+    """One line in eight measures what is missed, however many stages a run has: each fires those that it is short of."""
+    monkeypatch.setattr(budget, "FIRST_STAGE", 1 << 14)
+    method = rd.Method(order=order, control_variate=True)
+    solution = rd.solve(rd.subdivide(cube(0.5, np.add(LIGHT, 0.1)), cells=2), method, quanta=1 << 15, replicates=2)
+    assert solution.state["probed"].sum(axis=1) / (1 << 15) == pytest.approx(1 / SHARE, rel=0.02)
+
+
+@pytest.mark.parametrize("order", ["incremental", "regular"])
+def test_the_constant_s_own_light_escapes_where_lines_do(order):
+    """Of a cube without one side nothing is lost on backs, whatever is put aside."""
+    scene = cube(0.5, np.add(LIGHT, 0.1)).take(np.arange(5))
+    solution = rd.solve(rd.subdivide(scene, cells=2), rd.Method(order=order, control_variate=True), rays=100_000, replicates=4)
+    for book in solution.books:
+        assert book["lost"] == 0
+        assert book["escaped"] > 0.1 * book["emitted"]
 
 
 @pytest.mark.parametrize("seed", range(20))

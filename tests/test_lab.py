@@ -150,8 +150,8 @@ def test_the_command_writes_a_report_that_stands_alone(tmp_path, capsys):
     from radiosity.cli.app import run as command
 
     assert command(["experiment", "5", "--quick", "-o", str(tmp_path)]) == 0
-    report = (tmp_path / "report.html").read_text()
-    assert capsys.readouterr().out.strip() == str(tmp_path / "report.html")
+    report = (tmp_path / "report-5-quick.html").read_text()
+    assert capsys.readouterr().out.strip() == str(tmp_path / "report-5-quick.html")
     assert "All runs of one seed end in the same bits" in report
     assert "src=" not in report.replace("src='data:", "")
     assert command(["experiment", "9", "-o", str(tmp_path)]) == 2
@@ -200,7 +200,7 @@ def test_figures_tables_and_stores(tmp_path, monkeypatch):
     assert report.read_text().count("<svg") == 2
     for name in ("experiment-4.png", "experiment-4.svg", "experiment-4-picture.png"):
         assert (tmp_path / name).stat().st_size > 10_000
-    with (tmp_path / "results.csv").open(encoding="utf-8") as file:
+    with (tmp_path / "results-4.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 7 * 2 * 2 * len(protocol.rungs)
     with xarray.open_dataset(tmp_path / "experiment-4.nc", engine="scipy") as store:

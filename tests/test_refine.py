@@ -68,6 +68,7 @@ def test_a_furnace_has_no_discretisation_error():
     row = found.table()[0]
     assert row["discretisation"] < 2 * row["sampling"]
     assert row["within"] < 2 * row["sampling"]
+    assert found.coarse.provenance["seed"] != found.fine.provenance["seed"]  # else their noise is no one's but both's
 
 
 def test_errors_of_the_room_fall_with_the_patches():

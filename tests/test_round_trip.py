@@ -32,10 +32,12 @@ def everything() -> rd.Scene:
     n = room.n_faces + 1
     vertices = [*room.vertices.tolist(), [1.0, 1.0, 1.9], [1.5, 1.0, 1.9], [1.0, 1.5, 2.0]]
     triangle = [len(vertices) - 3, len(vertices) - 2, len(vertices) - 1, -1]
+    back = np.where(np.arange(n) == 1, Back.OPEN, np.arange(n) % 3)
+    reflectance = np.where(back[:, None] == Back.OPEN, 0.0, random.random((n, 2)) / 2)
     scene = rd.Scene.from_arrays(
-        vertices, [*room.faces.tolist(), triangle], random.random((n, 2)) / 2, random.random((n, 2)),
+        vertices, [*room.faces.tolist(), triangle], reflectance, random.random((n, 2)),
         surface=[*room.surface, 0], names=room.names,
-        back=np.arange(n) % 3, back_reflectance=random.random((n, 2)) / 2, back_emission=random.random((n, 2)),
+        back=back, back_reflectance=random.random((n, 2)) / 2, back_emission=random.random((n, 2)),
         bands=("warm", "cold"), photometric=True, source="everything",
         cameras=(Camera((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (0.0, 1.0, 0.0), 33.0, 640, 480), Camera((0, 0, 1), (1, 1, 1))),
     )  # fmt: skip
@@ -135,7 +137,7 @@ DAMAGE = {
     "a reflectance below zero": spoilt("scene_back_reflectance", lambda old, arrays: -1e-9),
     "an emission below zero": spoilt("scene_emission", lambda old, arrays: -1.0),
     "an infinite emission": spoilt("scene_back_emission", lambda old, arrays: np.inf),
-    "a back of no kind": spoilt("scene_back", lambda old, arrays: 3),
+    "a back of no kind": spoilt("scene_back", lambda old, arrays: len(Back)),
     "no columns": spoilt("patches_columns", lambda old, arrays: 0),
     "a triangle cut unevenly": spoilt("patches_rows", lambda old, arrays: old + 1),
     "an irradiance that is unknown": spoilt("irradiance", lambda old, arrays: np.nan),

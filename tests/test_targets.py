@@ -193,6 +193,36 @@ def test_targets_of_few_lines_are_reached_in_95_percent(numbers, target):
     assert (np.array(errors) <= target).sum() >= 182
 
 
+def means_of(target: float, seeds: int, **choices) -> tuple[int, list[float]]:
+    """How many runs to an error of the sensor's mean, over nine patches, come within it, and all errors."""
+    alone, truth = sensor()
+    patches = rd.subdivide(alone.scene, cells=3)
+    errors = []
+    for seed in range(seeds):
+        solution = rd.solve(patches, error=target, error_of="mean:sensor", seed=seed, **choices)
+        assert solution.status == "complete"
+        assert solution.surface_table()[1]["interval"] <= target * (1 + 1e-9)  # Student's interval is what it goes by
+        errors.append(abs(float(solution.irradiance[9:, 0].mean()) / truth - 1))
+    return int((np.array(errors) <= target).sum()), errors
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_mean_reaches_its_target():
+    """12 seeds: 9 or fewer within the target have a probability of 2 %; and the target is no more than a few times too strict."""
+    held, errors = means_of(0.3, 12)
+    assert held >= 10
+    assert max(errors) > 0.03
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("quick")
+@pytest.mark.parametrize("numbers", ["halton", "random"])
+@pytest.mark.parametrize("target", [0.3, 0.1])
+def test_means_reach_their_targets_in_95_percent(numbers, target):
+    """100 runs; at 95 % fewer than 89 have a probability of 1 %."""
+    assert means_of(target, 100, numbers=numbers)[0] >= 89
+
+
 @pytest.mark.usefixtures("quick")
 @pytest.mark.parametrize(("limit", "why"), [({"rays": 40_000}, "rays=40000"), ({"seconds": 1e-3}, "seconds=0.001")])
 def test_a_limit_ends_a_run_to_an_error(limit, why):

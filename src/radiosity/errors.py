@@ -1,5 +1,10 @@
 """Errors and warnings. Each message says what, where, the value, and what to do."""
 
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
 
 class RadiosityError(Exception):
     """Every error that the library raises on purpose."""
@@ -23,6 +28,29 @@ class DeviceError(RadiosityError, RuntimeError):
 
 class RadiosityWarning(UserWarning):
     """Something in the input was taken differently from what it says; the message says how."""
+
+
+@contextmanager
+def result_kept() -> Iterator[None]:
+    """What is warned of within, though warnings be errors (``python -W error``), is told on stderr and raises nothing: what was
+    computed before it is not lost."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        yield
+    for one in caught:
+        try:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+        except Warning as error:
+            tell_instead(warnings.formatwarning(error, one.category, one.filename, one.lineno))
+
+
+def tell_instead(text: str) -> None:
+    """Show a warning that is not to end the program."""
+    with suppress(OSError, AttributeError, ValueError):  # nobody may read there
+        sys.stderr.write(text)
+
+
+INSTALL = "pip install 'radiosity[all]' brings it (in a clone of the project: pip install '.[all]')"  # what is optional
 
 
 def shown(names, most: int = 8) -> str:

@@ -51,7 +51,7 @@ def share(text: str) -> float:
         raise ValueError(f"'{text}' is no relative error; write such as 1% or 0.01")
     value = parts[0] / (100 if parts[1] else 1)
     if not 0 < value < 1:
-        raise ValueError(f"'{text}' must lie between 0 and 100 %; write such as 1% or 0.01")
+        raise ValueError(f"'{text}' must lie between 0 and 100 %, above 0 and strictly below 100; write such as 1% or 0.01")
     return value
 
 

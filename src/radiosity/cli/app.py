@@ -7,7 +7,7 @@ from io import TextIOWrapper
 
 from cyclopts import App, CoercionError, CycloptsError
 
-from ..errors import DeviceError, RadiosityError, RadiosityWarning
+from ..errors import INSTALL, DeviceError, RadiosityError, RadiosityWarning
 from . import interrupts
 from .check import check
 from .doctor import doctor
@@ -70,7 +70,7 @@ def run(arguments: list[str]) -> int:
     except ModuleNotFoundError as error:
         if debug or error.name is None or error.name.startswith("radiosity"):
             raise
-        say("error", f"this needs the package '{error.name}'; pip install 'radiosity[all]' brings it")
+        say("error", f"this needs the package '{error.name}'; {INSTALL}")
         return FAILED
     except MemoryError:
         if debug:

@@ -18,7 +18,7 @@ def check(
     scene
         A scene file or a built-in scene.
     max_reflectance
-        Bring larger reflectances in the scene down to this.
+        Bring larger reflectances in files down to this; what your own .toml sets below 1 stays as it is.
     strict
         Faults in the scene that could be skipped with a warning are errors.
     allow_outside

@@ -4,12 +4,12 @@ import platform
 import sys
 from importlib.metadata import PackageNotFoundError, version
 
-from ..errors import DeviceError
+from ..errors import INSTALL, DeviceError
 
 EXTRAS = {
-    "formats": ("trimesh", "pyradiance", "pydantic"),
+    "formats": ("mapbox-earcut", "pyradiance", "pydantic"),
     "plots": ("matplotlib",),
-    "lab": ("matplotlib", "xarray"),
+    "lab": ("matplotlib", "xarray", "pandas"),
 }
 
 
@@ -32,7 +32,7 @@ def doctor() -> int:
     for extra, packages in EXTRAS.items():
         missing = [package for package in packages if _installed(package) is None]
         if missing:
-            _line("absent", extra, f"{', '.join(missing)} not installed; pip install 'radiosity[{extra}]' if you need it")
+            _line("absent", extra, f"{', '.join(missing)} not installed; {INSTALL}")
         else:
             _line("ok", extra, ", ".join(f"{package} {_installed(package)}" for package in packages))
     return 0 if usable else 1

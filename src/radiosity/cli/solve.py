@@ -46,6 +46,7 @@ def solve(
     refinement: str | None = None,
     patch_size: Length = None,
     cells: Count = None,
+    powers_of_two: Flag = False,
     replicates: Count = None,
     seed: Seed = 0,
     device: DeviceName = "auto",
@@ -68,9 +69,10 @@ def solve(
     Parameters
     ----------
     scene
-        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene: cornell-box, room, labyrinth.
+        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene: cornell-box, room, studio, labyrinth.
     output
-        Files to write: .npz .glb .ply .vtp .csv .png .exr, several at once.
+        Files to write: .npz .glb .ply .vtp .csv .png .exr, several at once. Beside x.csv, a table of patches, goes
+        x.surfaces.csv, one of surfaces with their net power.
     rays
         Lines to trace in all, such as 10M (the default), 500k or 1e7. Baselines go on until they are done, or progressive and
         hierarchical ones until so many lines are traced.
@@ -81,7 +83,8 @@ def solve(
         beside it are a limit. A run that ends above the error, or on too few lines to tell it, has the status "not reached" and
         the exit status 3. Without a limit it ends at 4 billion lines for each replicate, where its counters are full.
     error_of
-        Whose error: surface:NAME, or surface:PATTERN. Default: the whole scene's.
+        Whose error: surface:NAME (RMS over its patches) or mean:NAME (of its mean irradiance, the ± of the report); NAME may be
+        a pattern. Default: the whole scene's.
     quanta
         Or: exactly so many quanta of power in each replicate; the report of a run names its number.
     method
@@ -132,6 +135,9 @@ def solve(
         Longest edge of a patch, in metres. Default: what gives about 20 000 patches, of baselines 2 000.
     cells
         Or: cut every face into CELLS x CELLS patches.
+    powers_of_two
+        Cut faces into 1, 2, 4, 8 ... cells along each edge, as hierarchical radiosity does by itself: then other methods have the
+        same patches to compare with.
     replicates
         Independent randomised runs, from which the errors come. Default: 8, of baselines 1.
     seed
@@ -153,7 +159,7 @@ def solve(
         Trace packets of like lines: faster where a patch fires 50 000 and more in a sweep, but not equal bit for bit where a
         line meets two faces in one point.
     max_reflectance
-        Bring larger reflectances in the scene down to this.
+        Bring larger reflectances in files down to this; what your own .toml sets below 1 stays as it is.
     strict
         Faults in the scene that could be skipped with a warning are errors.
     refine_check
@@ -178,6 +184,7 @@ def solve(
 
     import radiosity as rd
 
+    from ..engine.baseline_budget import cut_for
     from .progress import bar
 
     choices = {
@@ -194,8 +201,9 @@ def solve(
     before = None if resume is None else rd.load_solution(resume)
     keeper = None if refine_check else checkpoints.chosen(checkpoint, no_checkpoint, output, chosen, resume)
     patches = loaded
-    if patch_size is not None or cells is not None:
-        patches = rd.subdivide(loaded, size=patch_size, cells=cells, powers_of_two=chosen.needs_powers_of_two)
+    if patch_size is not None or cells is not None or powers_of_two:
+        size = {"size": patch_size, "cells": cells} if patch_size or cells else cut_for(chosen)
+        patches = rd.subdivide(loaded, **(size | {"powers_of_two": powers_of_two or chosen.needs_powers_of_two}))
     elif before is not None and before.patches.scene.hash == loaded.hash:
         patches = before.patches
 

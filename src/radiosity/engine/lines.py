@@ -33,6 +33,11 @@ class Landing:
         """Mask: the line came from behind, and backs there are of this kind."""
         return self.valid & ~self.front & ((self.packed >> BACK_BIT) == int(kind))
 
+    @property
+    def passes(self):
+        """Mask: the line goes on through the face."""
+        return self.back(Back.PASSES) | (self.valid & ((self.packed >> BACK_BIT) == int(Back.OPEN)))
+
 
 def land(geometry: Geometry, origin, direction, *, coherent: bool = False, active=True) -> Landing:
     """Trace lines to the first side that does not let them pass."""
@@ -44,13 +49,14 @@ def land(geometry: Geometry, origin, direction, *, coherent: bool = False, activ
 
     def body(origin, going, hit):
         new, normal = _hit(geometry, origin, direction, coherent, going)
-        passes = going & new.back(Back.PASSES)
+        passes = going & new.passes
         done = going & ~passes
         travelled = dr.select(going, hit[5] + new.distance, hit[5])
         kept = [dr.select(done, value, old) for value, old in zip(_fields(new), hit, strict=True)]
-        # go on in front of the face just passed, from the side of its normal
+        # go on in front of the face just passed, on the side that the line leads to
         least = dr.gather(Float, geometry.offsets, dr.gather(UInt32, geometry.primitive_faces, new.primitive, passes), passes)
-        step = before(origin + direction * new.distance, normal * (1.0 / NORMAL_ONE), least)
+        onward = normal * dr.select(new.front, Float(-1.0 / NORMAL_ONE), Float(1.0 / NORMAL_ONE))
+        step = before(origin + direction * new.distance, onward, least)
         return dr.select(passes, step, origin), passes, (*kept[:5], travelled, *kept[6:])
 
     width = dr.width(origin, direction)

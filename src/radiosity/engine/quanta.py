@@ -50,7 +50,8 @@ class Source:
         if not (math.isfinite(total) and total > 0):
             raise SceneError(
                 f"{patches.scene.source}: no surface emits (total power {total:g} {patches.scene.power_unit}); "
-                "give one an emission"
+                "give one an emission: in the file where its format has lights, else by power = 40 for a surface in a .toml "
+                "(docs/scene-toml.md)"
             )
         return Source(power / total, Source.fixed(reflectance), total)
 

@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
-from ..errors import DeviceError, MethodError, RadiosityWarning
+from ..errors import DeviceError, MethodError, RadiosityWarning, result_kept
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import NOT_REACHED, Solution
@@ -25,7 +25,7 @@ from .progress import Interrupted, Listener, Stop, Teller
 from .shortfall import warn_of_more, warn_of_target
 from .snapshot import Snapshot
 from .state import check_same
-from .target import nothing_before_lights, rows_of
+from .target import Target, nothing_before_lights
 from .trial import few_quanta
 from .turn import turn
 
@@ -63,7 +63,7 @@ class Run:
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = first_rung(method.order, replicates, self.problem.source.share)
         self.teller, self.stop = Teller(budget, listener), Stop()
-        self.error_of, self.rows = error_of, slice(None) if error_of is None else rows_of(patches, error_of)
+        self.error_of, self.target = error_of, Target.of(patches, error_of)
         self.teller.tell("compiling")
         self.device = choose(device)
         if resume is not None:
@@ -105,7 +105,7 @@ class Run:
                 give_back_memory()
             snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture(), self.replicates, self.also)
             known = self.replicates > 1 and self._error_matters
-            error = snapshot.error(self.rows) if known else math.nan
+            error = self.target.error(snapshot) if known else math.nan
             margin = self._margin(snapshot)
             lines = snapshot.lines if known or large else round(snapshot.about_lines)
             self.teller.complete(lines, target, error, margin, process.tally.swept_lines(self.problem, snapshot.state))
@@ -183,7 +183,7 @@ class Run:
         """How many times the stated error the true one may be, where it is to be reached; NaN where too few lines landed."""
         if self.budget.error is None:
             return 1.0
-        return snapshot.margin(self.rows) if snapshot.judged(self.rows) else math.nan
+        return self.target.margin(snapshot) if self.target.judged(snapshot) else math.nan
 
     def _no_light(self, snapshot: Snapshot) -> bool:
         """No patch can receive anything, and there is no error to wait for."""
@@ -228,24 +228,26 @@ class Run:
             raise KeyboardInterrupt
 
     def _solution(self, snapshot: Snapshot, status: str, pending) -> Solution:
-        if self.resume is None:
-            warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
-        if status == NOT_REACHED:
-            warn_of_target(self, snapshot)
-        if isinstance(snapshot.tally, AbstractMeanTally):
-            unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
-        ends = snapshot.lines / self.replicates / len(self.patches)
-        global_factors = self.method.machine == "matrix" and self.method.lines != "local"
-        if global_factors and ends < ENDS_ENOUGH:
-            warnings.warn(
-                f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over that "
-                "number, and in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
-                RadiosityWarning,
-                stacklevel=5,
-            )
-        if isinstance(self.method, Baseline):
-            warn_of_missing(self.method, snapshot.books, snapshot.state)
-        return self._read(snapshot, status, pending or snapshot.state)
+        solution = self._read(snapshot, status, pending or snapshot.state)
+        with result_kept():
+            if self.resume is None:
+                warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
+            if status == NOT_REACHED:
+                warn_of_target(self, snapshot)
+            if isinstance(snapshot.tally, AbstractMeanTally):
+                unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
+            ends = snapshot.lines / self.replicates / len(self.patches)
+            global_factors = self.method.machine == "matrix" and self.method.lines != "local"
+            if global_factors and ends < ENDS_ENOUGH:
+                warnings.warn(
+                    f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over "
+                    "that number, and in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
+                    RadiosityWarning,
+                    stacklevel=5,
+                )
+            if isinstance(self.method, Baseline):
+                warn_of_missing(self.method, snapshot.books, snapshot.state)
+        return solution
 
     def _read(self, snapshot: Snapshot, status: str, state: State) -> Solution:
         if any(book["closes"] is False for book in snapshot.books):
@@ -255,6 +257,7 @@ class Run:
             self.patches, mean, error, snapshot.arrivals, snapshot.lines, self.teller.elapsed + self.seconds_before,
             snapshot.quanta, self.replicates,
             snapshot.books, status, self._provenance(), state, snapshot.surface_power,
+            snapshot.side_power,
         )  # fmt: skip
 
     @property

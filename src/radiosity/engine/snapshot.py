@@ -28,7 +28,8 @@ class Snapshot:
         """Read all that is asked of it now, and let go of the state, where that is quick and takes less memory: what the process
         writes next goes to a copy of whatever is held."""
         if self.tally.settles:
-            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.books, self.asked
+            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power
+            _ = self.books, self.asked
             self.state = {}
             self.tally.forget()
 
@@ -87,6 +88,14 @@ class Snapshot:
         """What ``also`` reads."""
         return None if self.also is None else self.also(self)
 
+    @cached_property
+    def side_power(self) -> np.ndarray | None:
+        """See `Solution.side_power`."""
+        patches = self.problem.patches
+        if not patches.is_back.any():
+            return None
+        return self.sums(2 * patches.surface.astype(np.int64) + patches.is_back, 2 * len(patches.scene.names))
+
     def sums(self, key: np.ndarray, count: int) -> np.ndarray:
         """(2, replicates, count, n_bands) W or lm: what patches of an equal key receive, and of it reflect, in each replicate.
 
@@ -138,6 +147,36 @@ class Snapshot:
         share = square[:, known] / square[:, known].sum(axis=0)
         told = np.where(lines > 0, lines, 1.0)[:, known]
         return bool(known.any() and (FEW * (share**2 / told).sum(axis=0) <= 1 + 1e-9).all())
+
+    def error_of_mean(self, rows: np.ndarray, surfaces: np.ndarray) -> float:
+        """Relative standard error of the mean irradiance over some surfaces, the largest of the bands, NaN where nothing landed.
+
+        Args:
+            rows, surfaces: the same, as patches and as surfaces.
+        """
+        power = self.surface_power[0][:, surfaces].sum(axis=1)  # (replicates, n_bands)
+        mean, error = mean_and_error(power)
+        error = np.hypot(error, self._bias_of_sum(rows))
+        lit, blind = mean > 0, (mean <= 0) & (error > 0)
+        return float((error[lit] / mean[lit]).max()) if lit.any() and not blind.any() else float("nan")
+
+    def judged_mean(self, rows: np.ndarray) -> bool:
+        """`FEW` lines or more landed there, counted as in `judged`."""
+        patches, mean = self.problem.patches, self.irradiance[0]
+        power, line = (mean * patches.area[:, None])[rows], np.broadcast_to(self.line, mean.shape)[rows]
+        lines = np.minimum(np.divide(power, line, out=np.full(power.shape, np.inf), where=line > 0), self.arrivals[rows, None])
+        lit = power.sum(axis=0) > 0
+        return bool(lit.any() and (lines[:, lit].sum(axis=0) >= FEW).all())
+
+    def _bias_of_sum(self, rows: np.ndarray) -> np.ndarray:
+        """(n_bands,) W or lm: what the biases of some patches, where a tally tells them, add up to at most."""
+        if not isinstance(self.tally, AbstractBiasedTally):
+            return np.zeros(len(self.problem.groups.index))
+        groups, found = self.problem.groups, []
+        for group in range(groups.n_groups):
+            _, unit = self.tally.irradiance(self.problem, self.state, group)
+            found.append(np.abs(self.tally.bias(self.problem, self.state, group))[rows].sum() * unit)
+        return np.array(found)[groups.index] * groups.scale
 
     def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
         """How many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""

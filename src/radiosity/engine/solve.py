@@ -4,11 +4,13 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import MethodError
+import numpy as np
+
+from ..errors import MethodError, shown
 from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..scene.contact_findings import tell
-from ..scene.model import Scene
+from ..scene.model import Back, Scene
 from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
@@ -19,6 +21,9 @@ from .turn import turn
 
 if TYPE_CHECKING:
     from .run import Run
+
+
+SHOOTING = ("firing", "walks")  # processes whose lines carry power from the patches where they begin
 
 
 def solve(
@@ -53,7 +58,8 @@ def solve(
             for bit. An error alone may have a limit beside it, rays, seconds or both. Where it is not reached within that, or
             within what counters hold (2^32 lines for each replicate), or where too few lines landed to tell it, the status is
             "not reached" and a warning says what is known.
-        error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead.
+        error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead; or
+            "mean:NAME": that of the mean irradiance over it, as `Solution.surface_interval` tells it.
         replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
         seed: with the same inputs, the same bits.
         device: "auto", "cpu" or "cuda".
@@ -110,11 +116,22 @@ def prepared(
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
     if error_of is not None and error is None:
         raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
+    _refuse_open(scene.scene, chosen)
     keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
     tell(scene.scene)
     from .run import Run
 
     return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper, error_of)
+
+
+def _refuse_open(scene: Scene, method: Method | Baseline) -> None:
+    """A lamp that hides nothing is seen along with what is behind it: only lines that carry power from their patch tell the two
+    apart."""
+    if method.machine in SHOOTING or not (scene.back == Back.OPEN).any():
+        return
+    names = shown([scene.names[i] for i in np.unique(scene.surface[scene.back == Back.OPEN])])
+    raise MethodError(f"lines pass through the lamps {names} (null BSDF), and only walks that begin at the lights follow them: "
+                      "take --method random-walk, or give the lamps a black diffuse BSDF")  # fmt: skip
 
 
 def _keeper(path, every, method: Method | Baseline) -> Checkpoint:

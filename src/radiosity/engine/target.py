@@ -1,28 +1,73 @@
 """Whose error a run is to reach, and whether there is any."""
 
 import difflib
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 
 import numpy as np
 
 from ..errors import MethodError
 from ..patches import Patches
+from ..solution.errors import SURE
+from ..solution.intervals import student
+from .snapshot import Snapshot
 
-KIND = "surface:"
+SURFACE, MEAN = KINDS = ("surface:", "mean:")
 SHOWN = 8
 PAIRS = 1e8  # of lights and vertices: more are not looked at
 FLAT = 1e-9  # of the scene's size: vertices no further in front of a light's plane lie in it
 
 
+@dataclass(frozen=True, eq=False)
+class Target:
+    """Whose error a run is to reach: of all patches, of those of some surfaces, or of the mean irradiance over these surfaces.
+
+    Attributes:
+        rows: the patches that it is about.
+        surfaces: (k,) int, of a mean: the surfaces; None: the error is the RMS over the patches.
+    """
+
+    rows: np.ndarray | slice = field(default_factory=lambda: slice(None))
+    surfaces: np.ndarray | None = None
+
+    @staticmethod
+    def of(patches: Patches, name: str | None) -> "Target":
+        """``surface:NAME``: the RMS over the patches of a surface; ``mean:NAME``: its mean; None: all patches.
+
+        Raises:
+            MethodError: another form, or no such surface.
+        """
+        if name is None:
+            return Target()
+        rows = rows_of(patches, name)
+        return Target(rows, np.unique(patches.surface[rows]) if str(name).startswith(MEAN) else None)
+
+    def error(self, snapshot: Snapshot) -> float:
+        """Relative, the largest of the bands; NaN where unknown."""
+        return snapshot.error(self.rows) if self.surfaces is None else snapshot.error_of_mean(self.rows, self.surfaces)
+
+    def judged(self, snapshot: Snapshot) -> bool:
+        """Enough lines tell the error."""
+        return snapshot.judged(self.rows) if self.surfaces is None else snapshot.judged_mean(self.rows)
+
+    def margin(self, snapshot: Snapshot) -> float:
+        """How many times the stated error the true one may be: of a mean by Student's distribution."""
+        return snapshot.margin(self.rows) if self.surfaces is None else student(SURE, snapshot.replicates)
+
+
 def rows_of(patches: Patches, name: str) -> np.ndarray:
-    """Indices of the patches that ``surface:NAME`` means; ``NAME`` may be a pattern such as ``desk*``.
+    """Indices of the patches that ``surface:NAME`` or ``mean:NAME`` means; ``NAME`` may be a pattern such as ``desk*``.
 
     Raises:
         MethodError: another form, or no such surface.
     """
-    wanted, names = str(name).removeprefix(KIND), list(patches.scene.names)
-    if not str(name).startswith(KIND) or not wanted:
-        raise MethodError(f"error_of is '{name}'; write {KIND}NAME, such as {KIND}{names[0]}")
+    kind, wanted = next(((k, str(name).removeprefix(k)) for k in KINDS if str(name).startswith(k)), ("", ""))
+    names = list(patches.scene.names)
+    if not kind or not wanted:
+        raise MethodError(
+            f"error_of is '{name}'; write {SURFACE}NAME (RMS over its patches) or {MEAN}NAME (of its mean irradiance), such as "
+            f"{SURFACE}{names[0]}"
+        )
     found = [i for i, known in enumerate(names) if known == wanted] or [i for i, k in enumerate(names) if fnmatchcase(k, wanted)]
     rows = np.flatnonzero(np.isin(patches.surface, found))
     if not len(rows):

@@ -1,7 +1,7 @@
 """Which of the faces in one plane a line meets.
 
 Of faces within 4 ulps of each other where a line meets them (`scene.coplanar`), the caster gives any one. Here a line meets first
-one whose radiating side it comes to, then one whose back absorbs, and last one whose back lets it pass; of several the smallest,
+one whose radiating side it comes to, then one whose back absorbs, and last one that lets it pass; of several the smallest,
 as what lies on the others, and of equal ones the first in the scene's order. Each is tried with the line itself: what is met is
 a function of the line and the faces, not of the packet in which the line was traced, and not of how the faces are cut.
 """
@@ -168,7 +168,8 @@ class Ties:
             inside, front, packed, *_ = self._tried(rank, origin, direction, going)
             kind = packed >> 30
             behind = dr.select(kind == int(Back.RADIATES), UInt32(0), dr.select(kind == int(Back.ABSORBS), UInt32(1), UInt32(2)))
-            shown = [dr.select(front, UInt32(0), behind), dr.select(front, behind, UInt32(0))][:count]
+            before = dr.select(kind == int(Back.OPEN), UInt32(2), UInt32(0))
+            shown = [dr.select(front, before, behind), dr.select(front, behind, before)][:count]
             found = [rank | (side << KIND_BIT) for side in shown]
             best = [dr.select(going & inside, dr.minimum(old, new), old) for old, new in zip(best, found, strict=True)]
             return at + 1, *best

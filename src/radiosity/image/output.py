@@ -5,8 +5,8 @@ from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..errors import OutputError, RadiosityError
-from ..solution.whole import reason, refused, try_out
+from ..errors import INSTALL, OutputError, RadiosityError
+from ..solution.whole import reason, refused, standing, try_out
 
 
 def check_writable(path, suffixes) -> Path:
@@ -20,7 +20,7 @@ def check_writable(path, suffixes) -> Path:
         The path.
 
     Raises:
-        OutputError: unknown suffix, missing or read-only folder, a folder or a read-only file of that name.
+        OutputError: unknown suffix, a read-only folder, a folder or a read-only file of that name.
     """
     path = Path(path)
     if path.suffix.lower() not in suffixes:
@@ -28,24 +28,24 @@ def check_writable(path, suffixes) -> Path:
     with refused(path):
         if path.is_dir():
             raise OutputError(f"{path}: is a folder; name a file in it")
-        if not path.parent.exists():
-            raise OutputError(f"{path}: the folder '{path.parent}' does not exist; create it first")
-        if not path.parent.is_dir():
-            raise OutputError(f"{path}: '{path.parent}' is a file, not a folder; choose another place")
+        try:
+            folder = standing(path.parent)  # the rest is made when the file is written
+        except OutputError as error:
+            raise OutputError(f"{path}: {error}") from None
         if path.exists() and not os.access(path, os.W_OK):
             raise OutputError(f"{path}: the file is read-only; remove it or choose another name")
-        try_out(_beside(path))
+        try_out(folder / _beside(path).name)
     return path
 
 
 def require(module: str, purpose: str) -> None:
-    """Refuse in time where a library of the ``plots`` extra is missing.
+    """Refuse in time where an optional library is missing.
 
     Raises:
         OutputError: it is not installed.
     """
     if find_spec(module) is None:
-        raise OutputError(f"{purpose} needs '{module}', which is not installed; pip install 'radiosity[plots]'")
+        raise OutputError(f"{purpose} needs '{module}', which is not installed; {INSTALL}")
 
 
 def require_results(solution) -> None:
@@ -70,6 +70,7 @@ def replacing(path):
     path = Path(os.path.realpath(path))
     temporary = _beside(path)
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         yield temporary
         temporary.replace(path)
     except RadiosityError:

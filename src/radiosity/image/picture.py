@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import OutputError
-from ..scene import Camera
+from ..scene import Back, Camera
 from . import tone
 from .fit import fitted
 from .lookup import Lookup
@@ -90,10 +90,11 @@ def choose_camera(solution, camera: Camera | int | None, width, height, hits) ->
 
 
 def first_hits(scene, origins, directions):
-    """The ray caster; imported when a picture is taken, since it starts a back end."""
+    """The ray caster; imported when a picture is taken, since it starts a back end. Open lamps are seen from their front."""
     from ..engine import caster
 
-    return caster.first_hits(scene, origins, directions)
+    seen = replace(scene, back=np.where(scene.back == Back.OPEN, Back.PASSES, scene.back).astype(np.uint8))
+    return caster.first_hits(seen if (scene.back == Back.OPEN).any() else scene, origins, directions)
 
 
 def _bits_reversed(n: int) -> np.ndarray:

@@ -69,6 +69,13 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
     return Quantity(100 * ratio, title, "%", tuple(names), own)
 
 
+def legend_unit(name: str, unit: str) -> str:
+    """The unit as people who measure light read it: lux of irradiance, where it is lm/m²."""
+    if unit != "lm/m²":
+        return unit
+    return "lux" if name.startswith("irradiance") else "lm/m² (lux)"
+
+
 def _index(band: str | int, names: list[str]) -> int:
     if str(band) in names:
         return names.index(str(band))

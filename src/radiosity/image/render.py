@@ -5,14 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import OutputError, RadiosityWarning
+from ..errors import OutputError, RadiosityWarning, result_kept
 from ..scene import Camera
 from . import bitmap, tone
 from . import false_color as maps
 from .look import Look
 from .output import check_writable, require, require_results
 from .picture import choose_camera, first_hits, take
-from .quantity import choose
+from .quantity import choose, legend_unit
 
 SUFFIXES = (".png", ".exr")
 
@@ -74,7 +74,8 @@ def render(
     picture = take(solution, shown, view, smooth=smooth, samples=samples, hits=hits)
     facts = {"quantity": shown.title, "unit": shown.unit, "bands": ", ".join(shown.bands), "camera": repr(view)}
     if false_color:
-        pixels = maps.colour(picture, title=shown.title, unit=shown.unit, limits=range, log=log, color_map=color_map)
+        unit = legend_unit(quantity, shown.unit)
+        pixels = maps.colour(picture, title=shown.title, unit=unit, limits=range, log=log, color_map=color_map)
     else:
         values = _known(picture.values) * picture.cover[..., None]
         if linear:
@@ -99,9 +100,10 @@ def _save(pixels: np.ndarray, path: Path, facts: dict[str, str], bands: tuple[st
 def _known(values: np.ndarray) -> np.ndarray:
     unknown = np.isnan(values).any(axis=-1)
     if unknown.any():
-        warnings.warn(
-            f"{int(unknown.sum())} pixels show patches whose value is unknown; they are black (false colours show them grey)",
-            RadiosityWarning,
-            stacklevel=3,
-        )
+        with result_kept():
+            warnings.warn(
+                f"{int(unknown.sum())} pixels show patches whose value is unknown; they are black (false colours show them grey)",
+                RadiosityWarning,
+                stacklevel=3,
+            )
     return np.where(np.expand_dims(unknown, -1), 0.0, values)

@@ -1,4 +1,5 @@
-"""CSV: ``x.csv`` with a row for each patch, and beside it ``x.surfaces.csv`` with a row for each surface.
+"""CSV: ``x.csv`` with a row for each patch, and beside it ``x.surfaces.csv`` with a row for each surface, or for each side of it
+that light reached (`solution.table.surface_table` explains the columns). ``few arrivals`` is 0 on the dark side of a face.
 
 UTF-8, comma separated, a header row with units; what is unknown is ``nan``.
 """
@@ -10,11 +11,12 @@ from typing import TextIO
 
 import numpy as np
 
+from ..solution.columns import patch_columns
 from .look import Look
 from .output import replacing
 
 CHUNK = 1 << 16
-POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net")
+POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net", "net_error", "net_low", "net_high")
 
 
 def write(solution, path, look: Look | None = None) -> None:
@@ -30,42 +32,21 @@ def surfaces_path(path) -> Path:
 
 
 def _patches(solution, path: Path) -> None:
-    patches = solution.patches
-    bands, unit = [str(band) for band in solution.bands], solution.unit
-    names = np.array([_cells([name]) for name in patches.scene.names], object)
-    sides = np.array(["front", "back"], object)
-    columns = {"patch": np.arange(len(patches)), "surface": names[patches.surface], "side": sides[patches.is_back.astype(int)]}
-    for title, values in (("centroid", patches.centroid), ("normal", patches.normal)):
-        columns |= {f"{title} {axis}{' [m]' if title == 'centroid' else ''}": values[:, i] for i, axis in enumerate("xyz")}
-    columns["area [m²]"] = patches.area
-    for title, values, measure in (
-        ("reflectance", patches.reflectance, ""),
-        ("emission", patches.emission, unit),
-        ("radiosity", solution.radiosity, unit),
-        ("standard error of radiosity", solution.standard_error, unit),
-        ("irradiance", solution.irradiance, unit),
-        ("standard error of irradiance", solution.irradiance_standard_error, unit),
-    ):
-        for i, band in enumerate(bands):
-            label = f"{title} {band}" if len(bands) > 1 else title
-            columns[f"{label} [{measure}]" if measure else label] = np.asarray(values)[:, i]
-    columns["arrivals"] = np.asarray(solution.arrivals)
-    columns["few arrivals"] = np.asarray(solution.few).astype(int)
-    low, high = solution.interval(0.95, "irradiance")
-    for title, values in (("irradiance, 95 % from", low), ("irradiance, 95 % to", high)):
-        for i, band in enumerate(bands):
-            columns[f"{title}{f' {band}' if len(bands) > 1 else ''} [{unit}]"] = values[:, i]
+    columns = patch_columns(solution)
+    names = np.array([_cells([name]) for name in solution.patches.scene.names], object)
+    columns["surface"] = names[solution.patches.surface]
     row = ",".join("%.9g" if value.dtype.kind == "f" else "%s" for value in columns.values()).__mod__
     with replacing(path) as temporary, _text(temporary) as file:
         file.write(_cells(columns) + "\n")
-        for begin in range(0, len(patches), CHUNK):
+        for begin in range(0, len(solution.patches), CHUNK):
             part = [value[begin : begin + CHUNK].tolist() for value in columns.values()]
             file.write("\n".join(map(row, zip(*part, strict=True))) + "\n")
 
 
 def _surfaces(solution, path: Path) -> None:
     rows, scene = solution.surface_table(), solution.patches.scene
-    units = {"area": "m²", "radiosity": solution.unit, "irradiance": solution.unit, **dict.fromkeys(POWERS, scene.power_unit)}
+    units = {"area": "m²", "dark": "m²", "radiosity": solution.unit, "irradiance": solution.unit}
+    units |= dict.fromkeys(POWERS, scene.power_unit)
     with replacing(path) as temporary, _text(temporary) as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(_titled(key, units) for key in rows[0])

@@ -11,6 +11,8 @@ from .start import Start
 from .study import Arm
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")  # told apart by the colour-blind too
+NARROW = 18  # letters of an arm's name, below which four stand beside each other in the legend
+MARKS = ("o", "s", "^", "D", "v", "P", "X")
 STYLE: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.25, "axes.spines.top": False, "axes.spines.right": False,
               "svg.hashsalt": "radiosity", "svg.fonttype": "path", "legend.frameon": False}  # fmt: skip
 LINES = "lines of one replicate (a span counts two)"
@@ -46,13 +48,16 @@ def convergence(results: Results, arms: tuple[Arm, ...], scenes: tuple[str, ...]
         for panel, scene in zip(panels, scenes, strict=False):
             what = "RMS error of the picture" if picture else "RMS error of the radiosity"
             panel.set(xscale="log", yscale="log", title=scene, xlabel="seconds" if seconds else LINES, ylabel=what)
-            for arm in arms:
+            for number, arm in enumerate(arms):
                 series = results.series[scene, arm.name]
                 errors = series.picture if picture else series.area_weighted
                 colour = COLOURS[families.index(arm.family) % len(COLOURS)]
-                _curve(panel, series.seconds if seconds else series.lines, errors, colour, arm)
+                look = _look(number, len(arms)) | {"color": colour, "linestyle": "-" if arm.quasi else "--", "label": arm.name}
+                _curve(panel, series.seconds if seconds else series.lines, errors, look)
             _guide(panel)
-        panels[0].legend(fontsize=7)
+        handles, labels = panels[0].get_legend_handles_labels()
+        columns = min(4 if max(map(len, labels)) < NARROW else 3, len(labels))
+        figure.legend(handles, labels, fontsize=8.5, loc="outside lower center", ncols=columns, handlelength=3.5)
 
 
 def contests(found: dict, title: str, path: Path) -> None:
@@ -88,11 +93,19 @@ def starts(found: dict[str, list[Start]], title: str, path: Path) -> None:
             panel.legend(fontsize=8)
 
 
-def _curve(panel, x, errors, colour: str, arm: Arm) -> None:
+def _look(number: int, count: int) -> dict[str, Any]:
+    """What tells curves apart that lie on each other: the first ones are thick and the later ones thin, with marks of their own
+    at places of their own."""
+    thin = number / max(count - 1, 1)
+    return {"linewidth": 3.4 - 2.4 * thin, "marker": MARKS[number % len(MARKS)], "markersize": 7 - 2 * thin,
+            "markevery": (number % 3, 3), "markeredgecolor": "white", "markeredgewidth": 0.6}  # fmt: skip
+
+
+def _curve(panel, x, errors, look: dict[str, Any]) -> None:
     middle = slopes.mean_error(errors)
     spread = errors.std(axis=0, ddof=1) / len(errors) ** 0.5
-    panel.plot(x, middle, color=colour, linestyle="-" if arm.quasi else "--", linewidth=1.3, label=arm.name)
-    panel.fill_between(x, (middle - spread).clip(middle * 1e-3), middle + spread, color=colour, alpha=0.15, linewidth=0)
+    panel.plot(x, middle, **look)
+    panel.fill_between(x, (middle - spread).clip(middle * 1e-3), middle + spread, color=look["color"], alpha=0.15, linewidth=0)
 
 
 def _guide(panel) -> None:

@@ -3,11 +3,12 @@
 from pathlib import Path
 
 from ..errors import OutputError
+from ..image.output import require
 from . import figures, pictures, report, store
-from .experiments import module
+from .experiments import EXPERIMENTS, module
 from .results import Results
 from .run import Told, run
-from .study import Protocol
+from .study import QUICK, Protocol
 
 
 def make(numbers: list[int], protocol: Protocol, folder: Path, command: str, told: Told, *, image: bool = False) -> Path:
@@ -17,9 +18,12 @@ def make(numbers: list[int], protocol: Protocol, folder: Path, command: str, tol
         image: figures show the error of tone-mapped pictures too.
 
     Raises:
-        OutputError: the folder cannot be written.
+        OutputError: the folder cannot be written, or a library is missing.
     """
+    for module_name in ("matplotlib", "xarray"):
+        require(module_name, "the study")
     _writable(folder)
+    tag = _tag(numbers, protocol)
     told("pictures of the scenes", 0, 1)
     pictures.scenes(folder / "scenes", protocol)
     caption = "<p>The scenes (the paper's figure 3): the room, and the maze of mean reflectance 0.9 from above.</p>"
@@ -37,10 +41,16 @@ def make(numbers: list[int], protocol: Protocol, folder: Path, command: str, tol
             told(f"{number}: more", 0, 1)
             parts += experiment.extras(protocol, folder)
         sections.append(report.section(number, experiment.TITLE, experiment.QUESTION, parts))
-    store.write_csv(folder / "results.csv", found)
-    path = folder / "report.html"
+    store.write_csv(folder / f"results{tag}.csv", found)
+    path = folder / f"report{tag}.html"
     path.write_text(report.page(sections, command, protocol), encoding="utf-8")
     return path
+
+
+def _tag(numbers: list[int], protocol: Protocol) -> str:
+    """``-1-3-quick``: what keeps the files of one command apart from those of another; none of the whole study in full."""
+    which = "" if list(numbers) == list(EXPERIMENTS) else "".join(f"-{number}" for number in numbers)
+    return which + ("-quick" if protocol == QUICK else "")
 
 
 def _drawn(experiment, number: int, results: Results, folder: Path, image: bool) -> list[str]:

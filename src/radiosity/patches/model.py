@@ -128,4 +128,4 @@ class Patches:
             rows = np.flatnonzero(own)
             means = cell_means(paint.take(rows), back[rows], self.columns[rows], self.rows[rows], scene.is_quad[rows])
             result[self.is_back & own[self.face]] = means
-        return np.minimum(result, paint.limit)
+        return np.minimum(result, np.where(paint.painted, paint.limit, np.inf)[self.face, None])

@@ -82,7 +82,7 @@ def cell_means(paint: Paint, base: np.ndarray, columns: np.ndarray, rows: np.nda
                 place = cells.place(cell - first[owner], columns[owner], is_quad[owner])
                 grid = Grid(owner, *place, columns[owner].astype(np.int64), rows[owner].astype(np.int64), is_quad[owner])
                 if means is None:
-                    result[cell] = _of_colors(color, weight, grid, paint.limit)
+                    result[cell] = _of_colors(paint, weight, grid)
                 else:
                     result[cell, bands] = _of_image(means, paint.uv, color, weight[:, bands], grid)
     return result
@@ -113,10 +113,12 @@ def _groups(paint: Paint, base: np.ndarray) -> Iterator[tuple[int, np.ndarray | 
                 yield int(image), np.minimum(texels * value, paint.limit), shares, faces[bright][kind.ravel() == number]
 
 
-def _of_colors(color: np.ndarray, weight: np.ndarray, grid: Grid, limit: float) -> np.ndarray:
-    """Means of colours times weights that are brought down to the limit."""
+def _of_colors(paint: Paint, weight: np.ndarray, grid: Grid) -> np.ndarray:
+    """Means of colours times weights that are brought down to the limit where faces are painted."""
+    color, limit = paint.color, paint.limit
     result = between(color[grid.owner], grid.is_quad, *grid.middle) * weight[grid.owner]
-    over = np.flatnonzero((color[grid.owner].max(axis=1) * weight[grid.owner] > limit).any(axis=1))
+    bright = (color[grid.owner].max(axis=1) * weight[grid.owner] > limit).any(axis=1)
+    over = np.flatnonzero(bright & paint.painted[grid.owner])
     if len(over):
         some = grid.take(over)
         at = cells.corners(some.column, some.row, some.inverted, some.columns, some.rows, some.is_quad)

@@ -113,9 +113,20 @@ def check_values(value, what, surface, names, source) -> None:
     wrong = ~((value >= 0) & (value < top))
     if wrong.any():
         face, band = np.argwhere(wrong)[0]
-        rule = "must lie in [0, 1)" if top == 1.0 else f"must be finite and not negative, below {LARGEST:g}"
+        rule = "must lie in [0, 1): strictly below 1" if top == 1.0 else f"must be finite and not negative, below {LARGEST:g}"
         raise SceneError(
             f"{source}: {what} of face {face} (surface '{names[surface[face]]}', band {band}) is {value[face, band]:g}; it {rule}"
+        )
+
+
+def check_open(back, reflectance, surface, names, source) -> None:
+    """What lets all lines pass reflects none."""
+    wrong = (back == Back.OPEN) & (reflectance > 0).any(axis=1)
+    if wrong.any():
+        face = int(np.flatnonzero(wrong)[0])
+        raise SceneError(
+            f"{source}: face {face} (surface '{names[surface[face]]}') is open, so that lines pass, and has a reflectance of "
+            f"{reflectance[face].max():g}; set it to 0, or choose another back"
         )
 
 

@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import SceneError
+from ..errors import SceneError, shown
 from . import arguments
+from .habits import warn
 from .model import Scene
 from .paint import Paint
 
+OPPOSITE = 1e-6  # cosine between halves that rounding does not make
 PARALLEL_TOLERANCE = 2e-6  # of the longest edge: what single precision coordinates can hold
 
 
@@ -48,7 +50,13 @@ def build_rows(vertices, faces, reflectance, emission, *, surface=None, names=No
     back = arguments.backs_of(back, two_sided, n, source)
     for value, what in zip(values, ("reflectance", "emission", "back reflectance", "back emission"), strict=True):
         arguments.check_values(value, what, surface, names, source)
+    arguments.check_open(back, values[0], surface, names, source)
     bands = arguments.bands_of(bands, n_bands, source)
+    crossed = _crossed(vertices, faces)
+    if len(crossed):
+        where = shown(dict.fromkeys(names[i] for i in surface[crossed]))
+        text = f"{len(crossed)} quadrilaterals whose outline crosses itself became two triangles that face opposite ways"
+        warn(f"{source}: {text} (first: face {crossed[0]}; surfaces {where}); put their corners in order")
     faces, rows = _parallelograms(vertices, faces)
     reflectance, emission, back_reflectance, back_emission = (value[rows] for value in values)
     scene = Scene(
@@ -63,6 +71,18 @@ def split_paint(paint: Paint, scene: Scene, rows: np.ndarray, faces: np.ndarray)
     corner = np.argmax(faces[rows][:, None, :] == scene.faces[:, :, None], axis=2)
     at = np.arange(len(rows))[:, None]
     return replace(paint, image=paint.image[rows], uv=paint.uv[rows][at, corner], color=paint.color[rows][at, corner])
+
+
+def _crossed(vertices, faces) -> np.ndarray:
+    """Quadrilaterals whose halves face opposite ways along whichever diagonal they are cut."""
+    quad = np.flatnonzero(faces[:, 3] >= 0)
+    a, b, c, d = vertices[faces[quad]].transpose(1, 0, 2)
+    result = np.ones(len(quad), bool)
+    for one, two, three, four in ((a, b, c, d), (b, c, d, a)):
+        halves = np.cross(two - one, three - one), np.cross(three - one, four - one)
+        sizes = np.linalg.norm(halves[0], axis=1) * np.linalg.norm(halves[1], axis=1)
+        result &= np.einsum("ij,ij->i", *halves) < -OPPOSITE * sizes
+    return quad[result]
 
 
 def _parallelograms(vertices, faces) -> tuple[np.ndarray, np.ndarray]:

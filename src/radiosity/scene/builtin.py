@@ -4,6 +4,7 @@ import numpy as np
 
 from .model import Scene
 from .shapes import box, join, quad
+from .studio import studio
 
 CEILING_LIGHT = 40.0  # W/m²
 
@@ -101,6 +102,7 @@ def labyrinth(mean_reflectance: float = 0.5, cells: int = 4) -> Scene:
 SCENES = {
     "cornell-box": cornell_box,
     "room": room,
+    "studio": studio,
     "labyrinth": labyrinth,
     "labyrinth-0.1": lambda: labyrinth(0.1),
     "labyrinth-0.5": lambda: labyrinth(0.5),

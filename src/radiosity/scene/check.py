@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
-from . import contact_findings, leaks, topology
+from . import contact_findings, dark_sides, leaks, topology
 from .model import Scene
 from .report import NOTE, SERIOUS, WARNING, Finding, Report, surface_rows
 
@@ -73,7 +73,7 @@ def _values(patches):
 
 def _light(power: np.ndarray):
     if not power.any():
-        text = "no surface emits; give one an emission (Ke, an area emitter, ed, or emission in a .toml)"
+        text = "no surface emits; give one an emission: Ke, an area emitter, ed, or power in a .toml (docs/scene-toml.md)"
         yield Finding(SERIOUS, "no light", text)
 
 
@@ -90,7 +90,8 @@ def _topology(scene: Scene):
 
 
 def _lines(scene: Scene, power: np.ndarray, walks: int, seed: int, device: str):
-    fates = leaks.follow(scene, power, walks, seed=seed, device=device)
+    followed = leaks.follow(scene, power, walks, seed=seed, device=device)
+    fates = dark_sides.inside(scene, followed)
     lines = len(fates.fate)
     if fates.escaped + fates.lost > 0.99:
         gone = _percent(fates.escaped + fates.lost)
@@ -105,6 +106,7 @@ def _lines(scene: Scene, power: np.ndarray, walks: int, seed: int, device: str):
         severity = WARNING if fates.lost > LITTLE else NOTE
         text = f"{_percent(fates.lost)} of {lines} lines land on absorbing backs (of {where}): {advice}"
         yield Finding(severity, "leaks", text)
+    yield from dark_sides.findings(scene, followed, power)
 
 
 def _escapes(scene: Scene, fates: leaks.Fates) -> str:

@@ -37,7 +37,8 @@ class Contacts:
     def doubled(self, scene: Scene) -> np.ndarray:
         """(m,) bool: in one plane, and both radiate to the same side: there only one of the two is met."""
         radiates = scene.back == Back.RADIATES
-        return self.coplanar & (self.same_way | radiates[self.one] | radiates[self.two])
+        hides = scene.back != Back.OPEN
+        return self.coplanar & (self.same_way | radiates[self.one] | radiates[self.two]) & hides[self.one] & hides[self.two]
 
     def unseen(self, scene: Scene) -> np.ndarray:
         """(m,) bool: one radiates towards the other, which is nearer than lines begin, and yet apart."""
@@ -46,7 +47,7 @@ class Contacts:
         for face, other, height in ((self.one, self.two, self.gap), (self.two, self.one, turned * self.gap)):
             sees = (height > 0) | (back[face] == Back.RADIATES)
             shows_front = turned * height > 0
-            sides.append(sees & (shows_front | (back[other] != Back.PASSES)))
+            sides.append(sees & (shows_front | (back[other] != Back.PASSES)) & (back[other] != Back.OPEN))
         return (np.abs(self.gap) > CERTAIN * self.ulp) & (sides[0] | sides[1]) & ~self.doubled(scene)
 
     @staticmethod

@@ -14,7 +14,8 @@ BELOW_ONE = float(np.nextafter(1.0, 0.0))
 
 
 def settle(parts: list[Part], source: str, options: ReadOptions) -> list[Part]:
-    """Parts with a reflectance each, at most ``options.max_reflectance`` (where painted: the paint's limit does it).
+    """Parts with a reflectance each, at most ``options.max_reflectance`` (where painted: the paint's limit does it),
+    but what the user's own .toml sets below 1.
 
     Raises:
         SceneError: a coordinate, colour, reflectance or emission that makes no sense.
@@ -31,14 +32,16 @@ def settle(parts: list[Part], source: str, options: ReadOptions) -> list[Part]:
         _check_values(part.name, m, source)
         for value in (m.reflectance, m.back_reflectance):
             highest = 0.0 if value is None else float(np.max(np.asarray(value) * _peak(part)))
-            if highest > options.max_reflectance + 1e-12:
-                bright[part.name] = max(bright.get(part.name, 0.0), highest)
-        result.append(_lower(replace(part, material=m), options.max_reflectance))
+            if highest > options.max_reflectance + 1e-12 and not m.given:
+                of_file = bright.setdefault(m.origin or source, {})
+                of_file[part.name] = max(of_file.get(part.name, 0.0), highest)
+        part = replace(part, material=m)
+        result.append(part if m.given else _lower(part, options.max_reflectance))
     if missing:
         warn(f"{source}: no material for {shown(missing)}; reflectance {DEFAULT_REFLECTANCE} taken")
-    if bright:
-        warn(f"{source}: reflectance above {options.max_reflectance:g} brought down to it (at most "
-             f"{max(bright.values()):.4g}): {shown(bright)}; --max-reflectance sets the bound")  # fmt: skip
+    for file, those in bright.items():
+        warn(f"{file}: reflectance above {options.max_reflectance:g} brought down to it (at most {max(those.values()):.4g}): "
+             f"{shown(those)}; --max-reflectance sets the bound, and what a .toml sets below 1 is taken as it is")  # fmt: skip
     if glossy:
         warn(f"{source}: not diffuse, taken by the diffuse albedo: {shown(glossy)}")
     return result
@@ -78,7 +81,8 @@ def _check_values(name: str, m, source: str) -> None:
     for which in ("reflectance", "back_reflectance"):
         for v in getattr(m, which) or ():
             if not 0 <= v < LARGEST:
-                raise SceneError(f"{source}: {which.replace('_', ' ')} of surface '{name}' is {v:g}; it must lie in [0, 1)")
+                what = f"{which.replace('_', ' ')} of surface '{name}'"
+                raise SceneError(f"{source}: {what} is {v:g}; it must lie in [0, 1): strictly below 1")
     for v in (*m.emission, *(m.back_emission or ())):
         if not 0 <= v < LARGEST:
             text = f"it must be finite and not negative, below {LARGEST:g}"

@@ -88,8 +88,9 @@ class ImageMeans:
 
 def bands_at_once(image: np.ndarray) -> list[slice]:
     """The bands of an image in groups whose tables fit into memory together."""
-    n = image.shape[2]
-    together = n if _is_grey(image) else max(1, AT_ONCE // (image.shape[0] * image.shape[1]))
+    if _is_grey(image):
+        return [slice(None)]  # one band may stand for all that a scene has
+    n, together = image.shape[2], max(1, AT_ONCE // (image.shape[0] * image.shape[1]))
     return [slice(i, min(i + together, n)) for i in range(0, n, together)]
 
 

@@ -26,6 +26,8 @@ class Fates:
         hit: (n_lines,) int64, the face met, or -1.
         exit: (n_lines,) int64, the side of the scene's box that a line which meets nothing leaves through: x low, x high, ...
         distance: (n_lines,) float64, metres; infinite for a line that escaped.
+        front: (n_lines,) bool, it met the front of the face.
+        back: (n_lines,) bool, it began on the back of its face.
     """
 
     face: np.ndarray
@@ -33,6 +35,12 @@ class Fates:
     hit: np.ndarray
     exit: np.ndarray
     distance: np.ndarray
+    front: np.ndarray
+    back: np.ndarray
+
+    def of(self, keep: np.ndarray) -> "Fates":
+        """Of some lines."""
+        return Fates(*(getattr(self, field.name)[keep] for field in fields(Fates)))
 
     @cached_property
     def escaped(self) -> float:
@@ -123,7 +131,9 @@ def _trace(scene: Scene, face, back, place, generator, device: str):
     hits = first_hits(scene, start, direction, device=device)
     dead_back = ~hits.front & (scene.back[hits.face] != Back.RADIATES)
     fate = np.where(hits.face < 0, ESCAPED, np.where(dead_back, LOST, SEEN))
-    return Fates(face, fate, hits.face, _exit(scene, start, direction), hits.distance), hits.front, (hits.u, hits.v)
+    exits = _exit(scene, start, direction)
+    fates = Fates(face, fate, hits.face, exits, hits.distance, hits.front, np.asarray(back, bool))
+    return fates, hits.front, (hits.u, hits.v)
 
 
 def _exit(scene: Scene, start: np.ndarray, direction: np.ndarray) -> np.ndarray:

@@ -20,6 +20,7 @@ class Back(IntEnum):
     ABSORBS = 0
     RADIATES = 1
     PASSES = 2  # invisible from behind: lines go on
+    OPEN = 3  # of a lamp that hides nothing: lines go on from both sides, and the front emits
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +31,7 @@ class Scene:
         vertices: (n_vertices, 3) float64, metres.
         faces: (n_faces, 4) int64. Corners counterclockwise seen from the front; a triangle has -1 in the last
             column, every other face is a parallelogram.
-        reflectance: (n_faces, n_bands) float64 in [0, 1), of the front.
+        reflectance: (n_faces, n_bands) float64 in [0, 1), of the front; 0 where ``back`` is OPEN.
         emission: (n_faces, n_bands) float64, self-emitted radiosity (exitance) of the front, W/m² or lm/m².
         back: (n_faces,) uint8, a `Back`.
         back_reflectance, back_emission: the same of the back; used where ``back`` is RADIATES.

@@ -1,6 +1,7 @@
 """A quantity that varies over a face: texture images and corner colours that multiply a base value."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -32,6 +33,11 @@ class Paint:
     def sampler(self, index: int) -> Sampler:
         """The sampler of an image."""
         return self.samplers[index] if self.samplers else DEFAULT_SAMPLER
+
+    @cached_property
+    def painted(self) -> np.ndarray:
+        """(n_faces,) bool, faces with an image or colours; the base value of others stays as it is."""
+        return (self.image >= 0) | (self.color != 1).any(axis=(1, 2))
 
     def factor(self, face: np.ndarray, u: np.ndarray, v: np.ndarray, is_quad: np.ndarray) -> np.ndarray:
         """The multiplier, (m, n_bands), at face coordinates (u, v) of m points; without the limit.

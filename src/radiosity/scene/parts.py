@@ -23,6 +23,8 @@ class Material:
         back: what the back does.
         back_reflectance, back_emission: of a radiating back; None: as the front.
         diffuse: False where the file's material is not diffuse and was taken by its diffuse albedo.
+        given: the user's own .toml sets the reflectance, below 1: it is taken as it is.
+        origin: the file that sets the reflectance, where it is another one than the scene's.
     """
 
     reflectance: tuple[float, ...] | None = None
@@ -31,6 +33,8 @@ class Material:
     back_reflectance: tuple[float, ...] | None = None
     back_emission: tuple[float, ...] | None = None
     diffuse: bool = True
+    given: bool = False
+    origin: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +82,7 @@ class ReadOptions:
     """How to take a file.
 
     Attributes:
-        max_reflectance: larger reflectances are brought down to this, with a warning.
+        max_reflectance: larger reflectances are brought down to this, with a warning; but not those of the user's own .toml.
         strict: faults that can be skipped are errors.
         edit: changes the parts that were read before they become a scene (the .toml reader's hook).
         root: the folder outside which no file is read, resolved; None: any file may be.
@@ -93,7 +97,7 @@ class ReadOptions:
 
     def __post_init__(self):
         if not 0 < self.max_reflectance < 1:
-            raise SceneError(f"max_reflectance is {self.max_reflectance}; it must lie between 0 and 1")
+            raise SceneError(f"max_reflectance is {self.max_reflectance}; it must be above 0 and strictly below 1, such as 0.95")
 
     def admit(self, file: Path, source) -> Path:
         """A file that the scene file ``source`` asks for, if it lies in the scene's folder: a scene of strangers is not to read

@@ -7,7 +7,7 @@ import numpy as np
 from .model import Back, Scene
 
 SERIOUS, WARNING, NOTE = "error", "warning", "note"
-SIDES = {Back.ABSORBS: "one", Back.RADIATES: "two", Back.PASSES: "one, clear from behind"}
+SIDES = {Back.ABSORBS: "one", Back.RADIATES: "two", Back.PASSES: "one, clear from behind", Back.OPEN: "one, clear on both"}
 
 
 @dataclass(frozen=True)

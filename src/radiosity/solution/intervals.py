@@ -24,7 +24,7 @@ def student(level: float, replicates: int) -> float:
         MethodError: a level outside (0, 1).
     """
     if not 0 < level < 1:
-        raise MethodError(f"level is {level!r}; it must lie between 0 and 1, such as 0.95")
+        raise MethodError(f"level is {level!r}; it must be above 0 and strictly below 1, such as 0.95")
     if replicates < 2:
         return float("nan")
     from scipy.stats import t

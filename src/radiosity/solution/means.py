@@ -4,51 +4,87 @@ Each replicate has its own mean over a set of patches, so what patches of a repl
 Where few lines landed on a set, it goes to the bounds from their number, as intervals of patches do.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from .errors import mean_and_error
 from .intervals import FEW, check, cluster, irradiance_bounds, least_error, power_of_none, student, usual_power, widened
+from .sides import BACK
 
 
 def of_surfaces(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     """See `Solution.surface_interval`."""
-    return _of_sets(solution, level, quantity, np.arange(len(solution.patches.scene.names)))
+    n, surface = len(solution.patches.scene.names), solution.patches.surface
+    ends = _of_sets(solution, level, quantity, np.where(solution.sides.left_out, -1, surface), n, solution.surface_power)
+    return ends.low, ends.high
 
 
 def of_scene(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     """See `Solution.scene_interval`."""
-    low, high = _of_sets(solution, level, quantity, np.zeros(len(solution.patches.scene.names), np.int64))
-    return low[0], high[0]
+    power = solution.surface_power
+    if power is not None:
+        whole = np.zeros((*power.shape[:2], 1, power.shape[3]))
+        np.add.at(np.moveaxis(whole, 2, 0), np.zeros(power.shape[2], np.int64), np.moveaxis(power, 2, 0))
+        power = whole
+    ends = _of_sets(solution, level, quantity, np.where(solution.sides.left_out, -1, 0), 1, power)
+    return ends.low[0], ends.high[0]
 
 
-def _of_sets(solution, level: float, quantity: str, key: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(k, n_bands) each: intervals of area means over k sets of surfaces, NaN where unknown.
+def of_rows(solution, level: float, quantity: str) -> "Ends":
+    """Of the rows of tables (`Solution.sides`); ``quantity`` may be "absorbed", too."""
+    sides, power = solution.sides, solution.surface_power
+    if power is not None:
+        power = power[:, :, sides.surface]
+        back = np.array([side == BACK for side in sides.side])
+        parts = ~sides.whole
+        of_sides = solution.side_power
+        power[:, :, parts] = np.nan if of_sides is None else of_sides[:, :, (2 * sides.surface + back)[parts]]
+    return _of_sets(solution, level, quantity, sides.row, len(sides.surface), power)
+
+
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """Standard error and interval of area means over k sets, (k, n_bands) each; NaN where unknown."""
+
+    error: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+
+def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, power: np.ndarray | None) -> Ends:
+    """Intervals of area means over sets of patches, NaN where unknown.
 
     Args:
-        key: (n_surfaces,) int, the set of each surface, 0 to k - 1.
+        quantity: one of `intervals.QUANTITIES`, or "absorbed": irradiance less what is reflected of it.
+        key: (n_patches,) int, the set of each patch, 0 to n - 1, or -1: of none.
+        n: how many sets there are.
+        power: (2, replicates, n, n_bands) W or lm that the sets receive, and of it reflect.
     """
-    check(quantity)
-    patches, n = solution.patches, int(key.max()) + 1
-    here, shape = key[patches.surface], (n, patches.emission.shape[1])
-    area = np.bincount(here, patches.area, n)
+    if quantity != "absorbed":
+        check(quantity)
+    patches, some = solution.patches, key >= 0
+    here, shape = key[some], (n, patches.emission.shape[1])
+    its_area, reflectance = patches.area[some], patches.reflectance[some]
+    area = np.bincount(here, its_area, n)
     area = np.where(area > 0, area, np.nan)  # no patches, no mean
-    if solution.surface_power is None:
-        return np.full(shape, np.nan), np.full(shape, np.nan)
-    power = np.zeros((*solution.surface_power.shape[:2], *shape))
-    np.add.at(np.moveaxis(power, 2, 0), key, np.moveaxis(solution.surface_power, 2, 0))
-    received, reflected = power / area[:, None]  # (replicates, k, n_bands)
-    mean, error = mean_and_error(received if quantity == "irradiance" else reflected)
+    if power is None:
+        return Ends(*(np.full(shape, np.nan) for _ in range(3)))
+    received, reflected = power / area[:, None]  # (replicates, n, n_bands)
+    values = {"irradiance": received, "radiosity": reflected}.get(quantity, received - reflected)
+    mean, error = mean_and_error(values)
     half = student(level, solution.replicates)
     if solution.by_baseline:
         error = np.where(error > 0, error, np.nan)  # factors that agree say nothing of their error
         low, high = np.maximum(mean - half * error, 0), mean + half * error
     else:
-        usual, share, arrivals = _usual(solution, here, shape), 1.0, np.bincount(here, solution.arrivals, n)
+        usual, share = _usual(solution, key, shape), np.ones(shape)
+        arrivals = np.bincount(here, solution.arrivals[some], n)
         got, its_error = mean_and_error(received)
         bunches = np.maximum(cluster(got, its_error, arrivals, area), _cluster(solution))
-        if quantity == "radiosity":
+        if quantity != "irradiance":
             share = np.zeros(shape)
-            np.maximum.at(share, here, patches.reflectance)
+            np.maximum.at(share, here, reflectance if quantity == "radiosity" else 1 - reflectance)
         error = least_error(mean, error, arrivals, area, usual * share, solution.replicates)
         low, high = np.maximum(mean - half * error, 0), mean + half * error
         least, most = irradiance_bounds(got, arrivals, area, 0.5 + level / 2, bunches, usual)
@@ -56,17 +92,19 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray) -> tuple[np
         few = (arrivals < FEW)[:, None] | (got == 0)
         low, high = widened(low, high, few, least, most * share, mean if solution.signed else None)
     if quantity == "radiosity":
-        emitted = np.stack([np.bincount(here, patches.area * band, n) for band in patches.emission.T], axis=1) / area[:, None]
+        emission = patches.emission[some]
+        emitted = np.stack([np.bincount(here, its_area * band, n) for band in emission.T], axis=1) / area[:, None]
         low, high = low + emitted, high + emitted
-    return low, high
+    return Ends(error, low, high)
 
 
-def _usual(solution, here: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     """(k, n_bands) W or lm that a line brings to a set which none reached: the usual power, or the most that one would have
     brought to its patches that received nothing."""
     mean, area = solution.irradiance, solution.patches.area
     one = np.tile(usual_power(mean, solution.arrivals, area), (shape[0], 1))
-    np.maximum.at(one, here, np.where(mean == 0, power_of_none(solution), 0))
+    some = key >= 0
+    np.maximum.at(one, key[some], np.where(mean == 0, power_of_none(solution), 0)[some])
     return one
 
 

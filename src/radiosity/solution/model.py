@@ -8,12 +8,14 @@ import numpy as np
 
 from ..patches.model import Patches
 from . import intervals, means
+from .brief import brief
 from .errors import relative_error
+from .sides import Sides, sides_of
 
 NOT_REACHED = "not reached"  # the status of runs that ended above the error they were to reach, or could not tell it
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Solution:
     """What `radiosity.solve` returns.
 
@@ -37,6 +39,8 @@ class Solution:
         state: integers of the run, to go on from.
         surface_power: (2, replicates, n_surfaces, n_bands) float64, W or lm: what the patches of each surface receive, and of it
             reflect, in each replicate. None in files of older versions.
+        side_power: (2, replicates, 2 n_surfaces, n_bands) float64, the same of front and back of each surface in turn. None where
+            no back radiates, and in files of older versions.
     """
 
     patches: Patches
@@ -52,6 +56,7 @@ class Solution:
     provenance: dict
     state: dict = field(default_factory=dict)
     surface_power: np.ndarray | None = None
+    side_power: np.ndarray | None = None
 
     @cached_property
     def radiosity(self) -> np.ndarray:
@@ -82,6 +87,11 @@ class Solution:
         goes up to a bound from their number. Of baselines, which do not count lines, nowhere."""
         return (self.arrivals < intervals.FEW) & (not self.by_baseline)
 
+    @cached_property
+    def sides(self) -> Sides:
+        """Which sides of two-sided surfaces light reached, and the rows of tables; see `solution.sides.Sides`."""
+        return sides_of(self)
+
     @property
     def signed(self) -> bool:
         """Lines take power away as well as bring it: there was a control variate."""
@@ -106,11 +116,12 @@ class Solution:
         return intervals.of_patches(self, level, quantity)
 
     def surface_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
-        """As `interval`, of the area mean over each surface, (n_surfaces, n_bands) each."""
+        """As `interval`, of the area mean over each surface, (n_surfaces, n_bands) each. A side that no line reached, such as the
+        outside of a room, has no part in it (`sides`)."""
         return means.of_surfaces(self, level, quantity)
 
     def scene_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
-        """As `interval`, of the area mean over the whole scene, (n_bands,) each."""
+        """As `interval`, of the area mean over the whole scene, (n_bands,) each, without sides that no line reached."""
         return means.of_scene(self, level, quantity)
 
     @cached_property
@@ -133,10 +144,42 @@ class Solution:
         return np.asarray(self.state.get("history", np.zeros((0, 2))))
 
     def surface_table(self) -> list[dict]:
-        """A row for each surface: area, means, relative error, and its power balance in W or lm."""
+        """A row for each surface, or for each side that light reached: area, means, errors, and the power balance in W or lm; see
+        `solution.table.surface_table`."""
         from .table import surface_table
 
         return surface_table(self)
+
+    def __repr__(self) -> str:
+        """Five lines."""
+        return brief(self)
+
+    def _repr_html_(self) -> str:
+        """For notebooks: the same, and the table of surfaces."""
+        from .frames import html
+
+        return html(self)
+
+    def to_dataframe(self):
+        """A pandas DataFrame with a row for each patch: the columns of a .csv file, units in their names.
+
+        Raises:
+            OutputError: pandas is not installed.
+        """
+        from .frames import to_dataframe
+
+        return to_dataframe(self)
+
+    def to_xarray(self):
+        """An xarray Dataset over patch and band: radiosity, irradiance, their standard errors and 95 % intervals, reflectance and
+        emission, and over patch its surface, side, area, centroid, normal and arrivals; units are attributes.
+
+        Raises:
+            OutputError: xarray is not installed.
+        """
+        from .frames import to_xarray
+
+        return to_xarray(self)
 
     def report(self) -> str:
         """A summary in plain text."""

@@ -2,11 +2,13 @@
 
 import math
 
-from ..errors import printable
+from ..errors import printable, shown
 from .intervals import FEW
 from .percent import UNKNOWN, number, percent
+from .sides import BACK
 
 MOST_ROWS = 24
+WIDEST = 32  # letters of a surface's name
 
 
 def report(solution) -> str:
@@ -14,7 +16,8 @@ def report(solution) -> str:
     scene, unit = solution.patches.scene, solution.patches.scene.power_unit
     rate = solution.rays / solution.seconds / 1e6 if solution.seconds > 0 else math.nan
     error = _error(solution)
-    unvisited = int((solution.arrivals == 0).sum())
+    inside = ~solution.sides.dark
+    unvisited = int(((solution.arrivals == 0) & inside).sum())
     lines = [
         f"scene     {printable(scene.source)}: {scene.n_faces} faces, {len(scene.names)} surfaces, "
         f"{len(solution.patches)} patches",
@@ -23,7 +26,7 @@ def report(solution) -> str:
         f"error     {error}",
         f"status    {_status(solution)}",
     ]
-    few = int(solution.few.sum())
+    few = int((solution.few & inside).sum())
     if few:
         none = f", {unvisited} of them none (their zero is no measurement)" if unvisited else ""
         lines.append(f"few       {few} patches that fewer than {FEW} lines reached{none}: their errors are rough (see the .csv)")
@@ -72,26 +75,45 @@ def _surfaces(solution) -> list[str]:
     rows, scene = solution.surface_table(), solution.patches.scene
     tails = [f" [{name}]" for name in scene.bands] if len(scene.bands) > 1 else [""]
     rows.sort(key=lambda row: -sum(row[f"left{tail}"] for tail in tails))
-    width = max(len("surface"), *(min(len(printable(row["surface"])), 32) for row in rows[:MOST_ROWS]))
+    twice = {row["surface"] for row in rows if row["side"] == BACK and not row["dark"]}
+    names = [_called(row["surface"], row["side"] if row["surface"] in twice else "") for row in rows[:MOST_ROWS]]
+    width = max(len("surface"), *map(len, names))
     short = [name[0].upper() if len(scene.bands) == 3 else name for name in scene.bands] if len(tails) > 1 else [""]
     heads = [f"B {s}".strip() for s in short] + [f"H {s}".strip() for s in short]
     heads = [f"{head:>9}" for head in heads] + [f"{head:>7}" for head in ("H ±", "error")]
     title = f"{'surface':<{width}} {'patches':>8} {'area m²':>9} " + " ".join(heads)
     about = f"radiosity B and irradiance H in {scene.unit}, area means; ±: 95 % interval of H; error: RMS over patches, relative"
     result = [about, title]
-    for row in rows[:MOST_ROWS]:
+    for name, row in zip(names, rows, strict=False):
         values = [row[f"radiosity{t}"] for t in tails] + [row[f"irradiance{t}"] for t in tails]
         error, sure = (percent(row[key]) for key in ("error", "interval"))
         result.append(
-            f"{printable(row['surface'])[:32]:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
+            f"{name:<{width}} {row['patches']:>8} {row['area']:>9.4g} "
             + " ".join(f"{number(v):>9}" for v in values)
             + f" {sure:>7} {error:>7}"
         )
     if len(rows) > MOST_ROWS:
         result.append(f"... and {len(rows) - MOST_ROWS} more surfaces (export a .csv for all)")
+    result += _dark(rows)
     if any(line.rstrip().endswith(UNKNOWN) or f" {UNKNOWN} " in line for line in result[2:]):
         result.append(f"{UNKNOWN}: unknown, {_why(solution)}")
     return result
+
+
+def _called(surface: str, side: str) -> str:
+    """A surface in a narrow column, and which side of it where both have a row."""
+    tail = f" ({side})" if side else ""
+    return printable(surface)[: WIDEST - len(tail)] + tail
+
+
+def _dark(rows: list[dict]) -> list[str]:
+    """A word of the sides that no line reached, which have no row."""
+    names = [row["surface"] for row in rows if row["dark"] > 0]
+    if not names:
+        return []
+    area = sum(row["dark"] for row in rows)
+    return [f"two-sided, lit on one side alone: {printable(shown(names, 4))}; their other sides ({area:.4g} m²), which no line "
+            "reached, are left out of areas and means"]  # fmt: skip
 
 
 def _why(solution) -> str:

@@ -31,6 +31,7 @@ SCENE_ARRAYS = (
 )
 PAINT_ARRAYS = ("image", "uv", "color")
 SOLUTION_ARRAYS = ("irradiance", "irradiance_standard_error", "arrivals")
+POWER_ARRAYS = ("surface_power", "side_power")  # which may be missing
 SCALARS = ("rays", "seconds", "quanta", "replicates", "books", "status", "provenance")
 
 
@@ -59,8 +60,7 @@ def save(solution: Solution, path: Path, *, derived: bool = True) -> None:
             }  # fmt: skip
     arrays |= {"patches_columns": patches.columns, "patches_rows": patches.rows}
     arrays |= {name: getattr(solution, name) for name in SOLUTION_ARRAYS}
-    if solution.surface_power is not None:
-        arrays["surface_power"] = solution.surface_power
+    arrays |= {name: getattr(solution, name) for name in POWER_ARRAYS if getattr(solution, name) is not None}
     if derived:
         arrays |= {"radiosity": solution.radiosity, "standard_error": solution.standard_error}
     arrays |= {f"state_{name}": value for name, value in solution.state.items()}
@@ -129,7 +129,7 @@ def _restore(arrays: dict, meta: dict) -> Solution:
     state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
-    scalars |= {"state": state, "surface_power": arrays.get("surface_power")}
+    scalars |= {"state": state, **{name: arrays.get(name) for name in POWER_ARRAYS}}
     solution = Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars)
     validate(solution)
     return solution

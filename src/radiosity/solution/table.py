@@ -2,30 +2,37 @@
 
 import numpy as np
 
+from .means import of_rows
+
 
 def surface_table(solution) -> list[dict]:
-    """A row for each surface.
+    """A row for each surface. A surface of two sides has two rows, front and back, or only the side that light reached; then
+    ``dark`` tells the area of the other one, which no line reached.
 
-    Keys: surface, patches, area (m²), then for each band (suffix " [band]" where there are several): radiosity and
-    irradiance (area means), emitted, received, reflected, absorbed, left (emitted + reflected: the power that leaves),
-    net (left - received), all in W or lm; interval (half the 95 % interval of the mean irradiance, relative, the largest of the
-    bands), error (relative, RMS over the patches), arrivals, few (patches with few arrivals), unvisited (patches).
+    Keys: surface, side (front, back, or lit: fronts of some faces and backs of others), patches, area (m² of this side), dark
+    (m²); then for each band (suffix " [band]" where there are several): radiosity and irradiance (area means), emitted, received,
+    reflected, absorbed, left (emitted + reflected: the power that leaves), net (left - received = emitted - absorbed: above zero
+    where the surface gives more than it gets), net_error (standard error of net), net_low and net_high (ends of its 95 %
+    interval), all of these in W or lm; then interval (half the 95 % interval of the mean irradiance, relative to it, the largest
+    of the bands), error (relative, RMS over the patches), arrivals, few (patches with few arrivals) and unvisited (patches), both
+    without patches in the dark. What is unknown is NaN.
     """
-    patches, scene = solution.patches, solution.patches.scene
-    n, area = len(scene.names), patches.area
-    surface = patches.surface
+    patches, sides = solution.patches, solution.sides
+    scene, n, some = patches.scene, len(sides.surface), sides.row >= 0
+    row, area = sides.row[some], patches.area[some]
 
     def total(values):
-        return np.bincount(surface, weights=values, minlength=n)
+        return np.bincount(row, weights=values, minlength=n)
 
-    count, areas = np.bincount(surface, minlength=n), total(area)
+    count, areas = np.bincount(row, minlength=n), total(area)
     safe = np.where(areas > 0, areas, 1)
-    columns: dict[str, np.ndarray] = {"patches": count, "area": areas}
+    absorbs = of_rows(solution, 0.95, "absorbed")
+    columns: dict[str, np.ndarray] = {"patches": count, "area": areas, "dark": sides.dark_area}
     for band, name in enumerate(scene.bands):
         tail = f" [{name}]" if len(scene.bands) > 1 else ""
-        power = area * solution.irradiance[:, band]
-        reflected = patches.reflectance[:, band] * power
-        emitted = area * patches.emission[:, band]
+        power = area * solution.irradiance[some, band]
+        reflected = patches.reflectance[some, band] * power
+        emitted = area * patches.emission[some, band]
         columns[f"radiosity{tail}"] = (total(emitted) + total(reflected)) / safe
         columns[f"irradiance{tail}"] = total(power) / safe
         columns[f"emitted{tail}"] = total(emitted)
@@ -34,15 +41,20 @@ def surface_table(solution) -> list[dict]:
         columns[f"absorbed{tail}"] = total(power - reflected)
         columns[f"left{tail}"] = total(emitted) + total(reflected)
         columns[f"net{tail}"] = total(emitted) + total(reflected) - total(power)
-    order = np.argsort(surface, kind="stable")
-    groups = np.split(order, np.cumsum(count)[:-1])
-    low, high = solution.surface_interval()
+        columns[f"net_error{tail}"] = absorbs.error[:, band] * areas
+        columns[f"net_low{tail}"] = total(emitted) - absorbs.high[:, band] * areas
+        columns[f"net_high{tail}"] = total(emitted) - absorbs.low[:, band] * areas
+    groups = np.split(np.flatnonzero(some)[np.argsort(row, kind="stable")], np.cumsum(count)[:-1])
+    ends = of_rows(solution, 0.95, "irradiance")
     middle = np.stack([columns[f"irradiance{f' [{name}]' if len(scene.bands) > 1 else ''}"] for name in scene.bands], axis=1)
     with np.errstate(over="ignore"):  # of what is next to nothing
-        wide = np.divide((high - low) / 2, middle, out=np.full(middle.shape, np.nan), where=middle > 0)
+        wide = np.divide((ends.high - ends.low) / 2, middle, out=np.full(middle.shape, np.nan), where=middle > 0)
     columns["interval"] = np.array([row[~np.isnan(row)].max() if (~np.isnan(row)).any() else np.nan for row in wide])
     columns["error"] = np.array([solution._relative(rows) if len(rows) else np.nan for rows in groups])
-    columns["arrivals"] = total(solution.arrivals).astype(np.int64)
-    columns["few"] = np.bincount(surface[solution.few], minlength=n)
-    columns["unvisited"] = np.bincount(surface[solution.arrivals == 0], minlength=n)
-    return [{"surface": name, **{key: column[i].item() for key, column in columns.items()}} for i, name in enumerate(scene.names)]
+    columns["arrivals"] = total(solution.arrivals[some]).astype(np.int64)
+    columns["few"] = np.bincount(row, (solution.few & ~sides.dark)[some], n).astype(np.int64)
+    columns["unvisited"] = np.bincount(row, ((solution.arrivals == 0) & ~sides.dark)[some], n).astype(np.int64)
+    return [
+        {"surface": scene.names[surface], "side": side, **{key: column[i].item() for key, column in columns.items()}}
+        for i, (surface, side) in enumerate(zip(sides.surface, sides.side, strict=True))
+    ]

@@ -40,9 +40,10 @@ def validate(solution: Solution) -> None:
     _array("arrivals", solution.arrivals, "iu", (n_patches,))
     _that((solution.arrivals >= 0).all() and solution.arrivals.sum(dtype=float) < 2**63, "arrivals out of range")
     _scalars(solution, bands)
-    if solution.surface_power is not None:
-        _array("powers", solution.surface_power, "f", (2, solution.replicates, len(scene.names), bands))
-        _that((np.abs(solution.surface_power) <= MOST).all(), "powers that are not finite")
+    for power, many in ((solution.surface_power, 1), (solution.side_power, 2)):
+        if power is not None:
+            _array("powers", power, "f", (2, solution.replicates, many * len(scene.names), bands))
+            _that((np.abs(power) <= MOST).all(), "powers that are not finite")
     history = solution.history
     _that(history.ndim == 2 and history.shape[1] == 2 and history.dtype.kind in "fiu", "a history of another shape")
 

@@ -23,6 +23,7 @@ def whole_file(path: Path):
     place = Path(os.path.realpath(path))
     temporary = place.with_name(f".{place.name[:LONGEST]}.{os.getpid()}.part")
     try:
+        place.parent.mkdir(parents=True, exist_ok=True)
         remove_leftovers(place)
         with suppress(FileNotFoundError):
             temporary.unlink()
@@ -46,14 +47,29 @@ def check_place(path: Path) -> None:
     """Find out whether `whole_file` could write there, without leaving a trace; what killed processes left is removed.
 
     Raises:
-        OutputError: a folder of that name, or a folder that is not there or read-only.
+        OutputError: a folder of that name, or a folder that is read-only. One that is not there is made with the file.
     """
     with refused(path):
         place = Path(os.path.realpath(path))
         if place.is_dir():
             raise OutputError(f"{path}: is a folder; name a file in it")
-        try_out(place.with_name(f".{place.name[:LONGEST]}.{os.getpid()}.part"))
+        try_out(standing(place.parent) / f".{place.name[:LONGEST]}.{os.getpid()}.part")
         remove_leftovers(place)
+
+
+def standing(folder: Path) -> Path:
+    """The folder, or where it is not there yet the one that it is to be made in.
+
+    Raises:
+        OutputError: a file stands in the way.
+    """
+    folder = Path(os.path.realpath(folder))
+    for place in (folder, *folder.parents):
+        if os.path.lexists(place):
+            if not place.is_dir():
+                raise OutputError(f"'{place}' is a file, not a folder; choose another place")
+            return place
+    return folder
 
 
 def try_out(trial: Path) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import RadiosityError, SceneError
+from ...errors import INSTALL, RadiosityError, SceneError
 from ..assemble import ReadOptions
 from ..model import Scene
 
@@ -46,7 +46,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
     except (RadiosityError, Warning):
         raise
     except ModuleNotFoundError as error:
-        raise SceneError(f"{path}: reading {suffix} files needs '{error.name}'; pip install 'radiosity[formats]'") from error
+        raise SceneError(f"{path}: reading {suffix} files needs '{error.name}'; {INSTALL}") from error
     except PermissionError as error:
         raise SceneError(f"{path}: cannot be read ({error.strerror})") from None
     except MemoryError:

@@ -1,9 +1,10 @@
 """glTF 2.0 (.glb, .gltf): a part for every node x primitive.
 
-Reflectance is base colour factor x texture x vertex colour; metallic and alpha are left out. Emission is factor x
-texture x emissive strength, a radiance L, so the exitance is pi L. A double-sided material radiates to both sides,
-another one absorbs from behind. Coordinates stay as they are: metres, y up. Units of light are taken as W/m²
-(``photometric`` is False): files rarely mean the cd/m² that the specification says, and the factor is one of names only.
+Reflectance is base colour factor x texture x vertex colour; metallic and alpha are left out, and the reflectance of a material
+without any of the three is unknown. Emission is factor x texture x emissive strength, a radiance L, so the exitance is pi L. A
+double-sided material radiates to both sides, another one absorbs from behind. Coordinates stay as they are: metres, y up. Units
+of light are taken as W/m² (``photometric`` is False): files rarely mean the cd/m² that the specification says, and the factor
+is one of names only.
 """
 
 from pathlib import Path
@@ -14,13 +15,16 @@ from ....errors import shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
 from ...sampler import DEFAULT_SAMPLER
+from ..beside import warn_of_case
 from ..textures import warn_of_means, with_means
 from .accessor import accessor
-from .file import GltfFile, load
+from .deform import Skins, morphed
+from .extensions import check_required, instances, warn_of_unread
+from .file import UNPACK, GltfFile, load
 from .material import Finish, Materials, Texture
-from .nodes import cameras, walk
+from .nodes import Node, cameras, walk
 
-TRIANGLES, STRIP, FAN = 4, 5, 6
+LINES, TRIANGLES, STRIP, FAN = (0, 1, 2, 3), 4, 5, 6
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -30,60 +34,93 @@ def read(path: Path, options: ReadOptions) -> Scene:
         SceneError: the file or one that it refers to is missing, damaged or not understood.
     """
     file = load(path, options)
+    check_required(file)
     nodes = walk(file)
-    materials = Materials(file)
+    materials, skins = Materials(file), Skins(file)
     left_out: dict[str, list[str]] = {}
     parts = []
-    for name, info, matrix in nodes:
-        if "mesh" not in info:
+    for node in nodes:
+        if node.hidden and {"mesh", "camera"} & set(node.info):
+            left_out.setdefault("hidden objects (KHR_node_visibility)", []).append(node.name)
             continue
-        mesh = file.item("meshes", info["mesh"])
-        if "skin" in info:
-            left_out.setdefault("skins (taken in their bind pose)", []).append(name)
-        if any(info.get("weights") or mesh.get("weights") or ()):
-            left_out.setdefault("morph targets", []).append(name)
+        if node.extension(file, "KHR_lights_punctual") is not None:
+            left_out.setdefault("point lights (only surfaces emit: give one an emissive colour)", []).append(node.name)
+        if "mesh" not in node.info:
+            continue
+        mesh = file.item("meshes", node.info["mesh"])
         for number, primitive in enumerate(file.items(mesh, "primitives")):
-            primitive = file.dictionary(primitive, f"primitive {number} of '{name}'")
-            if primitive.get("mode", TRIANGLES) not in (TRIANGLES, STRIP, FAN):
-                left_out.setdefault("points and lines", []).append(name)
+            primitive = file.dictionary(primitive, f"primitive {number} of '{node.name}'")
+            mode = primitive.get("mode", TRIANGLES)
+            if mode in LINES:
+                left_out.setdefault("points and lines", []).append(node.name)
                 continue
-            parts.append(_part(file, name, primitive, matrix, materials))
-    if any("extensions" in info and "KHR_lights_punctual" in info["extensions"] for _, info, _ in nodes):
-        left_out["point lights (only surfaces emit: give one an emissive colour)"] = [n for n, i, _ in nodes if "extensions" in i]
-    if "EXT_mesh_gpu_instancing" in file.items(file.tree, "extensionsUsed"):
-        left_out["instances"] = ["EXT_mesh_gpu_instancing"]
+            if mode not in (TRIANGLES, STRIP, FAN):
+                raise file.fail(f"mode of primitive {number} of '{node.name}' is {mode!r}; expected 0 to 6")
+            parts.append(_part(file, node, mesh, primitive, materials, skins))
     for what, names in left_out.items():
         warn(f"{path}: {what} are left out: {shown(dict.fromkeys(names))}")
     materials.report()
+    warn_of_unread(file)
+    warn_of_case(path, file.renamed)
     placed = [with_means(part, part.uv is None, part.emission_uv is None) for part in parts]
     warn_of_means(parts, placed, str(path))
-    return assemble(placed, str(path), options, cameras=cameras(file, nodes))
+    return assemble(placed, str(path), options, cameras=cameras(file, [node for node in nodes if not node.hidden]))
 
 
-def _part(file: GltfFile, name: str, primitive: dict, matrix: np.ndarray, materials: Materials) -> Part:
-    what = f"'{name}'"
+def _part(file: GltfFile, node: Node, mesh: dict, primitive: dict, materials: Materials, skins: Skins) -> Part:
+    name, what = node.name, f"'{node.name}'"
     attributes = file.dictionary(primitive.get("attributes"), f"attributes of {what}")
-    vertices = _attribute(file, attributes, "POSITION", (3,), what)
-    faces = _triangles(file, primitive, len(vertices), what)
-    vertices = vertices @ matrix[:3, :3].T + matrix[:3, 3]
-    if np.linalg.det(matrix[:3, :3]) < 0:
-        faces = faces[:, ::-1]  # a mirrored instance keeps its front
+    vertices = _positions(file, attributes, primitive, what)
+    count = len(vertices)
+    faces = _triangles(file, primitive, count, what)
+    vertices = morphed(file, node.info, mesh, primitive, vertices, what)
+    vertices, faces = _placed(file, node, attributes, skins, vertices, faces)
     color = None
     if "COLOR_0" in attributes:
-        color = _attribute(file, attributes, "COLOR_0", (3, 4), what, len(vertices))[:, :3]
+        color = _attribute(file, attributes, "COLOR_0", (3, 4), what, count)[:, :3]
         if (color == 1).all():
             color = None
     if "material" in primitive:
-        finish = materials[primitive["material"]]
+        finish = materials.of(primitive["material"], "COLOR_0" in attributes)
         name = f"{name}/{finish.name}" if finish.name != name else name
     else:
         finish = Finish("", Material((1.0,) if "COLOR_0" in attributes else None))
     base, emissive = finish.base, finish.emissive
-    uv = [_uv(file, attributes, texture, what, len(vertices)) for texture in (base, emissive)]
+    uv = [_uv(file, attributes, texture, what, count) for texture in (base, emissive)]
+    copies = len(vertices) // max(count, 1)
+    uv, (color,) = [_repeated(values, copies) for values in uv], [_repeated(color, copies)]
     return Part(
         name, vertices, faces, finish.material, uv[0], color, base and base.image, emissive and emissive.image, uv[1],
         sampler=base.sampler if base else DEFAULT_SAMPLER, emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
     )  # fmt: skip
+
+
+def _repeated(values: np.ndarray | None, copies: int) -> np.ndarray | None:
+    return values if values is None or copies == 1 else np.tile(values, (copies, 1))
+
+
+def _positions(file: GltfFile, attributes: dict, primitive: dict, what: str) -> np.ndarray:
+    held = file.dictionary(primitive.get("extensions", {}), f"extensions of {what}")
+    if "KHR_draco_mesh_compression" in held and "POSITION" in attributes:
+        info = file.item("accessors", attributes["POSITION"])
+        if "bufferView" not in info:
+            raise file.fail(f"{what} is compressed with 'KHR_draco_mesh_compression', which is not read; {UNPACK}")
+    return _attribute(file, attributes, "POSITION", (3,), what)
+
+
+def _placed(
+    file: GltfFile, node: Node, attributes: dict, skins: Skins, vertices: np.ndarray, faces: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices in the world and faces, of all instances; a mirrored instance keeps its front."""
+    if "skin" in node.info:
+        vertices, mirrored = skins.placed(node.info["skin"], attributes, vertices, f"'{node.name}'")
+        return vertices, faces[:, ::-1] if mirrored else faces
+    copies = instances(file, node, max(len(faces), len(vertices)))
+    matrices = node.matrix[None] if copies is None else node.matrix @ copies
+    mirrored = np.linalg.det(matrices[:, :3, :3]) < 0
+    place = np.einsum("kij,nj->kni", matrices[:, :3, :3], vertices) + matrices[:, None, :3, 3]
+    every = np.where(mirrored[:, None, None], faces[:, ::-1], faces) + (np.arange(len(matrices)) * len(vertices))[:, None, None]
+    return place.reshape(-1, 3), every.reshape(-1, 3)
 
 
 def _attribute(file: GltfFile, attributes: dict, key: str, widths: tuple, what: str, count: int | None = None) -> np.ndarray:

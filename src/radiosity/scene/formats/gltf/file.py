@@ -13,9 +13,11 @@ from urllib.parse import unquote, unquote_to_bytes
 
 from ....errors import SceneError, shown
 from ...parts import ReadOptions
+from ..beside import in_any_case
 from .glb import chunks
 
-KNOWN_EXTENSIONS = ("KHR_texture_transform", "KHR_mesh_quantization", "KHR_lights_punctual", "EXT_texture_webp")
+COMPRESSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+UNPACK = "export it without compression (in Blender: untick Compression), or unpack it: gltf-transform copy in.glb out.glb"
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +29,7 @@ class GltfFile:
     tree: dict
     chunk: bytes | None = None  # of a .glb
     known: dict = field(default_factory=dict)  # buffers already read
+    renamed: list[tuple[str, Path]] = field(default_factory=list)  # found under a name of other case
 
     def fail(self, text: str) -> SceneError:
         return SceneError(f"{self.path}: {text}")
@@ -79,6 +82,9 @@ class GltfFile:
             raise self.fail(f"{what} is at '{uri[:80]}': nothing is fetched from addresses; put the file beside this one")
         try:
             file = self.options.admit(self.path.parent / unquote(uri), self.path)
+            if not file.is_file() and (other := in_any_case(self.path.parent, unquote(uri))):
+                self.renamed.append((uri, other))
+                file = self.options.admit(other, self.path)
             if not file.is_file():
                 raise self.fail(f"{what} is in '{uri}', but there is no file {file}; put it there or export as .glb")
             return file.read_bytes()
@@ -91,6 +97,8 @@ class GltfFile:
         info = self.item("buffers", index)
         if index not in self.known:
             what = f"buffer {index}"
+            if "uri" not in info and (packed := set(self.dictionary(info.get("extensions", {}), what)) & set(COMPRESSED)):
+                raise self.fail(f"{what} is compressed with {shown(packed)}, which is not read; {UNPACK}")
             if "uri" not in info and (index != 0 or self.chunk is None):
                 raise self.fail(f"{what} has no uri and the file has no binary chunk for it")
             data = self.resource(info["uri"], what) if "uri" in info else self.chunk or b""
@@ -114,7 +122,7 @@ def load(path: Path, options: ReadOptions) -> GltfFile:
     """Read and check the outer layers of a .glb or .gltf file.
 
     Raises:
-        SceneError: truncated, not glTF 2.0, or in need of an extension that is not read.
+        SceneError: truncated, or not glTF 2.0.
     """
     data = path.read_bytes()
     text, chunk = chunks(path, data) if path.suffix.lower() == ".glb" or data[:4] == b"glTF" else (data, None)
@@ -127,9 +135,4 @@ def load(path: Path, options: ReadOptions) -> GltfFile:
     version = str(tree["asset"].get("version"))
     if not version.startswith("2."):
         raise SceneError(f"{path}: glTF version {version}; only 2.0 is read")
-    file = GltfFile(path, options, tree, chunk)
-    required = [str(name) for name in file.items(tree, "extensionsRequired")]
-    unknown = [name for name in required if name not in KNOWN_EXTENSIONS and not name.startswith("KHR_materials_")]
-    if unknown:
-        raise file.fail(f"needs the extension {shown(unknown)}, which is not read; export without compression or this extension")
-    return file
+    return GltfFile(path, options, tree, chunk)

@@ -1,14 +1,15 @@
 """glTF materials by their diffuse albedo and emitted radiance."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ....errors import shown
-from ...assemble import Material, warn
+from ...assemble import DEFAULT_REFLECTANCE, Material, warn
 from ...model import Back
 from ...sampler import DEFAULT_SAMPLER, Sampler
 from ..textures import linear_image
+from .extensions import GLOSSY
 from .file import GltfFile
 
 GLOSSY_ROUGHNESS = 0.3  # a material that is explicitly smoother counts as not diffuse
@@ -36,12 +37,13 @@ class Texture:
 
 @dataclass(frozen=True, eq=False)
 class Finish:
-    """A material with its textures."""
+    """A material with its textures; ``plain``: it gives no base colour of its own."""
 
     name: str
     material: Material
     base: Texture | None = None
     emissive: Texture | None = None
+    plain: bool = False
 
 
 @dataclass(eq=False)
@@ -52,6 +54,8 @@ class Materials:
     finishes: dict[int, Finish] = field(default_factory=dict)
     images: dict[int, np.ndarray] = field(default_factory=dict)
     transparent: list[str] = field(default_factory=list)
+    unlit: list[str] = field(default_factory=list)
+    colorless: dict[str, None] = field(default_factory=dict)
 
     def __getitem__(self, index) -> Finish:
         info = self.file.item("materials", index)
@@ -59,7 +63,21 @@ class Materials:
             self.finishes[index] = self._read(info, str(info.get("name") or f"material {index}"))
         return self.finishes[index]
 
+    def of(self, index, colored: bool) -> Finish:
+        """The material for a primitive, which may have vertex colours. Without any colour it is white metal by the letter of
+        glTF, as programs write it that could not export a material: its reflectance is not known."""
+        finish = self[index]
+        if not finish.plain or colored:
+            return finish
+        self.colorless[finish.name] = None
+        return replace(finish, material=replace(finish.material, reflectance=(DEFAULT_REFLECTANCE,)))
+
     def report(self) -> None:
+        if self.colorless:
+            warn(f"{self.file.path}: materials without a base colour (by default white metal, which exporters write where they "
+                 f"cannot convert one): reflectance {DEFAULT_REFLECTANCE} taken for {shown(self.colorless)}")  # fmt: skip
+        if self.unlit:
+            warn(f"{self.file.path}: unlit materials are taken as diffuse ones of their base colour: {shown(self.unlit)}")
         if self.transparent:
             warn(f"{self.file.path}: transparency is left out, taken as opaque: {shown(self.transparent)}")
 
@@ -69,9 +87,12 @@ class Materials:
         metal = file.dictionary(info.get("pbrMetallicRoughness", {}), f"pbrMetallicRoughness of {what}")
         shiny = extensions.get("KHR_materials_pbrSpecularGlossiness")
         if isinstance(shiny, dict):
-            factor, texture = file.numbers(shiny, "diffuseFactor", (1.0,) * 4, what), shiny.get("diffuseTexture")
+            colors, key = shiny, "diffuse"
         else:
-            factor, texture = file.numbers(metal, "baseColorFactor", (1.0,) * 4, what), metal.get("baseColorTexture")
+            colors, key = metal, "baseColor"
+        factor, texture = file.numbers(colors, f"{key}Factor", (1.0,) * 4, what), colors.get(f"{key}Texture")
+        if "KHR_materials_unlit" in extensions:
+            self.unlit.append(name)
         strength = file.dictionary(extensions.get("KHR_materials_emissive_strength", {}), f"emissive strength of {what}")
         (power,) = file.numbers({"v": [strength.get("emissiveStrength", 1.0)]}, "v", (1.0,), f"emissiveStrength of {what}")
         radiance = np.array(file.numbers(info, "emissiveFactor", (0.0,) * 3, what)) * power
@@ -84,7 +105,8 @@ class Materials:
             diffuse=not self._is_glossy(metal, extensions, what),
         )
         emissive = self._texture(info.get("emissiveTexture"), what) if radiance.any() else None
-        return Finish(name, material, self._texture(texture, what), emissive)
+        plain = f"{key}Factor" not in colors and texture is None
+        return Finish(name, material, self._texture(texture, what), emissive, plain)
 
     def _is_glossy(self, metal: dict, extensions: dict, what: str) -> bool:
         """Only what the file says explicitly: the defaults (fully metallic) of files that leave it out mean nothing."""
@@ -93,8 +115,17 @@ class Materials:
             self.file.numbers({"v": [metal.get(key, default)]}, "v", (0.0,), f"{key} of {what}")[0]
             for key, default in (("metallicFactor", 1.0 if textured else 0.0), ("roughnessFactor", 1.0))
         )
-        clear = extensions.get("KHR_materials_transmission", {}).get("transmissionFactor", 0)
-        return metallic > 0 or (rough < GLOSSY_ROUGHNESS and not textured) or bool(clear)
+        others = False
+        for key, (factor, default) in GLOSSY.items():
+            held = self.file.dictionary(extensions.get(key, {}), f"{key} of {what}")
+            one = isinstance(default, float)
+            given = {factor: [held.get(factor, default)]} if one else held
+            others |= any(self.file.numbers(given, factor, (default,) if one else default, what))
+        key = "KHR_materials_pbrSpecularGlossiness"
+        shiny = self.file.dictionary(extensions.get(key, {}), f"{key} of {what}")
+        (smooth,) = self.file.numbers({"v": [shiny.get("glossinessFactor", 0.0)]}, "v", (0.0,), f"glossinessFactor of {what}")
+        others |= smooth > 1 - GLOSSY_ROUGHNESS and "specularGlossinessTexture" not in shiny
+        return metallic > 0 or (rough < GLOSSY_ROUGHNESS and not textured) or others
 
     def _texture(self, use, what: str) -> Texture | None:
         if use is None:

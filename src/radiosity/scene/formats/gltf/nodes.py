@@ -1,40 +1,73 @@
 """The tree of a glTF scene: instances with their names and transforms, and the cameras."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ....errors import shown
 from ...assemble import warn
 from ...model import Camera
+from ..names import numbered
 from .file import GltfFile
 
 HEIGHT = 600  # pixels of a picture; glTF gives only the ratio
 
 
-def walk(file: GltfFile) -> list[tuple[str, dict, np.ndarray]]:
-    """(unique name, node, (4, 4) transform to the world) of every node of the scene, in depth-first order.
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A node of the scene: its unique name, its JSON, its (4, 4) transform to the world, and whether it or one above it is hidden
+    (KHR_node_visibility)."""
+
+    name: str
+    info: dict
+    matrix: np.ndarray
+    hidden: bool
+
+    def extension(self, file: GltfFile, name: str) -> dict | None:
+        return extension(file, self.info, name, f"node '{self.name}'")
+
+
+def extension(file: GltfFile, holder: dict, name: str, what: str) -> dict | None:
+    """An extension's object, or None where the JSON has none of that name."""
+    found = file.dictionary(holder.get("extensions", {}), f"extensions of {what}")
+    return file.dictionary(found[name], f"{name} of {what}") if name in found else None
+
+
+def walk(file: GltfFile) -> list[Node]:
+    """Every node of the scene, in depth-first order. One warning names objects that have the same name.
 
     Raises:
         SceneError: a node is missing, or has two parents or itself as ancestor.
     """
-    stack = [(index, np.eye(4)) for index in reversed(_roots(file))]
+    stack = [(index, np.eye(4), False) for index in reversed(_roots(file))]
     seen: set[int] = set()
     taken: dict[str, int] = {}
+    alike: dict[str, int] = {}
     result = []
     while stack:
-        index, parent = stack.pop()
+        index, parent, hidden = stack.pop()
         info = file.item("nodes", index)
         if index in seen:
             raise file.fail(f"node {index} has two parents or is its own ancestor; nodes must form a tree")
         seen.add(index)
-        matrix = parent @ _matrix(file, info, f"node {index}")
-        result.append((_unique(_name(file, info, index), taken), info, matrix))
-        stack += [(child, matrix) for child in reversed(file.items(info, "children"))]
+        matrix = parent @ local_matrix(file, info, f"node {index}")
+        seeing = extension(file, info, "KHR_node_visibility", f"node {index}")
+        hidden = hidden or (seeing is not None and seeing.get("visible", True) is False)
+        name = _name(file, info, index)
+        result.append(Node(numbered(name, taken), info, matrix, hidden))
+        if "mesh" in info:
+            alike[name] = alike.get(name, 0) + 1
+        stack += [(child, matrix, hidden) for child in reversed(file.items(info, "children"))]
+    if several := [f"{name} ({count})" for name, count in alike.items() if count > 1]:
+        warn(f"{file.path}: objects of the same name get numbers (name#2, ...) in the order of the file: {shown(several)}")
     return result
 
 
 def cameras(file: GltfFile, nodes) -> tuple[Camera, ...]:
     """Perspective cameras; a camera looks along its -z, up is its y."""
     result = []
-    for name, info, matrix in nodes:
+    for node in nodes:
+        name, info, matrix = node.name, node.info, node.matrix
         if "camera" not in info:
             continue
         lens = file.item("cameras", info["camera"])
@@ -83,28 +116,27 @@ def _name(file: GltfFile, info: dict, index: int) -> str:
     return str(name or f"node {index}")
 
 
-def _unique(name: str, taken: dict[str, int]) -> str:
-    """The name, with a number where another object has it."""
-    taken[name] = taken.get(name, 0) + 1
-    if taken[name] == 1:
-        return name
-    return _unique(f"{name}#{taken[name]}", taken)
-
-
-def _matrix(file: GltfFile, info: dict, what: str) -> np.ndarray:
+def local_matrix(file: GltfFile, info: dict, what: str) -> np.ndarray:
+    """(4, 4) transform of a node in that of its parent."""
     if "matrix" in info:
         return np.array(file.numbers(info, "matrix", tuple(np.eye(4).ravel()), what)).reshape(4, 4).T
-    x, y, z, w = np.array(file.numbers(info, "rotation", (0.0, 0.0, 0.0, 1.0), what))
-    length = x * x + y * y + z * z + w * w
-    if not length > 0:
+    rotation = np.array(file.numbers(info, "rotation", (0.0, 0.0, 0.0, 1.0), what))
+    if not rotation.any():
         raise file.fail(f"rotation of {what} is zero; expected a unit quaternion")
-    s = 2 / length
-    matrix = np.eye(4)
-    matrix[:3, :3] = [
+    scale = np.array(file.numbers(info, "scale", (1.0, 1.0, 1.0), what))
+    return composed(np.array(file.numbers(info, "translation", (0.0, 0.0, 0.0), what)), rotation, scale)
+
+
+def composed(translation: np.ndarray, rotation: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """(..., 4, 4) of translations (..., 3), quaternions x y z w (..., 4) of any length, and scales (..., 3)."""
+    x, y, z, w = np.moveaxis(rotation, -1, 0)
+    s = 2 / (rotation**2).sum(axis=-1)
+    matrix = np.zeros((*rotation.shape[:-1], 4, 4))
+    rows = [
         [1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
         [s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)],
         [s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
     ]
-    matrix[:3, :3] *= np.array(file.numbers(info, "scale", (1.0, 1.0, 1.0), what))
-    matrix[:3, 3] = file.numbers(info, "translation", (0.0, 0.0, 0.0), what)
+    matrix[..., :3, :3] = np.moveaxis(np.array(rows), (0, 1), (-2, -1)) * scale[..., None, :]
+    matrix[..., :3, 3], matrix[..., 3, 3] = translation, 1.0
     return matrix

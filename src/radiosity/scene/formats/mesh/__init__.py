@@ -4,9 +4,6 @@ PLY vertex and face colours are the reflectance: whole numbers (0 to 255) are sR
 point numbers linear. A texture named in a ``TextureFile`` comment is used where there are coordinates for it.
 """
 
-import logging
-import re
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -14,13 +11,14 @@ import numpy as np
 from ....errors import SceneError
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
-from ..faces import cut
+from ..faces import cut, warn_of_crossing
 from ..textures import decode_srgb, warn_of_means, with_means
 from .ply import read_ply
+from .ply_faces import of_polygons
+from .ply_faces import polygons as polygons_of
 from .ply_rows import Columns
 from .ply_textures import NONE, of_corners, of_faces, of_vertices, textures
-
-INDICES = ("vertex_indices", "vertex_index")
+from .stl import read_stl
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -29,55 +27,22 @@ def read(path: Path, options: ReadOptions) -> Scene:
     Raises:
         SceneError: damaged, truncated, or without faces.
     """
-    parts = _stl(path) if path.suffix.lower() == ".stl" else _ply(path, options)
+    parts = read_stl(path) if path.suffix.lower() == ".stl" else _ply(path, options)
     placed = [with_means(part, part.uv is None, False) for part in parts]
     warn_of_means(parts, placed, str(path))
     return assemble(placed, str(path), options)
 
 
-def _stl(path: Path) -> list[Part]:
-    """A part for every solid of an ASCII file; a binary file is one."""
-    import trimesh.exchange.stl as stl
-
-    data = path.read_bytes()
-    count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
-    binary = count >= 0 and len(data) == 84 + 50 * count
-    head = data[:4096].lower()
-    if not binary and not (head.lstrip().startswith(b"solid") and (b"facet" in head or b"endsolid" in head)):
-        announced = f"its header announces {count} triangles ({84 + 50 * count} bytes), it has {len(data)} bytes"
-        raise SceneError(f"{path}: {announced if count >= 0 else 'too short'}; the STL file is truncated or damaged")
-    log, level = logging.getLogger("trimesh"), logging.getLogger("trimesh").level
-    log.setLevel(logging.CRITICAL)  # it prints the traces of what it survives
-    try:
-        with path.open("rb") as file, warnings.catch_warnings():
-            warnings.simplefilter("error", DeprecationWarning)  # numpy's, where text is no number
-            found = stl.load_stl_binary(file) if binary else stl.load_stl_ascii(file)
-    except Exception as error:  # trimesh lets its own parts' exceptions through
-        raise SceneError(f"{path}: cannot be read as STL ({error}); the file is damaged") from None
-    finally:
-        log.setLevel(level)
-    solids = {found["metadata"].get("name") or path.stem: found} if "vertices" in found else found.get("geometry", {})
-    if not binary:
-        expected, got = data.lower().count(b"endfacet"), sum(len(solid["faces"]) for solid in solids.values())
-        if got < expected or data.lower().count(b"facet normal") > expected:
-            raise SceneError(
-                f"{path}: {got} of {data.lower().count(b'facet normal')} facets are complete; the file is truncated or damaged"
-            )
-    # trimesh calls a solid without a name geometry_1, ...
-    names = [path.stem if binary or re.fullmatch(r"geometry_\d+", str(name)) else str(name) for name in solids]
-    return [Part(name, solid["vertices"], solid["faces"]) for name, solid in zip(names, solids.values(), strict=True)]
-
-
 def _ply(path: Path, options: ReadOptions) -> list[Part]:
     ply = read_ply(path)
-    vertex, face = ply.columns.get("vertex", Columns({}, {})), ply.columns.get("face", Columns({}, {}))
+    vertex = ply.columns.get("vertex", Columns({}, {}))
     if not set("xyz") <= set(vertex.numbers):
         raise SceneError(f"{path}: the vertices have no x, y, z; the file is damaged")
     points = np.column_stack([vertex.numbers[axis] for axis in "xyz"]).astype(np.float64)
-    polygons = next((face.lists[name] for name in INDICES if name in face.lists), None)
+    polygons = polygons_of(path, ply)
     if polygons is None or not len(polygons.sizes):
         raise SceneError(f"{path}: the file holds {len(points)} points but no faces; export a surface, not a point cloud")
-    index = polygons.values.astype(np.int64)
+    face, index = of_polygons(ply, polygons), polygons.values
     wrong = (index < 0) | (index >= len(points))
     if wrong.any():
         at = int(np.flatnonzero(wrong)[0])
@@ -88,7 +53,9 @@ def _ply(path: Path, options: ReadOptions) -> list[Part]:
         if options.strict:
             raise SceneError(text)
         warn(text)
-    faces = cut(points[index], polygons.sizes)
+    crossed: list[int] = []
+    faces = cut(points[index], polygons.sizes, crossed)
+    warn_of_crossing(path, {path.stem: crossed})
     polygon = np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)[faces[:, 0]]
     color, face_color, uv = _color(path, vertex), _color(path, face), of_vertices(vertex)
     wedges, placed = of_corners(path, face.lists.get("texcoord"), polygons.sizes)

@@ -3,12 +3,16 @@
 Read here and not through trimesh, which refuses binary files that mix triangles and quadrilaterals.
 """
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from ....errors import SceneError
+from ....errors import SceneError, shown
+from ...assemble import warn
+from ..encoding import decode
+from ..names import repeated
 from .ply_rows import Columns, Property, read_ascii, read_binary
 
 TYPES = {
@@ -16,6 +20,7 @@ TYPES = {
     "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "int64": "i8", "uint64": "u8",
     "float32": "f4", "float64": "f8",
 }  # fmt: skip
+WITH_FACES = ("vertex", "face", "tristrips")
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
@@ -28,7 +33,7 @@ class Ply:
 
 
 def read_ply(path: Path) -> Ply:
-    """Read all elements up to ``face``; what follows is not needed.
+    """Read all elements up to the last of those that make faces; others are told of and left out.
 
     Raises:
         SceneError: not a PLY file, or fewer bytes or numbers than the header announces.
@@ -36,12 +41,13 @@ def read_ply(path: Path) -> Ply:
     data = path.read_bytes()
     if not data.startswith(b"ply"):
         raise SceneError(f"{path}: does not begin with 'ply'; it is damaged or of another format")
-    end = data.find(b"end_header")
-    line_end = data.find(b"\n", end)
-    if end < 0:
-        raise SceneError(f"{path}: the header has no end; the file is truncated")
-    body = data[line_end + 1 :] if line_end >= 0 else b""
-    order, elements, comments = _header(path, data[:end].decode("latin-1"))
+    lines, body = _parted(path, data)
+    order, elements, comments = _header(path, lines)
+    if several := repeated([name for name, _, _ in elements]):
+        raise SceneError(f"{path}: the header has elements of the same name: {shown(several)}; the file is damaged")
+    wanted = {name for name, _, _ in elements if name in WITH_FACES}
+    if others := [f"{name} ({count})" for name, count, _ in elements if name not in WITH_FACES and count]:
+        warn(f"{path}: elements that are left out: {shown(others)}")
     columns = {}
     words = np.array([]) if order else _numbers(path, body)
     at = 0
@@ -59,20 +65,31 @@ def read_ply(path: Path) -> Ply:
                 columns[name], at = read_ascii(words, at, count, properties)
         except (ValueError, IndexError, OverflowError):
             raise SceneError(f"{path}: the file ends within the {kind}; it is truncated or damaged") from None
-        if name == "face":
+        if wanted <= columns.keys():
             break
     return Ply(columns, comments)
 
 
-def _header(path: Path, text: str):
+def _parted(path: Path, data: bytes) -> tuple[list[str], bytes]:
+    """Lines of the header, and the bytes after it. Lines end as the first one does, so that data may begin with any byte."""
+    ends = re.match(rb"ply[ \t]*(\r\n|\n|\r)", data)
+    usual = re.escape(ends[1]) if ends else b"\n"
+    end = re.search(rb"(?<=[\r\n])[ \t]*end_header[ \t]*(?:" + usual + rb"|\r\n|\n|\r|\Z)", data)
+    if ends is None or end is None:
+        raise SceneError(f"{path}: the header has no end (a line end_header); the file is truncated")
+    text = decode(data[: end.start()], str(path)).text
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), data[end.end() :]
+
+
+def _header(path: Path, lines: list[str]):
     elements, comments = [], []
-    kinds = [line.split()[1] for line in text.splitlines() if line.startswith("format ") and len(line.split()) > 1]
+    kinds = [line.split()[1] for line in lines if line.startswith("format ") and len(line.split()) > 1]
     if not kinds or kinds[0] not in ORDERS:
         raise SceneError(
             f"{path}: the header's format is {kinds[0] if kinds else 'missing'}; expected one of {', '.join(ORDERS)}"
         )
     order = ORDERS[kinds[0]]
-    for line in text.splitlines()[1:]:
+    for line in lines[1:]:
         words = line.split()
         try:
             match words:

@@ -71,6 +71,8 @@ def read_binary(body: bytes, at: int, count: int, properties: list[Property]) ->
             if p.count is not None:
                 size = int(np.frombuffer(body, p.count, 1, at)[0])
                 at += p.count.itemsize
+                if size < 0:
+                    raise ValueError
             values.append(np.frombuffer(body, p.dtype, size, at) if size else np.zeros(0, p.dtype))
             sizes.append(size)
             at += size * p.dtype.itemsize

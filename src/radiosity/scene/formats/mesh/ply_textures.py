@@ -6,6 +6,7 @@ import numpy as np
 
 from ....errors import SceneError
 from ...assemble import ReadOptions, warn
+from ..beside import in_any_case, warn_of_case
 from ..textures import linear_image
 from .ply import Ply
 from .ply_rows import Columns, Lists
@@ -18,16 +19,23 @@ def textures(path: Path, ply: Ply, options: ReadOptions) -> list[np.ndarray | No
     """The images that comments name, in their order; None for those that cannot be read (an error where strict)."""
     names = [comment.split(None, 1)[1].strip() for comment in ply.comments if comment.lower().startswith("texturefile ")]
     result: list[np.ndarray | None] = []
+    renamed: list[tuple[str, Path]] = []
     for name in names:
         options.admit(path.parent / name, path)
         try:
-            result.append(linear_image((path.parent / name).read_bytes(), str(path.parent / name), options))
+            file = path.parent / name
+            other = None if file.is_file() else in_any_case(path.parent, name)
+            if other:
+                file = other
+                renamed.append((name, file))
+            result.append(linear_image(file.read_bytes(), str(file), options))
         except (SceneError, OSError, ValueError) as error:
             text = f"{path}: the texture '{name}' cannot be read ({error})"
             if options.strict:
                 raise SceneError(text) from None
             warn(f"{text}; left out")
             result.append(None)
+    warn_of_case(path, renamed)
     return result
 
 

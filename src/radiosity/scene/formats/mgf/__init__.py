@@ -10,19 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
-from ....errors import SceneError
-from ...assemble import assemble
+from ....errors import SceneError, shown
+from ...assemble import assemble, warn
 from ...model import Back, Scene
 from ...parts import Material, Part, ReadOptions
 from ..color import is_neutral, unit_rgb
+from ..faces import CROSSING
 from ..polygon import triangulate
 from .context import MgfMaterial
 from .faces import FaceReader, Polygons
 from .faults import Faults, Statement
 from .filter import reduce_to_faces
 from .source import read_source
-
-CROSSING = 1e-6  # relative difference of areas that rounding does not make
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -47,6 +46,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
     if not any(len(part.faces) for part in parts):
         raise SceneError(f"{path}: no faces could be read from this MGF file{faults.first()}")
     faults.warn()
+    if several := [f"{name} ({len(places)})" for name, places in reader.begun.items() if len(places) > 1]:
+        warn(f"{path}: objects of the same name become one: {shown(several)}")
     return assemble(parts, str(path), options, photometric=True)
 
 
@@ -56,6 +57,7 @@ def _material(material: MgfMaterial) -> Material:
         emission=_colored(material.emittance, material.emittance_color),
         back=Back.PASSES if material.one_sided else Back.RADIATES,
         diffuse=not material.not_diffuse,
+        origin=material.file,
     )
 
 

@@ -1,6 +1,6 @@
 """The named contexts of an MGF description: colours, materials and vertices."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf, isfinite
 
 from .faults import decode
@@ -19,6 +19,7 @@ class MgfMaterial:
     not_diffuse: frozenset[bytes] = frozenset()  # those of rs, td, ts that are not zero
     one_sided: bool = False
     defined: bool = True
+    file: str = field(default="", compare=False)  # that sets the reflectance
 
 
 class NamedContexts:
@@ -29,10 +30,12 @@ class NamedContexts:
     Attributes:
         points: vertex positions as given, before transformation; a vertex is a number in this list.
         material: the current material.
+        file: where the statements come from.
         changed: the current material is another one since this was last set to False.
     """
 
     def __init__(self):
+        self.file = ""
         self.points: list[tuple[float, ...]] = [(0.0, 0.0, 0.0)]
         self.vertices: dict[bytes | None, int] = {None: 0}
         self.changed = True
@@ -106,7 +109,7 @@ class NamedContexts:
         self._set(one_sided=words[1] == b"1")
 
     def _set_reflectance(self, words) -> None:
-        self._set(reflectance=_value(words, 1.0), reflectance_color=self._colors[self._color], defined=True)
+        self._set(reflectance=_value(words, 1.0), reflectance_color=self._colors[self._color], defined=True, file=self.file)
 
     def _set_emittance(self, words) -> None:
         self._set(emittance=_value(words, inf), emittance_color=self._colors[self._color], defined=True)

@@ -47,6 +47,7 @@ class FaceReader:
         contexts: colours, materials, vertices.
         transforms: (4, 4) matrices on row vectors; number 0 is the identity.
         polygons: by surface name and material.
+        begun: places where an object of each name begins; those that arrays and includes repeat are one.
     """
 
     def __init__(self, statements: list[Statement], faults: Faults):
@@ -55,6 +56,7 @@ class FaceReader:
         self.transforms: list[np.ndarray] = [np.eye(4)]
         self.polygons: dict[tuple[str, MgfMaterial], Polygons] = {}
         self._current = Polygons()
+        self.begun: dict[str, set[str]] = {}
         self._path: list[str] = []
         self._blocks: list[Block] = []
         self._transform = 0
@@ -95,6 +97,7 @@ class FaceReader:
     def _mark(self, words) -> None:
         if len(words) == 2:
             self._at = int(words[1])
+            self.contexts.file = self._statements[self._at].file
 
     def _face(self, words) -> None:
         vertices = self.contexts.vertices
@@ -116,6 +119,7 @@ class FaceReader:
         self.contexts.changed = True
         if len(words) > 1:
             self._path.append(decode(b" ".join(words[1:])))
+            self.begun.setdefault(".".join(self._path), set()).add(self._statements[self._at].place)
         elif self._path:
             self._path.pop()
         else:

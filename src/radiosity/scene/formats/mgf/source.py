@@ -1,11 +1,15 @@
 """An MGF file and those it includes, as one list of statements that know where they come from."""
 
 import os
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ....errors import SceneError
 from ...parts import ReadOptions
-from .faults import Faults, Statement, decode
+from ..beside import in_any_case, warn_of_case
+from ..encoding import decode
+from .faults import Faults, Statement
+from .faults import decode as name_of
 
 ENTITIES = set(
     b"o xf i ies c cxy cspec cct cmix m sides rd td ed rs ts ir v p n f fh sph cyl cone prism ring torus".split()
@@ -13,6 +17,14 @@ ENTITIES = set(
 DEEPEST = 32  # files that include each other
 LONGEST = 4000  # bytes of a statement that the standard parser takes
 MOST = 20_000_000  # statements
+
+
+@dataclass
+class Known:
+    """Files that were read: their statements by name, and the code page of the first that is not Unicode, which others share."""
+
+    statements: dict[str, list[Statement]] = field(default_factory=dict)
+    codec: str | None = None
 
 
 def read_source(path: Path, faults: Faults, options: ReadOptions) -> list[Statement]:
@@ -25,28 +37,28 @@ def read_source(path: Path, faults: Faults, options: ReadOptions) -> list[Statem
             a line that would run a command.
     """
     result: list[Statement] = []
-    _include(os.fspath(path), (), {}, result, faults, options)
+    _include(os.fspath(path), (), Known(), result, faults, options)
     return result
 
 
 def _include(
-    name: str, above: tuple[str, ...], known: dict, result: list[Statement], faults: Faults, options: ReadOptions
+    name: str, above: tuple[str, ...], known: Known, result: list[Statement], faults: Faults, options: ReadOptions
 ) -> None:
-    if name not in known:
-        known[name] = _statements(name)
-    for statement in known[name]:
+    if name not in known.statements:
+        known.statements[name] = _statements(name, known)
+    for statement in known.statements[name]:
         words = statement.text.split()
         if words[0] == b"i":
             _include_statement(statement, words, (*above, name), known, result, faults, options)
         elif words[0].startswith(b"!"):
             raise SceneError(
-                f"{statement.place}: '{decode(statement.text)[:60]}' would run a command; a scene is data, and nothing in it is "
+                f"{statement.place}: '{name_of(statement.text)[:60]}' would run a command; a scene is data, and nothing in it is "
                 "run: take the line out, or put there what the command writes"
             )
         elif words[0] == b"ies":
             faults.add(statement.place, "the luminaire is not read: IES photometry is no diffuse surface")
         elif words[0] not in ENTITIES:
-            faults.add(statement.place, f"unknown entity '{decode(words[0])[:40]}'")
+            faults.add(statement.place, f"unknown entity '{name_of(words[0])[:40]}'")
         elif len(statement.text) > LONGEST:
             faults.add(statement.place, f"the statement has {len(statement.text)} bytes; at most {LONGEST} are read")
         else:
@@ -66,6 +78,9 @@ def _include_statement(
         return faults.add(statement.place, f"'{name}' includes itself")
     if len(above) >= DEEPEST:
         return faults.add(statement.place, f"files include each other more than {DEEPEST} deep")
+    if not os.path.isfile(name) and (other := in_any_case(Path(statement.file).parent, os.fsdecode(words[1].lstrip(b"/")))):
+        warn_of_case(statement.place, [(Path(name).name, other)])
+        name = os.fspath(options.admit(other, statement.place))
     if not os.path.isfile(name):
         return faults.add(statement.place, f"included file '{name}' does not exist")
     transformed = len(words) > 2
@@ -81,8 +96,12 @@ def _include_statement(
         result.append(Statement(b"xf", statement.file, statement.line))
 
 
-def _statements(name: str) -> list[Statement]:
+def _statements(name: str, known: Known) -> list[Statement]:
     data = Path(name).read_bytes()
+    if not data.isascii():  # in some code pages the last byte of a name may be that of a backslash
+        text = decode(data, name, hint=known.codec)
+        known.codec = known.codec or (None if text.codec.startswith("utf") else text.codec)
+        data = text.text.encode()
     if b"\0" in data:
         raise SceneError(f"{name}: is not an MGF file (it holds binary data)")
     result: list[Statement] = []

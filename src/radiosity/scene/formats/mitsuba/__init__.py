@@ -1,6 +1,7 @@
 """Read Mitsuba 3 XML scenes: shapes, BSDFs by their diffuse albedo, area emitters and perspective cameras, in metres.
 
-A one-sided BSDF absorbs on the back, ``twosided`` radiates on either side, and an area emitter emits from the front only. A
+A one-sided BSDF absorbs on the back, ``twosided`` radiates on either side, and an area emitter emits from the front only: without
+a BSDF it is black, and with a ``null`` one lines pass through it. A partial ``mask`` is taken as opaque. A
 radiance L is an exitance of pi L. A radiance that is constant over all wavelengths is grey where the whole scene is, and
 otherwise what Mitsuba makes of it in linear sRGB.
 """
@@ -13,8 +14,9 @@ from ....errors import SceneError, shown
 from ...assemble import assemble, warn
 from ...model import Scene
 from ...parts import Part, ReadOptions
+from ..names import repeated
 from ..textures import warn_of_means, with_means
-from .bsdf import read_bsdf
+from .bsdf import of_shape
 from .camera import read_camera
 from .color import Colors
 from .image import find_file
@@ -22,7 +24,7 @@ from .mesh import read_mesh
 from .node import Node
 from .parse import parse
 from .part import as_srgb, is_equal_energy, make_part
-from .placement import placed, transformation
+from .placement import check_round, placed, transformation
 from .shapes import ANALYTIC, Geometry
 
 MESHES = ("obj", "ply", "serialized")
@@ -65,6 +67,8 @@ class Reader:
         self._geometries: dict[int, Geometry] = {}
         self._equal_energy: list[int] = []  # parts by number
         self._averaged: list[str] = []
+        self._given: list[str] = []  # names that the file gives, of shapes or of their files
+        self._masked: dict[str, float] = {}
         self._shapes = self._faces = 0
 
     def add(self, node: Node, outer: np.ndarray, prefix: str) -> None:
@@ -73,7 +77,8 @@ class Reader:
         Raises:
             SceneError: numbers, files or types that make no shape.
         """
-        label = prefix + (node.name or Path(str(node.values.get("filename", ""))).stem or node.plugin)
+        given = node.name or Path(str(node.values.get("filename", ""))).stem
+        label = prefix + (given or node.plugin)
         inner = transformation(node, label)
         self._shapes += 1
         if self._shapes > MOST_SHAPES or self._faces > MOST_FACES:
@@ -86,17 +91,23 @@ class Reader:
             return
         if node.plugin not in (*ANALYTIC, *MESHES, *OTHERS):
             raise SceneError(f"{node.place}: Mitsuba has no shape of type '{node.plugin}'")
-        sides = read_bsdf(next(iter(node.of("BSDF")), None), self._colors)
-        if sides.invisible or node.plugin in OTHERS:
-            self.left_out[f"{label} ({'null' if sides.invisible else node.plugin})"] = None
-            return
-        geometry = placed(self._geometry(node), inner, outer, flip=bool(node.values.get("flip_normals", False)))
         area = [emitter for emitter in node.of("Emitter") if emitter.plugin == "area"]
+        if len(area) > 1:
+            raise SceneError(f"{node.place}: '{label}' has {len(area)} area emitters; Mitsuba takes one: leave out the others")
+        sides = of_shape(node, bool(area), self._colors)
+        if node.plugin in OTHERS or (sides.opacity == 0 and not area):
+            self.left_out[f"{label} ({node.plugin if node.plugin in OTHERS else 'null'})"] = None
+            return
+        check_round(node, inner, label)
+        geometry = placed(self._geometry(node), inner, outer, flip=bool(node.values.get("flip_normals", False)))
         self.left_out |= {f"{emitter.plugin} emitter": None for emitter in node.of("Emitter") if emitter not in area}
         if area and is_equal_energy(area[0]):
             self._equal_energy.append(len(self._parts))
         part, averaged = make_part(self._unique(label), geometry, sides, area[0] if area else None, self._colors)
         self._parts.append(part)
+        self._given += [label] if given else []
+        if 0 < sides.opacity < 1:
+            self._masked[part.name] = sides.opacity
         self._averaged += [part.name] * averaged
         self._faces += len(part.faces)
 
@@ -113,6 +124,11 @@ class Reader:
             raise SceneError(f"{self._path}: cannot be used as it is{text}; remove that, or read the file without strict")
         if text:
             warn(f"{self._path}: only diffuse surfaces and area emitters take part{text}")
+        if several := repeated(self._given):
+            warn(f"{self._path}: shapes of the same name get numbers ('name 2', ...) in the order of the file: {shown(several)}")
+        if self._masked:
+            shares = [f"{name} ({opacity:.3g})" for name, opacity in self._masked.items()]
+            warn(f"{self._path}: transparency (mask) is left out, taken as opaque, with the mean opacity: {shown(shares)}")
         if self._averaged:
             warn(f"{self._path}: textures averaged where the two sides differ: {shown(self._averaged)}")
         if any(part.n_bands == 3 for part in self._parts):

@@ -1,8 +1,10 @@
 """Mitsuba's BSDFs by their diffuse albedo: what a side reflects."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ....errors import SceneError
+import numpy as np
+
+from ....errors import SceneError, shown
 from .color import Color, Colors, Image, VertexColors
 from .node import Node
 
@@ -16,6 +18,7 @@ ALBEDO = {
 }  # plugin: its argument, and the default that it has in Mitsuba
 BLACK = ("conductor", "roughconductor", "dielectric", "thindielectric", "roughdielectric", "polarizer", "retarder", "circular")
 WRAPPERS = ("bumpmap", "normalmap", "mask")
+CLEAR = ("null", "mask", "dielectric", "thindielectric", "roughdielectric")  # what Mitsuba does not take within twosided
 OTHERS = ("blendbsdf", "hair", "measured", "measured_polarized", "null", "twosided")
 
 
@@ -29,29 +32,60 @@ class Side:
 
 @dataclass(frozen=True)
 class Sides:
-    """Front and back; no back: it absorbs. ``invisible``: there is no surface at all."""
+    """Front and back; no back: it absorbs. ``opacity``: the share of the light that meets a surface; 0: there is none."""
 
     front: Side
     back: Side | None = None
-    invisible: bool = False
+    opacity: float = 1.0
 
 
-def read_bsdf(node: Node | None, colors: Colors) -> Sides:
-    """The sides of a shape that has this BSDF; None: Mitsuba's default, diffuse 0.5, of one side.
+def of_shape(shape: Node, emits: bool, colors: Colors) -> Sides:
+    """The sides of a shape. Without a BSDF Mitsuba takes a diffuse one of one side: black where the shape emits, else 0.5.
+
+    Raises:
+        SceneError: it has several, Mitsuba has no such BSDF, or a colour of it cannot be read.
+    """
+    found = shape.of("BSDF")
+    if len(found) > 1:
+        raise SceneError(f"{shape.place}: the '{shape.plugin}' has {len(found)} BSDFs; Mitsuba takes one: leave out the others")
+    if not found:
+        return Sides(Side((0.0,)) if emits else Side())
+    return read_bsdf(found[0], colors)
+
+
+def read_bsdf(node: Node, colors: Colors) -> Sides:
+    """The sides of a shape that has this BSDF.
 
     Raises:
         SceneError: Mitsuba has no such BSDF, or a colour of it cannot be read.
     """
-    if node is None:
-        return Sides(Side())
+    inner = node.of("BSDF")
     if node.plugin == "twosided":
-        nested = [_side(child, colors) for child in node.of("BSDF")] or [Side()]
+        kinds = [child.plugin for child in inner]
+        if len(kinds) not in (1, 2) or set(kinds) & {*CLEAR, "twosided"}:
+            text = f"{node.place}: a 'twosided' BSDF of {shown(kinds) or 'nothing'}"
+            raise SceneError(f"{text}; Mitsuba takes one or two that let no light through (put a mask around the twosided one)")
+        nested = [_side(child, colors) for child in inner]
         return Sides(nested[0], nested[-1])
-    if node.plugin in WRAPPERS and (inner := node.of("BSDF")):
+    if node.plugin in WRAPPERS:
+        if len(inner) != 1:
+            raise SceneError(f"{node.place}: a '{node.plugin}' holds {len(inner)} BSDFs; Mitsuba takes one")
         sides = read_bsdf(inner[0], colors)
+        if node.plugin == "mask":
+            return replace(sides, opacity=sides.opacity * min(max(_mean(colors.get(node, "opacity", 0.5)), 0.0), 1.0))
         back = sides.back and Side(sides.back.albedo, False)
-        return Sides(Side(sides.front.albedo, False), back, sides.invisible)
-    return Sides(_side(node, colors), invisible=node.plugin == "null")
+        return replace(sides, front=Side(sides.front.albedo, False), back=back)
+    if node.plugin == "blendbsdf" and len(inner) == 2 and "null" in (kinds := [child.plugin for child in inner]):
+        weight = _mean(colors.get(node, "weight", 0.5))
+        sides = read_bsdf(inner[kinds.index("null") - 1], colors)
+        return replace(sides, opacity=sides.opacity * (weight if kinds[0] == "null" else 1 - weight))
+    return Sides(_side(node, colors), opacity=0.0 if node.plugin == "null" else 1.0)
+
+
+def _mean(value: "Color | Image | VertexColors") -> float:
+    """One number of a weight, an opacity or a texture of them."""
+    color = value.mean if isinstance(value, Image) else value
+    return float(np.mean(color)) if isinstance(color, tuple) else 0.5
 
 
 def _side(node: Node, colors: Colors) -> Side:
@@ -72,7 +106,7 @@ def _side(node: Node, colors: Colors) -> Side:
 
 def _blend(node: Node, nested: list[Side], colors: Colors) -> Side:
     weight = colors.get(node, "weight", 0.5)
-    mean = weight.mean[0] if isinstance(weight, Image) else weight[0] if isinstance(weight, tuple) else 0.5
+    mean = _mean(weight)
     first, second = (s.albedo.mean if isinstance(s.albedo, Image) else s.albedo for s in nested)
     if not isinstance(first, tuple) or not isinstance(second, tuple):
         return Side(first or second, False)

@@ -6,6 +6,7 @@ import numpy as np
 
 from ....errors import SceneError
 from ...parts import ReadOptions
+from ..beside import in_any_case, warn_of_case
 from ..textures import linear_image, reduced
 from .node import Node
 from .parse import message
@@ -19,10 +20,16 @@ def find_file(folders: list[Path], name: str, node: Node, options: ReadOptions) 
     Raises:
         SceneError: there is none, or it lies outside the scene's folder.
     """
-    for folder in (*folders, Path(node.place.rsplit(" (", 1)[0]).parent):
-        for file in (folder / name, folder / name.replace("\\", "/")):
+    source = Path(node.place.rsplit(" (", 1)[0])
+    plain = name.replace("\\", "/")
+    for folder in (*folders, source.parent):
+        for file in (folder / name, folder / plain):
             if file.is_file():
                 return options.admit(file, node.place)
+    for folder in dict.fromkeys((folders[0], source.parent)):
+        if plain and (other := in_any_case(folder, plain)):
+            warn_of_case(source, [(plain, other)])
+            return options.admit(other, node.place)
     raise SceneError(f"{node.place}: the file '{name}' of this '{node.plugin}' does not exist in {folders[0]}")
 
 

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from ....errors import SceneError
-from ..faces import cut
+from ..faces import cut, warn_of_crossing
 from ..mesh.ply import read_ply
+from ..mesh.ply_faces import of_polygons, polygons
 from ..obj.tables import parse
 from .attributes import ply_attributes
 from .node import Node
@@ -45,7 +46,9 @@ def _obj(node: Node, file: Path) -> Geometry:
     corners, index = np.unique([corner for row in rows for corner in row], axis=0, return_inverse=True)
     vertices = points[corners[:, 0]]
     index = index.ravel()
-    faces = cut(vertices[index], np.array([len(row) for row in rows]))
+    crossed: list[int] = []
+    faces = cut(vertices[index], np.array([len(row) for row in rows]), crossed)
+    warn_of_crossing(file, {file.stem: crossed})
     has_uv = (corners[:, 1] >= 0).all()
     uv = np.array(tables.uv, float).reshape(-1, 2)[corners[:, 1]] if has_uv else None
     normals = re.search(rb"(?m)^\s*vn\s", file.read_bytes()) is not None
@@ -53,19 +56,22 @@ def _obj(node: Node, file: Path) -> Geometry:
 
 
 def _ply(node: Node, file: Path) -> Geometry:
-    elements = read_ply(file).columns
-    if "vertex" not in elements or "face" not in elements:
+    ply = read_ply(file)
+    index = polygons(file, ply)
+    if "vertex" not in ply.columns or index is None:
         raise SceneError(f"{file}: the file has no vertices or no faces")
-    vertex, lists = elements["vertex"].numbers, elements["face"].lists
-    index = next((lists[name] for name in ("vertex_indices", "vertex_index") if name in lists), None)
-    if index is None or not {"x", "y", "z"} <= set(vertex):
-        raise SceneError(f"{file}: the vertices have no x, y, z, or the faces no vertex_indices")
+    vertex = ply.columns["vertex"].numbers
+    if not {"x", "y", "z"} <= set(vertex):
+        raise SceneError(f"{file}: the vertices have no x, y, z")
     points = _columns(vertex, ("x", "y", "z"))
-    corners = _checked(index.values.astype(np.int64), len(points), file)
-    faces = cut(points[corners], index.sizes)
+    corners = _checked(index.values, len(points), file)
+    crossed: list[int] = []
+    faces = cut(points[corners], index.sizes, crossed)
+    warn_of_crossing(file, {file.stem: crossed})
     uv = next((_columns(vertex, pair) for pair in (("u", "v"), ("s", "t")) if set(pair) <= set(vertex)), None)
     polygon = np.repeat(np.arange(len(index.sizes)), index.sizes)[faces[:, 0]]
-    of_faces = ply_attributes(elements["face"].numbers, "face")
+    face = of_polygons(ply, index)
+    of_faces = ply_attributes(face.numbers, "face")
     attributes = ply_attributes(vertex, "vertex") | {name: values[polygon] for name, values in of_faces.items()}
     return Geometry(points, np.where(faces >= 0, corners[faces], -1), uv, attributes, {"nx", "ny", "nz"} <= set(vertex))
 

@@ -16,7 +16,7 @@ from .shapes import Geometry
 
 def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None, colors: Colors) -> tuple[Part, bool]:
     """The part, and whether textures were averaged because its two sides differ (a part has one texture)."""
-    front, back = sides.front, sides.back
+    front, back = (sides.front, sides.back) if sides.opacity > 0 else (Side((0.0,)), None)
     averaged = back is not None and back != front and any(not isinstance(s.albedo, tuple | None) for s in (front, back))
     if back is not None and averaged:
         front, back = (_mean(side, geometry, name) for side in (front, back))
@@ -29,7 +29,7 @@ def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None,
     material = Material(
         reflectance=_base(front),
         emission=emission,
-        back=Back.ABSORBS if back is None else Back.RADIATES,
+        back=Back.OPEN if sides.opacity == 0 else Back.ABSORBS if back is None else Back.RADIATES,
         back_reflectance=None if back is None or back == front else _base(back),
         back_emission=(0.0,),
         diffuse=front.diffuse and (back is None or back.diffuse),

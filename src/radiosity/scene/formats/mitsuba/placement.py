@@ -6,7 +6,9 @@ import numpy as np
 
 from ....errors import SceneError
 from .node import Node
-from .shapes import Geometry
+from .shapes import Geometry, cylinder_axes
+
+UNEVEN = 1e-3  # relative: what rounding of the numbers of a file may make
 
 
 def transformation(node: Node, label: str) -> np.ndarray:
@@ -20,6 +22,27 @@ def transformation(node: Node, label: str) -> np.ndarray:
         text = f"{node.place}: the transformation of '{label}' is {matrix.tolist()}"
         raise SceneError(f"{text}; it must be finite and affine")
     return matrix
+
+
+def check_round(node: Node, matrix: np.ndarray, label: str) -> None:
+    """Refuse a sphere that is scaled unevenly, or a cylinder that is not round any more: Mitsuba keeps the shape and
+    takes the scale of one axis, with a message in its log.
+
+    Raises:
+        SceneError: it is.
+    """
+    if node.plugin not in ("sphere", "cylinder"):
+        return
+    axes = matrix[:3, :3] @ (cylinder_axes(node)[1] if node.plugin == "cylinder" else np.eye(3)).T
+    lengths = np.linalg.norm(axes, axis=0)
+    round_ones = lengths[: 2 if node.plugin == "cylinder" else 3]
+    cosines = np.abs(np.triu(axes.T @ axes, 1)).max() / max(lengths.max() ** 2, 1e-300)
+    if np.ptp(round_ones) > UNEVEN * round_ones.max() or cosines > UNEVEN:
+        scales = ", ".join(f"{length:.4g}" for length in lengths)
+        raise SceneError(
+            f"{node.place}: the {node.plugin} '{label}' is scaled unevenly or sheared (its axes become {scales} long), which "
+            "Mitsuba does not do to this shape; scale it evenly, or take a mesh"
+        )
 
 
 def placed(geometry: Geometry, inner: np.ndarray, outer: np.ndarray, *, flip: bool) -> Geometry:

@@ -1,7 +1,7 @@
 """Mitsuba's analytic shapes as faces.
 
-Rectangle and cube are exact. Round shapes become flat faces whose total area is that of the shape (of the unit sphere,
-where a sphere is scaled unevenly), so that emitters keep their power; their corners lie a little outside the surface.
+Rectangle and cube are exact. Round shapes become flat faces whose total area is that of the shape, so that emitters keep
+their power; their corners lie a little outside the surface.
 """
 
 from dataclasses import dataclass, field
@@ -57,7 +57,8 @@ def disk(node: Node) -> Geometry:
     return Geometry(vertices, np.column_stack([AROUND + 1 + i, i, i + 1]), np.concatenate([uv, centres]))
 
 
-def cylinder(node: Node) -> Geometry:
+def cylinder_axes(node: Node) -> tuple[float, np.ndarray]:
+    """The length of a cylinder, and (3, 3) unit vectors: two across and the axis."""
     first = node.vector("p0", (0, 0, 0))
     axis = node.vector("p1", (0, 0, 1)) - first
     length = np.linalg.norm(axis)
@@ -66,7 +67,13 @@ def cylinder(node: Node) -> Geometry:
     sign = np.copysign(1.0, axis[2])
     a = -1 / (sign + axis[2])
     b = axis[0] * axis[1] * a
-    across = np.array([(1 + sign * axis[0] ** 2 * a, sign * b, -sign * axis[0]), (b, sign + axis[1] ** 2 * a, -axis[1])])
+    across = (1 + sign * axis[0] ** 2 * a, sign * b, -sign * axis[0]), (b, sign + axis[1] ** 2 * a, -axis[1])
+    return float(length), np.array([*across, axis])
+
+
+def cylinder(node: Node) -> Geometry:
+    first, (length, axes) = node.vector("p0", (0, 0, 0)), cylinder_axes(node)
+    across, axis = axes[:2], axes[2]
     angle = np.linspace(0, 2 * np.pi, AROUND + 1)
     radius = node.number("radius", 1.0) * (np.pi / AROUND) / np.sin(np.pi / AROUND)
     rim = first + radius * np.column_stack([np.cos(angle), np.sin(angle)]) @ across

@@ -14,10 +14,11 @@ from ....errors import SceneError, shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
 from ...sampler import DEFAULT_SAMPLER
-from ..faces import cut
+from ..beside import in_any_case, warn_of_case
+from ..faces import cut, warn_of_crossing
 from ..textures import decode_srgb, warn_of_means, with_means
 from .mtl import Finish, read_library
-from .tables import Tables, parse
+from .tables import NO_NAME, Tables, parse
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -35,6 +36,10 @@ def read(path: Path, options: ReadOptions) -> Scene:
         warn(text)
     if tables.free_form:
         warn(f"{path}: {tables.free_form} free-form curves and surfaces are left out; export polygons")
+    if tables.left_out:
+        warn(f"{path}: statements that are left out: {shown(f'{what} ({count})' for what, count in tables.left_out.items())}")
+    if several := [f"{name} ({count})" for name, count in tables.begun.items() if count > 1 and name.lower() not in NO_NAME]:
+        warn(f"{path}: objects of the same name become one: {shown(several)}")
     finishes = _libraries(path, tables, options)
     wanted = {material for _, material in tables.groups if material}
     if missing := sorted(wanted - set(finishes)):
@@ -42,8 +47,10 @@ def read(path: Path, options: ReadOptions) -> Scene:
     vertices = np.array([row[:3] for row in tables.vertices], np.float64).reshape(-1, 3)
     colors = np.array([row[3:6] if len(row) >= 6 else [np.nan] * 3 for row in tables.vertices]).reshape(-1, 3)
     uv = np.array(tables.uv, np.float64).reshape(-1, 2)
-    parts = [_part(name or path.stem, material, rows, (vertices, colors, uv), finishes.get(material))
+    crossed: dict[str, list[int]] = {}
+    parts = [_part(name or path.stem, material, rows, (vertices, colors, uv), finishes.get(material), crossed)
              for (name, material), rows in tables.groups.items() if rows]  # fmt: skip
+    warn_of_crossing(path, crossed)
     placed = [with_means(part, part.uv is None, part.emission_uv is None) for part in parts]
     warn_of_means(parts, placed, str(path))
     return assemble(placed, str(path), options)
@@ -51,32 +58,40 @@ def read(path: Path, options: ReadOptions) -> Scene:
 
 def _libraries(path: Path, tables: Tables, options: ReadOptions) -> dict[str, Finish]:
     result: dict[str, Finish] = {}
-    lost = []
+    lost, renamed, again = [], [], []
     for text in dict.fromkeys(tables.libraries):
+        text = text.replace("\\", "/")
         # a name may hold blanks, and a line may hold several names
-        whole = path.parent / text.replace("\\", "/")
-        for file in [whole] if isfile(whole) else [path.parent / name.replace("\\", "/") for name in text.split()]:
-            options.admit(file, path)
+        whole = isfile(path.parent / text) or in_any_case(path.parent, text)
+        for name in [text] if whole else text.split():
+            file = options.admit(path.parent / name, path)
+            if not isfile(file) and (other := in_any_case(path.parent, name)):
+                renamed.append((name, other))
+                file = options.admit(other, path)
             if isfile(file):
-                result.update(read_library(file, options))
+                found = read_library(file, options, tables.codec)
+                again += [material for material in found if material in result]
+                result.update(found)
             else:
-                lost.append(str(file.name))
+                lost.append(file.name)
+    warn_of_case(path, renamed)
+    if again:
+        warn(f"{path}: materials that several libraries define; the last one holds: {shown(dict.fromkeys(again))}")
     if lost:
         warn(f"{path}: material libraries that do not exist: {shown(lost)}; put them beside the file")
     return result
 
 
-def _part(name: str, material: str, rows, tables, finish: Finish | None) -> Part:
+def _part(name: str, material: str, rows, tables, finish: Finish | None, crossed: dict[str, list[int]]) -> Part:
+    name = f"{name}/{material}" if material and material != name else name
     vertices, colors, uv = tables
     flat = np.array([corner for row in rows for corner in row], np.int64)
-    faces = cut(vertices[flat[:, 0]], np.array([len(row) for row in rows]))
+    faces = cut(vertices[flat[:, 0]], np.array([len(row) for row in rows]), crossed.setdefault(name, []))
     keys, index = np.unique(flat[:, 0] * (len(uv) + 1) + flat[:, 1] + 1, return_inverse=True)
     corners = np.column_stack([keys // (len(uv) + 1), keys % (len(uv) + 1) - 1])
     numbers = np.where(faces >= 0, index[faces], -1)
     finish = finish or Finish(Material())
-    part = Part(
-        f"{name}/{material}" if material and material != name else name, vertices[corners[:, 0]], numbers, finish.material
-    )
+    part = Part(name, vertices[corners[:, 0]], numbers, finish.material)
     color = decode_srgb(colors[corners[:, 0]])
     if np.isfinite(color).all():
         part = replace(part, color=color)

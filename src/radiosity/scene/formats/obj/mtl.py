@@ -8,9 +8,13 @@ import numpy as np
 from ....errors import SceneError, shown
 from ...assemble import Material, ReadOptions, warn
 from ...model import Back
+from ..beside import warn_of_case
+from ..color import unit_rgb
+from ..encoding import read_text
 from .mtl_map import Map, Maps
 from .text import lines
 
+UNREAD = {"disp": "displacements", "decal": "decals"}  # what changes shape or colour; bumps and highlights are not diffuse
 LARGEST = 1e30  # what is multiplied by a texture stays finite
 
 
@@ -23,33 +27,63 @@ class Finish:
     emissive: Map | None = None
 
 
-def read_library(path: Path, options: ReadOptions) -> dict[str, Finish]:
+def read_library(path: Path, options: ReadOptions, codec: str) -> dict[str, Finish]:
     """The materials of a library by name. ``Kd`` is the reflectance, ``Ke`` a radiance.
 
-    Textures that are missing or damaged are left out with one warning (an error where ``options.strict``).
+    Textures that are missing or damaged are left out with one warning (an error where ``options.strict``). Of several
+    materials of one name the last holds.
+
+    Args:
+        codec: of the file that asks for the library.
 
     Raises:
         SceneError: a value that is no number.
     """
     entries: dict[str, dict[str, tuple[int, str]]] = {}
     current: dict[str, tuple[int, str]] = {}
-    for number, words in lines(path):
+    again: dict[str, None] = {}
+    for number, words in lines(read_text(path, hint=codec).text):
         if words[0].lower() == "newmtl":
-            current = entries.setdefault(" ".join(words[1:]), {})
+            name = " ".join(words[1:])
+            again |= {name: None} if name in entries else {}
+            current = entries[name] = {}
         else:
             current[words[0].lower()] = (number, " ".join(words[1:]))
+    if again:
+        warn(f"{path}: materials that are defined again; the last definition holds: {shown(again)}")
     maps = Maps(path, options)
     result = {name: _finish(path, entry, maps) for name, entry in entries.items()}
+    warn_of_case(path, maps.renamed)
+    _warn_of_rest(path, entries)
     if maps.lost:
         warn(f"{path}: textures that cannot be read are left out: {'; '.join(dict.fromkeys(maps.lost))}")
     if maps.ignored:
         warn(f"{path}: options of textures that are not followed: {shown(maps.ignored)}; bake them into the image")
     see_through = [
-        name for name, entry in entries.items() if _number(path, entry, "d", 1.0) < 1 or _number(path, entry, "tr", 0.0) > 0
+        name
+        for name, entry in entries.items()
+        if _number(path, entry, "d", 1.0) < 1 or _number(path, entry, "tr", 0.0) > 0 or "map_d" in entry
     ]
     if see_through:
         warn(f"{path}: transparency is left out, taken as opaque: {shown(see_through)}")
     return result
+
+
+def _warn_of_rest(path: Path, entries: dict) -> None:
+    """What materials hold that changes their colour or shape, and is not read."""
+    curves = [name for name, entry in entries.items() if any(_is(entry, key, "spectral") for key in ("kd", "ke"))]
+    if curves:
+        warn(f"{path}: colours that are spectral curves (.rfl) are not read, write them as red, green and blue: {shown(curves)}")
+    converted = [name for name, entry in entries.items() if any(_is(entry, key, "xyz") for key in ("kd", "ke"))]
+    if converted:
+        warn(f"{path}: CIE XYZ colours become red, green and blue of an equal-energy white: {shown(converted)}")
+    for key, what in UNREAD.items():
+        if names := [name for name, entry in entries.items() if key in entry]:
+            warn(f"{path}: {what} ({key}) are left out: {shown(names)}")
+
+
+def _is(entry: dict, key: str, kind: str) -> bool:
+    return key in entry and entry[key][1].split()[:1] == [kind]
 
 
 def _finish(path: Path, entry: dict, maps: Maps) -> Finish:
@@ -67,6 +101,7 @@ def _finish(path: Path, entry: dict, maps: Maps) -> Finish:
         emission=tuple(np.pi * v for v in radiance),
         back=Back.RADIATES,
         diffuse=not (glossy or _number(path, entry, "pm", 0.0) > 0),
+        origin=str(path),
     )
     return Finish(material, base, emissive if any(radiance) else None)
 
@@ -89,6 +124,11 @@ def _number(path: Path, entry: dict, key: str, default: float) -> float:
 
 
 def _color(path: Path, entry: dict, key: str) -> tuple[float, ...] | None:
+    if _is(entry, key, "spectral"):
+        return None
+    xyz = _is(entry, key, "xyz")
+    if xyz:
+        entry = {key: (entry[key][0], entry[key][1].split(None, 1)[-1].removeprefix("xyz"))}
     values = _floats(path, entry, key)
     if not values:
         return None
@@ -97,4 +137,7 @@ def _color(path: Path, entry: dict, key: str) -> tuple[float, ...] | None:
         raise SceneError(
             f"{path}, line {entry[key][0]}: {key} is {shown(values)}; values must be below {LARGEST:g} and not negative"
         )
+    if xyz and len(values) == 3 and values[1] > 0:
+        total = sum(values)
+        values = [float(v) for v in values[1] * unit_rgb(values[0] / total, values[1] / total)]
     return tuple(values[:1] if len(set(values)) == 1 else values)

@@ -9,6 +9,7 @@ import numpy as np
 from ....errors import SceneError
 from ...parts import ReadOptions
 from ...sampler import DEFAULT_SAMPLER, Sampler
+from ..beside import in_any_case
 from ..textures import linear_image
 
 # options of map_Kd and map_Ke, and how many values follow (-o, -s, -t: one to three numbers)
@@ -40,6 +41,7 @@ class Maps:
     options: ReadOptions
     images: dict[Path, np.ndarray] = field(default_factory=dict)
     lost: list[str] = field(default_factory=list)
+    renamed: list[tuple[str, Path]] = field(default_factory=list)  # found under a name of other case
     ignored: dict[str, None] = field(default_factory=dict)
 
     def read(self, line: int, text: str) -> Map | None:
@@ -84,6 +86,9 @@ class Maps:
         for file in (self.path.parent / plain, self.path.parent / Path(plain).name):
             if plain and file.is_file():
                 return file
+        if plain and (file := in_any_case(self.path.parent, plain) or in_any_case(self.path.parent, Path(plain).name)):
+            self.renamed.append((plain, file))
+            return file
         raise SceneError(f"'{name}' does not exist beside {self.path.name}")
 
 

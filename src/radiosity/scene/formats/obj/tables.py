@@ -1,13 +1,21 @@
 """The lines of an OBJ file as tables."""
 
+from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ....errors import SceneError
+from ..encoding import read_text
 from .text import lines
 
 NO_NAME = ("", "default", "off", "(null)")
 FREE_FORM = ("curv", "curv2", "surf")
+NO_FACES = {"p": "points", "l": "lines"}
+# statements that change no face: normals, smoothing, what belongs to free forms, and how programs show things
+WITHOUT_EFFECT = (
+    "vn", "vp", "s", "deg", "bmat", "step", "cstype", "parm", "trim", "hole", "scrv", "sp", "end", "con", "mg",
+    "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech", "stech",
+)  # fmt: skip
 NONE = -1
 
 
@@ -21,6 +29,9 @@ class Tables:
     libraries: list[str] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
     free_form: int = 0
+    left_out: Counter[str] = field(default_factory=Counter)  # statements that are not read, by what they are
+    begun: Counter[str] = field(default_factory=Counter)  # how often each object begins
+    codec: str = "utf-8"
     highest: dict[str, tuple[int, int]] = field(default_factory=dict)  # number used of a table, and its line
 
 
@@ -30,10 +41,11 @@ def parse(path: Path) -> Tables:
     Raises:
         SceneError: a line that is not understood, or a vertex that does not exist.
     """
-    tables = Tables()
+    text = read_text(path)
+    tables = Tables(codec=text.codec)
     name = {"o": "", "g": ""}
     material, faces = "", None
-    for number, words in lines(path):
+    for number, words in lines(text.text):
         key = words[0]
         try:
             if key == "v":
@@ -52,12 +64,15 @@ def parse(path: Path) -> Tables:
                 name[key], faces = " ".join(words[1:]), None
                 if key == "o":
                     name["g"] = ""
+                    tables.begun[name["o"]] += 1
             elif key == "usemtl":
                 material, faces = " ".join(words[1:]), None
             elif key == "mtllib":
                 tables.libraries.append(" ".join(words[1:]))
             elif key in FREE_FORM:
                 tables.free_form += 1
+            elif key not in WITHOUT_EFFECT:
+                tables.left_out[NO_FACES.get(key, key)] += 1
         except ValueError as error:
             raise SceneError(f"{path}, line {number}: '{' '.join(words)[:80]}' is not understood ({error})") from None
     for what, table in (("vertex", tables.vertices), ("texture vertex", tables.uv)):

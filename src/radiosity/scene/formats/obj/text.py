@@ -2,20 +2,16 @@
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
 COMMENT = re.compile(r"(?:^|\s)#.*")  # a # within a name is part of it
 
 
-def lines(path: Path) -> Iterator[tuple[int, list[str]]]:
+def lines(text: str) -> Iterator[tuple[int, list[str]]]:
     """Number and words of every line that has any; lines that end in a backslash go on in the next."""
-    data = path.read_bytes()
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
     held: list[str] = []
-    for number, line in enumerate(text.splitlines(), 1):
+    number = 0
+    # not splitlines, which also cuts at characters that code pages have within names
+    for number, line in enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1):
         words = (COMMENT.sub("", line) if "#" in line else line).split()
         if words and words[-1].endswith("\\"):
             held += [*words[:-1], *filter(None, [words[-1][:-1]])]

@@ -13,8 +13,9 @@ from ...arguments import LARGEST
 from ...assemble import Part, ReadOptions, warn
 from ...combine import combine
 from ...model import Back, Camera, Scene
+from ..beside import in_any_case, warn_of_case
 
-BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES}
+BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
 SIDES = {1: Back.ABSORBS, 2: Back.RADIATES}
 
 
@@ -29,21 +30,26 @@ def read(path: Path, options: ReadOptions) -> Scene:
     try:
         values = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        raise SceneError(f"{path}: is no TOML ({error})") from None
+        hint = "; save it as UTF-8" if isinstance(error, UnicodeDecodeError) else ""
+        raise SceneError(f"{path}: is no TOML ({error}){hint}") from None
     asked = checked(values, str(path))
     factors = [UNITS[entry.unit or asked.unit] * (entry.scale or asked.scale) for entry in asked.geometry]
 
     def dressed(looks: Looks) -> list[Scene]:
         each = zip(asked.geometry, factors, strict=True)
-        return [_geometry(path.parent / entry.file, factor, entry.name, looks, options, path) for entry, factor in each]
+        return [_geometry(entry.file, factor, entry.name, looks, options, path) for entry, factor in each]
 
-    looks = Looks(asked.surface)
+    looks = Looks(asked.surface, str(path))
     scenes = dressed(looks)
     names = [name for scene in scenes for name in scene.names]
     called = {surface.name for surface in asked.surface} & set(names)
     if any(name != one and _matches(name, one) for one in called for name in names):
-        looks = Looks(asked.surface, called)  # known only now: lamp[1] is a surface here, and lamp1 another one
+        looks = Looks(asked.surface, str(path), called)  # known only now: lamp[1] is a surface here, and lamp1 another one
         scenes = dressed(looks)
+    several = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+    if several:
+        text = "surfaces of the same name in several geometry files become one; tell them apart by a name = of each [[geometry]]"
+        warn(f"{path}: {text}: {shown(several)}")
     for surface in asked.surface:
         if not any(_matches(name, surface.name) for name in names):
             warn(f"{path}: no surface is called '{surface.name}'; there are {shown(sorted(set(names)), 20)}")
@@ -65,22 +71,24 @@ class Looks:
 
     Attributes:
         entries: as the file has them.
+        source: the file.
         called: names of surfaces; an entry of such a name means that surface alone, whatever else it matches as a pattern.
         powers: the number of the entry that gives a surface its power, by the surface's name.
     """
 
-    def __init__(self, entries, called: AbstractSet[str] = frozenset()):
-        self.entries, self.called = entries, called
+    def __init__(self, entries, source: str, called: AbstractSet[str] = frozenset()):
+        self.entries, self.source, self.called = entries, source, called
         self.powers: dict[str, int] = {}
 
     def apply(self, part: Part) -> Part:
         """A part with what the entries say, but for powers: they need the areas of all parts."""
-        material = part.material
+        material, flipped = part.material, False
         for number, entry in enumerate(self.entries):
             if not (part.name == entry.name if entry.name in self.called else _matches(part.name, entry.name)):
                 continue
             if entry.reflectance is not None:
-                material = replace(material, reflectance=tuple(entry.reflectance), back_reflectance=None, diffuse=True)
+                of_side = {"reflectance": tuple(entry.reflectance), "back_reflectance": None, "diffuse": True}
+                material = replace(material, **of_side, given=max(entry.reflectance) < 1, origin=self.source)
                 part = replace(part, color=None, texture=None)
             exitance = _exitance(entry)
             if exitance is not None:
@@ -93,9 +101,10 @@ class Looks:
                 material = replace(material, back=SIDES[entry.sides])
             if entry.back is not None:
                 material = replace(material, back=BACKS[entry.back])
+            flipped = flipped if entry.flip is None else entry.flip
             if entry.patch_size is not None:
                 part = replace(part, patch_size=entry.patch_size)
-        return replace(part, material=material)
+        return replace(part, material=material, faces=_turned(np.asarray(part.faces)) if flipped else part.faces)
 
     def with_powers(self, scene: Scene, source: str) -> Scene:
         """Powers become exitances: spread over the radiating sides of all faces that an entry holds for."""
@@ -114,10 +123,14 @@ class Looks:
         return replace(scene, emission=emission, back_emission=back)
 
 
-def _geometry(path: Path, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
+def _geometry(file: str, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
     from .. import read as read_any
 
+    path = source.parent / file
     options.admit(path, source)
+    if not path.exists() and (other := in_any_case(source.parent, file)):
+        warn_of_case(source, [(file, other)])
+        path = options.admit(other, source)
     if path.suffix.lower() == ".toml":
         raise SceneError(f"{source}: geometry '{path.name}' is a .toml file; name its geometry files instead")
 
@@ -131,6 +144,14 @@ def _geometry(path: Path, factor: float, name: str | None, looks: Looks, options
     scene = read_any(path, replace(options, edit=edit))
     cameras = [replace(c, origin=_times(c.origin, factor), target=_times(c.target, factor)) for c in scene.cameras]
     return replace(scene, cameras=tuple(cameras))
+
+
+def _turned(faces: np.ndarray) -> np.ndarray:
+    """Faces, (n, 3 or 4), that run round the other way: their fronts look to where their backs did."""
+    turned = np.concatenate([faces[:, :1], faces[:, :0:-1]], axis=1)
+    triangles = faces[:, -1] < 0  # whose last column stands for no corner
+    turned[triangles] = faces[triangles][:, [0, 2, 1, 3]] if faces.shape[1] == 4 else turned[triangles]
+    return turned
 
 
 def _prefixed(name: str, prefix: str | None, stem: str) -> str:

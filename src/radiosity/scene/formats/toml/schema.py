@@ -54,7 +54,8 @@ class Surface(_Table):
     radiance: Bands | None = None
     power: Bands | None = None
     sides: Literal[1, 2] | None = None
-    back: Literal["absorbs", "radiates", "passes"] | None = None
+    back: Literal["absorbs", "radiates", "passes", "open"] | None = None
+    flip: bool | None = None
     patch_size: Positive | None = None
 
     @model_validator(mode="after")

@@ -1,0 +1,35 @@
+"""The table of patches: what .csv files and data frames hold."""
+
+import numpy as np
+
+from .sides import sides_of
+
+
+def patch_columns(solution) -> dict[str, np.ndarray]:
+    """Columns by title, with the unit in brackets; each (n_patches,)."""
+    patches = solution.patches
+    bands, unit = [str(band) for band in solution.bands], solution.unit
+    names = np.array(patches.scene.names, object)
+    sides = np.array(["front", "back"], object)
+    columns = {"patch": np.arange(len(patches)), "surface": names[patches.surface], "side": sides[patches.is_back.astype(int)]}
+    for title, values in (("centroid", patches.centroid), ("normal", patches.normal)):
+        columns |= {f"{title} {axis}{' [m]' if title == 'centroid' else ''}": values[:, i] for i, axis in enumerate("xyz")}
+    columns["area [m²]"] = patches.area
+    for title, values, measure in (
+        ("reflectance", patches.reflectance, ""),
+        ("emission", patches.emission, unit),
+        ("radiosity", solution.radiosity, unit),
+        ("standard error of radiosity", solution.standard_error, unit),
+        ("irradiance", solution.irradiance, unit),
+        ("standard error of irradiance", solution.irradiance_standard_error, unit),
+    ):
+        for i, band in enumerate(bands):
+            label = f"{title} {band}" if len(bands) > 1 else title
+            columns[f"{label} [{measure}]" if measure else label] = np.asarray(values)[:, i]
+    columns["arrivals"] = np.asarray(solution.arrivals)
+    columns["few arrivals"] = (np.asarray(solution.few) & ~sides_of(solution).dark).astype(int)
+    low, high = solution.interval(0.95, "irradiance")
+    for title, values in (("irradiance, 95 % from", low), ("irradiance, 95 % to", high)):
+        for i, band in enumerate(bands):
+            columns[f"{title}{f' {band}' if len(bands) > 1 else ''} [{unit}]"] = values[:, i]
+    return columns
