@@ -10,7 +10,7 @@ def surface_table(solution) -> list[dict]:
     ``dark`` tells the area of the other one, which no line reached.
 
     Keys: surface, side (front, back, lit: fronts of some faces and backs of others, or both: no line met any), patches, area (m²
-    of this side), dark (m²); then for each band (suffix " [band]" where there are several): radiosity and irradiance (area means),
+    of this side), dark (m²); then for each band (suffix " [band]" where there are several): radiosity and irradiance (means),
     emitted, received, reflected, absorbed, left (emitted + reflected: the power that leaves), net (left - received = emitted -
     absorbed: above zero where the surface gives more than it gets), net error (standard error of net), net low and net high (ends
     of its 95 % interval), all of these in W or lm; then interval (half the 95 % interval of the mean irradiance, relative to it,
