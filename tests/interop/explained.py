@@ -80,8 +80,7 @@ EXPLAINED = (
     Explained("ply", "blender", "coloured polygons", ("reflectance",), CUT),
     Explained("ply", "blender", "texture", ("reflectance",), "does not read the comment TextureFile"),
     Explained("stl", "trimesh", "trailing bytes", REFUSED, "refuses bytes after the last triangle"),
-    Explained("stl", "numpy-stl", "solid, trailing bytes", REFUSED, "takes a binary file that begins with solid for text then"),
-    Explained("stl", "blender", "solid, trailing bytes", REFUSED, "takes a binary file that begins with solid for text then"),
+    Explained("stl", "blender", "trailing bytes", REFUSED, "reads nothing, and says nothing"),
     Explained("stl", "blender", "upper case", REFUSED, "reads no facet whose keywords are capitals, and says nothing"),
     Explained("mitsuba", "mitsuba", "round shapes", ("bounds",), "has them round; ours are flat faces of equal area"),
     Explained("mitsuba", "mitsuba", "conductors", ("reflectance", "sides"), "gives the mirror's value, not the diffuse one"),
@@ -90,5 +89,4 @@ EXPLAINED = (
     Explained("mgf", "radiance", "specular", ("reflectance",), "gives rd and rs one colour between them"),
     Explained("mgf", "radiance", "mixed spectra", COLORS, "mixes spectra; ours mixes chromaticities"),
     Explained("mgf", "radiance", "spectra", COLORS, "keeps spectra; mgfilt hands us chromaticities of four digits"),
-    Explained("mgf", "radiance", "colour temperatures", COLORS, "keeps spectra; mgfilt hands us chromaticities of four digits"),
 )
