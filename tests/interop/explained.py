@@ -74,7 +74,7 @@ EXPLAINED = (
     Explained("ply", "trimesh", "polygons with face colours", ("reflectance",), "loses face colours where it cuts polygons"),
     Explained("ply", "trimesh", "texture and colours", ("reflectance",), "takes the texture in place of the colours"),
     Explained("ply", "trimesh", "coloured polygons", ("reflectance",), CUT),
-    Explained("ply", "trimesh", "concave polygon", ("area", "volume"), FAN),
+    Explained("ply", "trimesh", "concave polygon", ("area", "volume", "reflectance"), FAN),
     Explained("ply", "mitsuba", "polygons", REFUSED, "reads triangles only"),
     Explained("ply", "mitsuba", "obj_info", REFUSED, "does not know the header line obj_info"),
     Explained("ply", "blender", "coloured polygons", ("reflectance",), CUT),
