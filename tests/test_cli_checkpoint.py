@@ -126,7 +126,7 @@ def test_what_becomes_of_it_in_the_end(tmp_path, status, written, named, outputs
         (("--checkpoint", "a.npz", "-o", "a.npz"), "named twice"),
         (("--checkpoint", "a.npz", "--no-checkpoint"), "exclude each other"),
         (("--checkpoint", "a.csv"), r"is an \.npz file"),
-        (("--checkpoint", "file/a.npz"), "cannot write there"),
+        (("--checkpoint", "file/a.npz"), "is a file, not a folder"),
         (("--checkpoint", "a.npz", "--method", "hierarchical"), "nothing to go on from"),
     ],
     ids=str,

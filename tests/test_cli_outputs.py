@@ -38,10 +38,18 @@ def after_solving(monkeypatch):
     return change
 
 
-def test_a_folder_that_has_gone_takes_its_own_files_alone(capsys, tmp_path, after_solving):
+def test_a_folder_that_has_gone_is_made_anew(capsys, tmp_path, after_solving):
     gone = tmp_path / "gone"
     gone.mkdir()
     after_solving(gone.rmdir)
+    assert run(capsys, *RUN, "-o", gone / "a.csv")[0] == 0
+    assert (gone / "a.csv").stat().st_size > 100
+
+
+def test_a_file_in_place_of_a_folder_takes_its_own_files_alone(capsys, tmp_path, after_solving):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    after_solving(lambda: (gone.rmdir(), gone.write_text("")))
     paths = [gone / "a.png", tmp_path / "b.glb", gone / "c.csv", tmp_path / "d.npz", tmp_path / "e.csv"]
     status, out, err = run(capsys, *RUN, "-o", *paths)
     assert status == 2

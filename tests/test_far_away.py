@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity.engine.caster import first_hits
+from radiosity.engine.device import choose
+from radiosity.engine.geometry import Geometry
 from radiosity.image import render
 from radiosity.scene.check import check
 from radiosity.scene.degenerate import without_area
@@ -156,3 +159,16 @@ def test_global_lines_through_a_ball_that_is_nearly_empty_are_told_of_or_refused
         rd.solve(patches[0], "global-multipath-first-shot", lines="global-disc", rays=20_000)
     with pytest.raises(rd.MethodError, match="'stray' lies far away"):
         rd.solve(patches[1], "global-multipath-first-shot", lines="global-disc", rays=20_000)
+
+
+def test_lines_get_past_the_centre_of_a_face_that_they_begin_in():
+    """Where the plane and the point are at the centre of coordinates all numbers are zero, and so would their rounding be. A line
+    that passes a back went on from where it was, for ever."""
+    scene = rd.Scene.from_arrays([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], 0.5, 1.0, back=[int(rd.Back.PASSES)])
+    patches = rd.subdivide(scene, cells=1)
+    assert np.array_equal(patches.centroid[0], scene.centre)
+    assert (Geometry(patches, choose("cpu")).plane_offsets > 0).all()
+    hits = first_hits(scene, np.tile(scene.centre, (2, 1)), np.array([(0.1, 0.2, 1), (-0.3, 0.1, 2)]))
+    assert hits.face.tolist() == [-1, -1]
+    solution = rd.solve(patches, "progressive-refinement", resolution=2)
+    assert solution.escaped[0] == pytest.approx(0.5)

@@ -225,6 +225,20 @@ METHODS = {
 }
 
 
+ESCAPES = [rd.Method(), rd.Method(absorption="drawn"), rd.Method(absorption="fractional"), rd.Method(equation="continuous"),
+           *(rd.Method(estimator=name) for name in ("absorption", "survival", "gathering")),
+           *(rd.Method(order=name) for name in ("incremental", "regular", "matrix"))]  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ESCAPES, ids=str)
+def test_lines_that_escape_are_lines(method):
+    """A single triangle sends one for each quantum, and none comes back."""
+    scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.5, 1.0)
+    solution = rd.solve(rd.subdivide(scene, cells=1), method, quanta=1000, replicates=2)
+    assert solution.rays == 2000
+    assert solution.escaped[0] == solution.books[0]["emitted"] == 0.5
+
+
 @pytest.mark.parametrize("name", METHODS)
 def test_every_method_leaves_room_above_zero(name):
     """A dim corner of a scene at a few lines a patch: wherever the result is zero, the truth is not, and the interval says so."""

@@ -108,11 +108,10 @@ def test_ends_are_proportional_to_area(kind):
         assert abs(total.mean() / count - spans.ends_per_line.sum()) < SIGMAS * total.std(ddof=1) / 4 / count
 
 
-@pytest.mark.parametrize("name", ["room", "labyrinth"])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("kind", "name"), [*((kind, name) for kind in KINDS for name in ("room", "labyrinth")), ("spans", None)])
 def test_expected_ends_of_real_scenes(kind, name):
-    """Also where furniture has absorbing backs, and walls two sides."""
-    patches = rd.subdivide(rd.load_scene(name), cells=2)
+    """Also where furniture has absorbing backs, and walls two sides; and in a jumble that is seen through backs."""
+    patches = rd.subdivide(rd.load_scene(name) if name else jumble(True), cells=2)
     spans = spans_of(patches, kind, numbers="halton")
     count = 1 << 15
     ends = np.array([ends_of(spans.draw(r, 0, count), len(patches)) for r in range(16)]) / count

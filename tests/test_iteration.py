@@ -115,6 +115,16 @@ def test_stages_share_out_their_probing_lines(order, monkeypatch):
     assert solution.state["probed"].sum(axis=1) / (1 << 15) == pytest.approx(1 / SHARE, rel=0.02)
 
 
+@pytest.mark.parametrize("order", ["incremental", "regular"])
+def test_the_constant_s_own_light_escapes_where_lines_do(order):
+    """Of a cube without one side nothing is lost on backs, whatever is put aside."""
+    scene = cube(0.5, np.add(LIGHT, 0.1)).take(np.arange(5))
+    solution = rd.solve(rd.subdivide(scene, cells=2), rd.Method(order=order, control_variate=True), rays=100_000, replicates=4)
+    for book in solution.books:
+        assert book["lost"] == 0
+        assert book["escaped"] > 0.1 * book["emitted"]
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_constants_leave_the_least_power_to_send(seed):
     """Of all constants at which the sums have a corner none does better: of a source, and of a radiosity."""

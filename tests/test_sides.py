@@ -187,8 +187,11 @@ def test_check_tells_of_walls_of_two_sides_and_how_to_make_them_one_sided(room, 
     assert "'floor/paint' are two-sided" in back
     assert "flip = true and sides = 1" in back
     assert "look inward in the modelling program" in told(outward=("floor",), one=True)[0]
-    (heat,) = told(extra='[[surface]]\nname = "*/paint"\nemission = 3\n')
+    heated = '[[surface]]\nname = "*/paint"\nemission = 3\n'
+    (heat,) = told(extra=heated)
     assert "emits 282 W" in heat  # 94 m² into the void
+    leaks = [f.message for f in check(room(extra=heated).scene).findings if f.kind == "leaks"]
+    assert not any("leave the scene" in text for text in leaks)  # what begins outside is no leak
     advised = '[[surface]]\nname = "floor/paint"\nflip = true\n' + ONE_SIDED
     assert not told(extra=advised, outward=("floor",))  # what it says helps
     solution = rd.solve(room(advised, outward=("floor",)), rays=60_000)

@@ -13,7 +13,7 @@ from radiosity.deterministic.solvers import SOLVERS, System, solve, southwell
 
 
 def system(seed: int, n: int, bands: int = 2, *, largest: float = 0.9, closed: bool = True) -> System:
-    """A random reciprocal matrix, some black patches, few lights."""
+    """A random reciprocal matrix, some patches black, or in one band alone, few lights."""
     random = np.random.Generator(np.random.Philox(seed))
     area, exchange = random.random(n) + 0.1, random.random((n, n)) ** 8
     exchange = exchange + exchange.T
@@ -22,7 +22,7 @@ def system(seed: int, n: int, bands: int = 2, *, largest: float = 0.9, closed: b
         scale = np.sqrt(area / exchange.sum(axis=1))
         exchange *= scale * scale[:, None]
     share = 1.0 if closed else 0.7
-    reflectance = largest * random.random((n, bands)) * (random.random((n, 1)) < 0.8)
+    reflectance = largest * random.random((n, bands)) * (random.random((n, 1)) < 0.9) * (random.random((n, bands)) < 0.9)
     emission = random.random((n, bands)) * (np.arange(n) % 5 == 0)[:, None]
     return System(csr_array(share * exchange / area[:, None]), emission, reflectance, area)
 

@@ -71,8 +71,8 @@ def solve(
     scene
         A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene: cornell-box, room, studio, labyrinth.
     output
-        Files to write: .npz .glb .ply .vtp .csv .png .exr, several at once. Beside x.csv, of patches, goes x.surfaces.csv, of
-        surfaces.
+        Files to write: .npz .glb .ply .vtp .csv .png .exr, several at once. Beside x.csv, a table of patches, goes
+        x.surfaces.csv, one of surfaces with their net power.
     rays
         Lines to trace in all, such as 10M (the default), 500k or 1e7. Baselines go on until they are done, or progressive and
         hierarchical ones until so many lines are traced.

@@ -18,6 +18,7 @@ from .ties import Ties
 from .tree import Tree, primitives, tree
 
 OFFSET = 8 * EPSILON  # of the largest number that places a point or its plane: lines begin this far in front of it
+NEAR = 1.0  # of 2^20 that the scene reaches to: smaller numbers count as this, or lines would stay where all are zero
 INSET = 4 * OFFSET  # of a face's largest coordinate: and this far from its edges, so that the offset leads through no neighbour
 
 # Counts the changes of where lines begin and what they meet: runs begun under another number have other bits, and do not go on.
@@ -108,7 +109,7 @@ class Geometry:
     def plane_offsets(self) -> np.ndarray:
         """(n_faces,) float64, the caster's units: the least by which lines begin in front of a face, from what its plane is
         rounded by."""
-        return OFFSET * plane_reach(self.normals, self.corners)
+        return OFFSET * np.maximum(plane_reach(self.normals, self.corners), NEAR)
 
     def offset(self, face: np.ndarray, points: np.ndarray) -> np.ndarray:
         """(m,) float64, the caster's units: how far in front of faces lines begin.

@@ -58,7 +58,8 @@ def solve(
             for bit. An error alone may have a limit beside it, rays, seconds or both. Where it is not reached within that, or
             within what counters hold (2^32 lines for each replicate), or where too few lines landed to tell it, the status is
             "not reached" and a warning says what is known.
-        error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead.
+        error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead; or
+            "mean:NAME": that of the mean irradiance over it, as `Solution.surface_interval` tells it.
         replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
         seed: with the same inputs, the same bits.
         device: "auto", "cpu" or "cuda".

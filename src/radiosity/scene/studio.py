@@ -22,7 +22,7 @@ def studio() -> Scene:
     names = ("south wall", "north wall", "west wall", "east wall", "floor", "ceiling")
     colors = (CREAM, CREAM, TERRACOTTA, TEAL, OAK, WHITE)
     parts = [(name, color, BLACK, [face]) for name, color, face in zip(names, colors, walls, strict=True)]
-    legs = [standing((x, y, 0), (x + 0.1, y + 0.1, 0.7)) for x in (1.9, 3.1) for y in (1.9, 2.7)]
+    legs = [box((x, y, 0), (x + 0.1, y + 0.1, 0.7))[:4] for x in (1.9, 3.1) for y in (1.9, 2.7)]
     parts += [
         ("table", PINE, BLACK, [*(face for leg in legs for face in leg), *box((1.8, 1.8, 0.7), (3.3, 2.9, 0.8))]),
         ("lantern", BLACK, LANTERN, standing((2.8, 2.4, 0.8), (3.0, 2.6, 1.1))),

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..patches.model import Patches
+from ..scene.model import Back
 from . import intervals, means
 from .brief import brief
 from .errors import relative_error
@@ -84,8 +85,10 @@ class Solution:
     @cached_property
     def few(self) -> np.ndarray:
         """(n_patches,) bool: so few lines landed (fewer than `intervals.FEW`) that the standard error says little, and `interval`
-        goes up to a bound from their number. Of baselines, which do not count lines, nowhere."""
-        return (self.arrivals < intervals.FEW) & (not self.by_baseline)
+        goes up to a bound from their number. Not where lines pass on both sides (`Back.OPEN`), and of baselines, which do not
+        count lines, nowhere."""
+        passed = self.patches.scene.back[self.patches.face] == Back.OPEN
+        return (self.arrivals < intervals.FEW) & ~passed & (not self.by_baseline)
 
     @cached_property
     def sides(self) -> Sides:

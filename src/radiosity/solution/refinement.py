@@ -72,7 +72,8 @@ class RefineCheck:
         """
         patches = self.coarse.patches
         names = ["the whole scene", *patches.scene.names]
-        rows = [np.ones(len(patches), bool), *(patches.surface == i for i in range(len(patches.scene.names)))]
+        inside = ~self.coarse.sides.left_out  # as tables of surfaces
+        rows = [inside, *(inside & (patches.surface == i) for i in range(len(patches.scene.names)))]
         return [{"surface": name, **self._row(here)} for name, here in zip(names, rows, strict=True) if here.any()]
 
     def _row(self, here: np.ndarray) -> dict:
