@@ -173,9 +173,9 @@ def test_very_many_surfaces(n):
     solution = solved(scene, cells=1, rays=400_000)
     holds(solution, 2, slice(0, 6))
     unseen = solution.arrivals == 0
-    assert unseen.sum() > n  # their zero is no measurement, which the report tells
+    assert unseen.sum() > n  # their value is unknown, which the report tells
     report = solution.report()
-    assert f"{unseen.sum()} of them none (their zero is no measurement)" in report
+    assert f"of which no line reached {unseen.sum()} (their value is unknown)" in report
     assert f"{n + 6} surfaces" in report
 
 

@@ -25,7 +25,7 @@ class Solution:
         irradiance: (n_patches, n_bands) float64, W/m² or lm/m².
         irradiance_standard_error: the same shape; NaN (unknown) without replicates. Of density estimation, with the size of its
             bias: the root of their sum of squares.
-        arrivals: (n_patches,) int64, lines that landed, all replicates together. 0: never visited, so zero is no measurement,
+        arrivals: (n_patches,) int64, lines that landed, all replicates together. 0: no line reached it, so its value is unknown,
             and the standard error is that of one arrival.
         rays: lines traced in all.
         seconds: wall time.
