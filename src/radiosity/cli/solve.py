@@ -97,8 +97,8 @@ def solve(
     seconds
         Time to trace, such as 60, 5min or 1h.
     error
-        Trace until the relative error is below this, such as 1% or 0.01. In 95 % of runs the true error then is. --rays or
-        --seconds beside it are a limit. A run that ends above the error, or with too few lines to tell, has the status
+        Trace until the relative error is below this, such as 1% or 0.01. In 95 % of runs the true error then is. A number of
+        lines or seconds beside it is a limit. A run that ends above the error, or with too few lines to tell, has the status
         "not reached" and the exit status 3. Without a limit it ends at 4 billion lines a replicate, when its counters are full.
     error_of
         What --error is the error of: surface:NAME (RMS over its patches), or mean:NAME (its mean irradiance, the ± of the
