@@ -17,7 +17,6 @@ def report(solution) -> str:
     rate = solution.rays / solution.seconds / 1e6 if solution.seconds > 0 else math.nan
     error = _error(solution)
     inside = ~solution.sides.dark
-    unvisited = int(((solution.arrivals == 0) & inside).sum())
     lines = [
         f"scene     {printable(scene.source)}: {scene.n_faces} faces, {len(scene.names)} surfaces, "
         f"{len(solution.patches)} patches",
@@ -26,10 +25,11 @@ def report(solution) -> str:
         f"error     {error}",
         f"status    {_status(solution)}",
     ]
-    few = int((solution.few & inside).sum())
-    if few:
+    few = solution.few & inside
+    unvisited = int((few & (solution.arrivals == 0)).sum())
+    if few.any():
         none = f", of which no line reached {unvisited} (their value is unknown)" if unvisited else ""
-        lines.append(f"few       {few} patches that fewer than {FEW} lines reached{none}: their errors are rough (see the .csv)")
+        lines.append(f"few       {few.sum()} patches that fewer than {FEW} lines reached{none}: their errors are rough (see the .csv)")
     for name, book in zip(scene.bands, solution.books, strict=True):
         label = f"power [{name}]" if len(scene.bands) > 1 else "power"
         closed = {True: "closes exactly", False: "DOES NOT CLOSE", None: "the residual is shown as rounding"}[book["closes"]]
