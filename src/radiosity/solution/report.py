@@ -29,7 +29,8 @@ def report(solution) -> str:
     unvisited = int((few & (solution.arrivals == 0)).sum())
     if few.any():
         none = f", of which no line reached {unvisited} (their value is unknown)" if unvisited else ""
-        lines.append(f"few       {few.sum()} patches that fewer than {FEW} lines reached{none}: their errors are rough (see the .csv)")
+        count = f"{few.sum()} patches that fewer than {FEW} lines reached{none}"
+        lines.append(f"few       {count}: their errors are rough (see the .csv)")
     for name, book in zip(scene.bands, solution.books, strict=True):
         label = f"power [{name}]" if len(scene.bands) > 1 else "power"
         closed = {True: "closes exactly", False: "DOES NOT CLOSE", None: "the residual is shown as rounding"}[book["closes"]]
