@@ -20,7 +20,7 @@ from radiosity.scene.sampler import Sampler
 def paint(random, n: int, limit: float) -> Paint:
     images = (random.random((3, 2, 2)).astype(np.float32), random.random((1, 4, 1)).astype(np.float32))
     uv = random.random((n, 4, 2)).astype(np.float32)
-    color = 1 - random.random((n, 4, 2)).astype(np.float32) / 2
+    color = 1 - random.random((n, 4, 2)).astype(np.float32) / 64  # cells of stronger colours are cut finer, which takes time
     samplers = Sampler(("clamp", "mirror"), "linear"), Sampler(("mirror", "repeat"), "nearest")
     return Paint(images, np.arange(n, dtype=np.int32) % 3 - 1, uv, color, limit, samplers)
 
