@@ -1,5 +1,6 @@
 """What the tests share: scenes made by strangers, where a checkout has them, and a small closed box."""
 
+import signal
 from functools import wraps
 from pathlib import Path
 
@@ -27,6 +28,12 @@ def strangers() -> Path:
 def strangers_or_none() -> Path | None:
     """The same, for tests that have more than these: None where it is absent."""
     return STRANGERS if STRANGERS.is_dir() else None
+
+
+@pytest.fixture(scope="session", autouse=True)
+def ctrl_c_is_heard():
+    """As in a program of its own: test processes of pytest-xdist do not hear it, nor do the programs that they start."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session", autouse=True)

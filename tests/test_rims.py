@@ -73,7 +73,7 @@ def test_cells_on_rims_hold_the_point(quad, k):
     assert not quad or last[2] == k * k - 1
 
 
-@pytest.mark.parametrize("back", list(rd.Back), ids=str)
+@pytest.mark.parametrize("back", [rd.Back.ABSORBS, rd.Back.RADIATES, rd.Back.PASSES], ids=str)
 @pytest.mark.parametrize("k", [1, 3, 4])
 @pytest.mark.parametrize("kind", FACES)
 def test_kernels_find_the_cell_of_a_hit_on_a_rim(kind, k, back):

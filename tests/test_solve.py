@@ -184,7 +184,9 @@ def test_books_close_exactly(solution):
     table = solution.surface_table()
     assert sum(row["absorbed"] for row in table) == pytest.approx(book["absorbed"], rel=1e-6)
     assert sum(row["emitted"] for row in table) == pytest.approx(book["emitted"], rel=1e-9)
-    assert [row["surface"] for row in table] == list(solution.patches.scene.names)
+    assert list(dict.fromkeys(row["surface"] for row in table)) == list(solution.patches.scene.names)
+    assert [row["side"] for row in table if row["surface"] == "light"] == ["front", "back"]  # both are lit
+    assert len(table) == len(solution.patches.scene.names) + 1
 
 
 def test_report_says_what_matters(solution):
@@ -218,8 +220,9 @@ def test_damaged_solutions_are_refused(solution, tmp_path, damage):
 
 
 def test_unwritable_solution(solution, tmp_path):
+    (tmp_path / "file").touch()
     with pytest.raises(rd.OutputError, match="cannot be written"):
-        solution.save(tmp_path / "nowhere" / "x.npz")
+        solution.save(tmp_path / "file" / "x.npz")
 
 
 @pytest.mark.parametrize("scene", ["room", "cornell-box"])
