@@ -4,18 +4,21 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT := out
 ARGS :=
+HISTORY := .bench/history.jsonl
 
 # the first interpreter that is young enough and can make environments; name another with make PYTHON=...
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 python; do \
 	"$$p" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo "$$p"; break; }; done)
 
-.PHONY: help demo test bench validate check ci clean
+.PHONY: help demo test bench bench-compare validate docs check ci clean
 
 help:
 	@echo 'make demo    solve a furnished room in colour and write a picture, a mesh and the numbers into $(OUT)/'
 	@echo 'make test    run the tests (make test ARGS="-k name" for some of them)'
-	@echo 'make bench   print lines per second against the bare ray caster'
+	@echo 'make bench   print lines per second against the bare ray caster, and add the figures to $(HISTORY)'
+	@echo 'make bench-compare  ratios of the last two runs of make bench'
 	@echo 'make validate  compare with exact solutions, Mitsuba and Radiance, and write docs/validation (ARGS=--quick: a minute)'
+	@echo 'make docs    build the documentation site into build/docs'
 	@echo 'make check   lint and types'
 	@echo 'make ci      what the continuous integration runs: check, test and every command of the README'
 	@echo 'make clean   remove what these made, except $(VENV)'
@@ -29,8 +32,15 @@ test: $(VENV)/.developer
 bench: $(VENV)/.developer
 	$(BIN)/python benchmarks/bench.py $(ARGS)
 
+bench-compare: $(VENV)/.developer
+	$(BIN)/python benchmarks/history.py $(ARGS)
+
 validate: $(VENV)/.developer
 	$(BIN)/python -m validation $(ARGS)
+
+docs: $(VENV)/.writer
+	$(BIN)/python -m sphinx -W --keep-going --nitpicky -q -b html -d build/doctrees docs build/docs
+	@echo 'open build/docs/index.html'
 
 check: $(VENV)/.developer
 	$(BIN)/ruff check
@@ -59,4 +69,9 @@ $(VENV)/.user: pyproject.toml $(VENV)/.made
 $(VENV)/.developer: pyproject.toml $(VENV)/.made
 	@echo 'installing radiosity and the tools of its developers into $(VENV)'
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all,dev]'
+	@touch $@
+
+$(VENV)/.writer: pyproject.toml $(VENV)/.made
+	@echo 'installing radiosity and what builds its documentation into $(VENV)'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all,docs]'
 	@touch $@
