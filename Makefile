@@ -4,18 +4,18 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT := out
 ARGS :=
-HISTORY := .bench/history.jsonl
 
 # the first interpreter that is young enough and can make environments; name another with make PYTHON=...
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 python; do \
 	"$$p" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo "$$p"; break; }; done)
 
-.PHONY: help demo test bench bench-compare validate docs check ci clean
+.PHONY: help demo test coverage bench bench-compare validate docs check ci clean
 
 help:
 	@echo 'make demo    solve a furnished room in colour and write a picture, a mesh and the numbers into $(OUT)/'
 	@echo 'make test    run the tests (make test ARGS="-k name" for some of them)'
-	@echo 'make bench   print lines per second against the bare ray caster, and add the figures to $(HISTORY)'
+	@echo 'make coverage  run the tests, and say which lines none of them reached (kernels are Python that runs once, to be recorded)'
+	@echo 'make bench   print lines per second against the bare ray caster, and add the figures to benchmarks/history.jsonl'
 	@echo 'make bench-compare  ratios of the last two runs of make bench'
 	@echo 'make validate  compare with exact solutions, Mitsuba and Radiance, and write docs/validation (ARGS=--quick: a minute)'
 	@echo 'make docs    build the documentation site into build/docs'
@@ -28,6 +28,13 @@ demo: $(VENV)/.user
 
 test: $(VENV)/.developer
 	$(BIN)/python -m pytest $(ARGS)
+
+coverage: $(VENV)/.developer
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest $(ARGS)
+	$(BIN)/coverage combine --quiet
+	$(BIN)/coverage report
+	$(BIN)/coverage html --quiet
 
 bench: $(VENV)/.developer
 	$(BIN)/python benchmarks/bench.py $(ARGS)
@@ -50,7 +57,7 @@ ci:
 	.ci/run
 
 clean:
-	rm -rf $(OUT) build dist .bench .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(OUT) build dist htmlcov .coverage* .pytest_cache .ruff_cache .hypothesis
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # an environment that is there already is used; one that is broken or too old is made anew
