@@ -14,7 +14,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 p
 help:
 	@echo 'make demo    solve a furnished room in colour and write a picture, a mesh and the numbers into $(OUT)/'
 	@echo 'make test    run the tests (make test ARGS="-k name" for some of them)'
-	@echo 'make coverage  run the tests, and say which lines none of them reached (kernels are Python that runs once, to be recorded)'
+	@echo 'make coverage  run the tests, and say which lines none of them reached'
 	@echo 'make bench   print lines per second against the bare ray caster, and add the figures to benchmarks/history.jsonl'
 	@echo 'make bench-compare  ratios of the last two runs of make bench'
 	@echo 'make validate  compare with exact solutions, Mitsuba and Radiance, and write docs/validation (ARGS=--quick: a minute)'
