@@ -26,7 +26,7 @@ def main() -> None:
     """Print every table."""
     import drjit as dr
 
-    print(f"{os.cpu_count()} processors, {dr.thread_count()} threads, sweeps of {LINES:,} lines; rates in million lines a second")
+    print(f"{os.cpu_count()} processors, {dr.thread_count()} threads, wavefronts of {LINES:,} lines; rates in M lines a second")
     print(ROW.format("incoherent", "faces", "patches", "ours", "bare", "ratio", "wanted"))
     warnings.simplefilter("ignore")
     for tiles, cells, wanted in ((2, 12, ">= 0.8"), (24, 1, ">= 0.9"), (188, 1, ">= 0.9")):

@@ -1,10 +1,12 @@
 """The documentation tells the truth: the tutorial and the examples of docstrings run, and every link leads somewhere."""
 
 import doctest
+import json
 import re
 from pathlib import Path
 
 import drjit
+import numpy as np
 import pytest
 
 import radiosity as rd
@@ -96,6 +98,23 @@ def test_the_reference_names_everything_public():
     text = (DOCS / "api.md").read_text(encoding="utf-8")
     documented = re.findall(r"^\.\. (?:auto\w+|py:data):: radiosity\.(\w+)$", text, re.MULTILINE)
     assert sorted(documented) == sorted(rd.__all__)
+
+
+def test_the_page_of_promises_names_the_arrays_of_a_file(tmp_path):
+    """Every key of a solution's file, and no other; those of the run and of textures are no promise."""
+    rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=1), rays=10_000).save(tmp_path / "box.npz")
+    with np.load(tmp_path / "box.npz") as file:
+        kept = {key for key in file.files if not key.startswith(("state_", "reflectance_paint_", "emission_paint_"))}
+        assert json.loads(str(file["meta"])).keys() == promised("meta")
+    rows = re.findall(r"^\| (`[^|]*`) \| [^|]+ \|", (DOCS / "stability.md").read_text(encoding="utf-8"), re.MULTILINE)
+    listed = {name for row in rows for name in re.findall(r"`(\w+)`", row)}
+    assert kept == listed
+
+
+def promised(key: str) -> set[str]:
+    """Names in the last column of a key's row."""
+    (row,) = re.findall(rf"^\| `{key}` \|.*\| ([^|]*) \|$", (DOCS / "stability.md").read_text(encoding="utf-8"), re.MULTILINE)
+    return set(re.findall(r"`(\w+)`", row))
 
 
 def test_the_version_stands_once():
