@@ -3,6 +3,8 @@
 import doctest
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import drjit
@@ -121,3 +123,17 @@ def test_the_version_stands_once():
     """The package's own word, the metadata and the citation agree."""
     assert f"\nversion: {rd.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert f'\nversion = "{rd.__version__}"\n' in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_the_site_builds_without_a_warning(tmp_path):
+    """As `make docs` does; and links to files beside docs/ lead to pages of the site."""
+    for package in ("sphinx", "myst_parser", "furo"):
+        pytest.importorskip(package, reason="the site is built by what `make docs` installs")
+    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "--nitpicky", "-q", "-b", "html", "-d", str(tmp_path / "trees")]
+    done = subprocess.run([*command, str(DOCS), str(tmp_path / "site")], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    index = (tmp_path / "site" / "index.html").read_text(encoding="utf-8")
+    for page in ("start", "changelog", "contributing", "reporting", "conduct", "report"):
+        assert (tmp_path / "site" / f"{page}.html").exists()
+        assert page == "report" or f'href="{page}.html"' in index
