@@ -130,8 +130,9 @@ def test_the_site_builds_without_a_warning(tmp_path):
     """As `make docs` does; and links to files beside docs/ lead to pages of the site."""
     for package in ("sphinx", "myst_parser", "furo"):
         pytest.importorskip(package, reason="the site is built by what `make docs` installs")
-    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "--nitpicky", "-q", "-b", "html", "-d", str(tmp_path / "trees")]
-    done = subprocess.run([*command, str(DOCS), str(tmp_path / "site")], capture_output=True, text=True)
+    strict = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "--nitpicky", "-q", "-b", "html"]
+    places = ["-d", str(tmp_path / "trees"), str(DOCS), str(tmp_path / "site")]
+    done = subprocess.run([*strict, *places], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     index = (tmp_path / "site" / "index.html").read_text(encoding="utf-8")
     for page in ("start", "changelog", "contributing", "reporting", "conduct", "report"):
