@@ -4,6 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT := out
 ARGS :=
+WORKERS := 2
 
 # the first interpreter that is young enough and can make environments; name another with make PYTHON=...
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 python; do \
@@ -13,7 +14,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 p
 
 help:
 	@echo 'make demo    solve a furnished room in colour and write a picture, a mesh and the numbers into $(OUT)/'
-	@echo 'make test    run the tests (make test ARGS="-k name" for some of them)'
+	@echo 'make test    run the tests (make test ARGS="-k name" for some of them; WORKERS=0 in one process)'
 	@echo 'make coverage  run the tests, and say which lines none of them reached'
 	@echo 'make bench   print lines per second against the bare ray caster, and add the figures to benchmarks/history.jsonl'
 	@echo 'make bench-compare  ratios of the last two runs of make bench'
@@ -27,7 +28,7 @@ demo: $(VENV)/.user
 	$(BIN)/radiosity solve studio --rays 20M -o $(OUT)/studio.png $(OUT)/studio.glb $(OUT)/studio.npz
 
 test: $(VENV)/.developer
-	$(BIN)/python -m pytest $(ARGS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile $(ARGS)
 
 coverage: $(VENV)/.developer
 	$(BIN)/coverage erase

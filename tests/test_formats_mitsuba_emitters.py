@@ -79,6 +79,9 @@ def test_all_that_an_open_lamp_emits_is_absorbed_by_the_walls(load):
     taken = ((1 - patches.reflectance) * solution.irradiance * patches.area[:, None])[patches.reflectance[:, 0] > 0].sum()
     assert taken == pytest.approx(2 * np.pi * 1.0, rel=1e-3)  # radiance 2 from 1 m²; a black lamp keeps a tenth of it
     assert mean(solution, "lamp") == 0
+    on_lamp = solution.patches.surface == solution.patches.scene.names.index("lamp")
+    assert not solution.arrivals[on_lamp].any()
+    assert not solution.few.any()  # no patch is said to be known badly because lines go through it
 
 
 @pytest.mark.parametrize("method", ["random-walk", "particle-tracing"])

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from interop import by_mitsuba
 from interop.compare import differences
 from interop.explained import EXPLAINED, VERSIONS
 from interop.readers import FORMATS
@@ -39,8 +40,9 @@ def test_a_few_files(tmp_path, name, reader):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "reader"), PAIRS)
-def test_many_files(tmp_path, name, reader):
+def test_many_files(tmp_path, monkeypatch, name, reader):
     """All differences are explained, and all explanations are needed: one that no file needs any more is out of date."""
+    monkeypatch.setattr(by_mitsuba, "POINTS", 5000)
     outcome = compared(tmp_path, name, reader, LONG)
     print(f"{name}, {reader}: {outcome.files} files, {outcome.alike} alike, "
           + ", ".join(f"{why.feature} {count}" for why, count in outcome.used.items()))  # fmt: skip

@@ -19,7 +19,7 @@ from radiosity.scene.report import Report
 BUILT_IN = ("cornell-box", "room", "labyrinth-0.5")
 STRANGE = ("corridor.mgf", "office2/office2.mgf")  # of RenderPark
 SCENES = (*BUILT_IN, *STRANGE)
-EXTENSIVE = ("area", "emitted", "received", "reflected", "absorbed", "left", "net")  # grow with the square of the scale
+EXTENSIVE = ("dark", "area", "emitted", "received", "reflected", "absorbed", "left", "net")  # grow with the square of the scale
 LINES = 200_000
 # these draw the lines between two polygons by their coordinates: other lines at another scale, and errors that are no smaller
 DRAWN_BY_PLACE = ("full-matrix", "hierarchical", "hierarchical-error-control")

@@ -4,11 +4,10 @@ import numpy as np
 from mitsuba_rays import mitsuba_hits, our_hits, random_rays
 
 from .compare import Difference
-from .images import spots
+from .images import spots, square
 from .record import Reading, Refused, Surface, surface
 
-ALONG = 60  # points along both axes of a round shape, where a texture varies
-POINTS = 800  # and in each triangle of a mesh
+POINTS = 800  # in each triangle of a mesh whose texture varies; a round shape has four times as many
 RAYS = 40
 
 
@@ -89,13 +88,11 @@ def _mesh_points(mitsuba, shape, varied: bool):
 
 
 def _round_points(mitsuba, shape, varied: bool):
-    """Points at equal steps of a shape's own coordinates, by area."""
-    steps = (np.arange(ALONG if varied else 1) + 0.5) / (ALONG if varied else 1)
-    for u in steps:
-        for v in steps:
-            si = mitsuba.SurfaceInteraction3f(shape.sample_position(0, [u, v]), mitsuba.Color0f())
-            si.wi = [0, 0, 1]
-            yield si, 1.0
+    """Points that fill a shape evenly."""
+    for at in square(4 * POINTS if varied else 1):
+        si = mitsuba.SurfaceInteraction3f(shape.sample_position(0, at), mitsuba.Color0f())
+        si.wi = [0, 0, 1]
+        yield si, 1.0
 
 
 def _triangles(shape) -> np.ndarray:

@@ -16,7 +16,8 @@ def read(path) -> Reading:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            parts = list(mesh.Mesh.from_multi_file(str(path), mode=mode))
+            one, several = mesh.Mesh.from_file, mesh.Mesh.from_multi_file
+            parts = [one(str(path), mode=mode)] if binary else list(several(str(path), mode=mode))
         except Exception as error:  # of many classes
             raise Refused(f"{type(error).__name__}: {error}") from None
     result = {}

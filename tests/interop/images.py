@@ -13,10 +13,14 @@ def save_png(path: Path, pixels: np.ndarray) -> None:
     Image.fromarray(np.asarray(pixels, np.uint8)).save(path)
 
 
+def square(count: int) -> np.ndarray:
+    """(count, 2) points that fill the unit square evenly, along no axis (M. Roberts's sequence R2)."""
+    return (0.5 + np.arange(count)[:, None] * (0.7548776662466927, 0.5698402909980532)) % 1
+
+
 def spots(count: int) -> np.ndarray:
-    """(count, 3) weights of a triangle's corners at points that fill it evenly, along no axis (M. Roberts's sequence R2)."""
-    steps = np.arange(count)[:, None]
-    ab = (0.5 + steps * (0.7548776662466927, 0.5698402909980532)) % 1
+    """(count, 3) weights of a triangle's corners at points that fill it evenly."""
+    ab = square(count)
     ab = np.where(ab.sum(axis=1, keepdims=True) > 1, 1 - ab, ab)
     return np.column_stack([1 - ab.sum(axis=1), ab])
 

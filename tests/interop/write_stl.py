@@ -36,8 +36,6 @@ def _binary(draw: Draw, corners: np.ndarray) -> bytes:
     if draw.has("attribute bytes", 0.3):
         table["attribute"] = draw.integers(0, 2**15, len(corners))
     more = bytes(draw.integers(0, 255, 37, np.uint8)) if draw.has("trailing bytes", 0.15) else b""
-    if more and head.startswith(b"solid"):
-        draw.features.add("solid, trailing bytes")
     return head.ljust(80, draw.one(b"\0", b" ")) + struct.pack("<I", len(corners)) + table.tobytes() + more
 
 

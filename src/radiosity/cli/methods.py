@@ -1,6 +1,6 @@
 """``radiosity methods``"""
 
-UNKNOWN = "The errors of baselines are unknown: they are those of form factors and meshes, which replicates do not show"
+UNKNOWN = "The errors of baselines are unknown: they are those of form factors and meshes, which replicates cannot measure"
 
 
 def methods(name: str | None = None, /) -> int:

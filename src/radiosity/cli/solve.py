@@ -2,10 +2,28 @@
 
 from functools import partial
 from pathlib import Path
+from typing import Annotated
 
 from ..errors import MethodError
 from . import checkpoints, interrupts, outputs
-from .options import Chosen, Count, DeviceName, Flag, Length, Outputs, Seconds, Seed, Share, Stops
+from .options import (
+    BASELINE,
+    LENGTH,
+    METHOD,
+    PATCHES,
+    RUN,
+    SCENE,
+    Chosen,
+    Count,
+    DeviceName,
+    Flag,
+    Length,
+    Outputs,
+    Seconds,
+    Seed,
+    Share,
+    Stops,
+)
 from .streams import say, tell
 
 DEFAULT_RAYS = 10_000_000
@@ -17,48 +35,48 @@ def solve(
     /,
     *,
     output: Outputs = (),
-    rays: Count = None,
-    seconds: Seconds = None,
-    error: Share = None,
-    error_of: str | None = None,
-    quanta: Count = None,
-    method: str = "random-walk",
-    equation: str | None = None,
-    lines: str | None = None,
-    order: str | None = None,
-    numbers: str | None = None,
-    randomisation: str | None = None,
-    estimator: str | None = None,
-    absorption: str | None = None,
-    first_shot: Share = None,
-    control_variate: bool | None = None,
-    warm_up: bool | None = None,
-    reconstruction: str | None = None,
-    factors: str | None = None,
-    solver: str | None = None,
-    reciprocal: Chosen = None,
-    resolution: Count = None,
-    rotated: bool | None = None,
-    samples: Count = None,
-    ambient: Chosen = None,
-    overshooting: Chosen = None,
-    epsilon: Share = None,
-    refinement: str | None = None,
-    patch_size: Length = None,
-    cells: Count = None,
-    powers_of_two: Flag = False,
-    replicates: Count = None,
-    seed: Seed = 0,
-    device: DeviceName = "auto",
-    resume: Path | None = None,
-    checkpoint: Path | None = None,
-    no_checkpoint: Flag = False,
-    memory: str | None = None,
-    coherent: Flag = False,
-    max_reflectance: float = 0.95,
-    strict: Flag = False,
-    refine_check: Flag = False,
-    allow_outside: Flag = False,
+    rays: Annotated[Count, LENGTH] = None,
+    seconds: Annotated[Seconds, LENGTH] = None,
+    error: Annotated[Share, LENGTH] = None,
+    error_of: Annotated[str | None, LENGTH] = None,
+    quanta: Annotated[Count, LENGTH] = None,
+    method: Annotated[str, METHOD] = "random-walk",
+    equation: Annotated[str | None, METHOD] = None,
+    lines: Annotated[str | None, METHOD] = None,
+    order: Annotated[str | None, METHOD] = None,
+    numbers: Annotated[str | None, METHOD] = None,
+    randomisation: Annotated[str | None, METHOD] = None,
+    estimator: Annotated[str | None, METHOD] = None,
+    absorption: Annotated[str | None, METHOD] = None,
+    first_shot: Annotated[Share, METHOD] = None,
+    control_variate: Annotated[bool | None, METHOD] = None,
+    warm_up: Annotated[bool | None, METHOD] = None,
+    reconstruction: Annotated[str | None, METHOD] = None,
+    factors: Annotated[str | None, BASELINE] = None,
+    solver: Annotated[str | None, BASELINE] = None,
+    reciprocal: Annotated[Chosen, BASELINE] = None,
+    resolution: Annotated[Count, BASELINE] = None,
+    rotated: Annotated[bool | None, BASELINE] = None,
+    samples: Annotated[Count, BASELINE] = None,
+    ambient: Annotated[Chosen, BASELINE] = None,
+    overshooting: Annotated[Chosen, BASELINE] = None,
+    epsilon: Annotated[Share, BASELINE] = None,
+    refinement: Annotated[str | None, BASELINE] = None,
+    patch_size: Annotated[Length, PATCHES] = None,
+    cells: Annotated[Count, PATCHES] = None,
+    powers_of_two: Annotated[Flag, PATCHES] = False,
+    replicates: Annotated[Count, RUN] = None,
+    seed: Annotated[Seed, RUN] = 0,
+    device: Annotated[DeviceName, RUN] = "auto",
+    resume: Annotated[Path | None, RUN] = None,
+    checkpoint: Annotated[Path | None, RUN] = None,
+    no_checkpoint: Annotated[Flag, RUN] = False,
+    memory: Annotated[str | None, RUN] = None,
+    coherent: Annotated[Flag, RUN] = False,
+    max_reflectance: Annotated[float, SCENE] = 0.95,
+    strict: Annotated[Flag, SCENE] = False,
+    refine_check: Annotated[Flag, PATCHES] = False,
+    allow_outside: Annotated[Flag, SCENE] = False,
     exposure: Stops = None,
 ) -> int:
     """Solve a scene, print a report and write the outputs.
@@ -72,103 +90,103 @@ def solve(
         A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene: cornell-box, room, studio, labyrinth.
     output
         Files to write: .npz .glb .ply .vtp .csv .png .exr, several at once. Beside x.csv, a table of patches, goes
-        x.surfaces.csv, one of surfaces with their net power.
+        x.surfaces.csv, a table of surfaces with their net power.
     rays
-        Lines to trace in all, such as 10M (the default), 500k or 1e7. Baselines go on until they are done, or progressive and
-        hierarchical ones until so many lines are traced.
+        Number of lines in all, such as 10M (the default), 500k or 1e7. Baselines run until they are done; progressive and
+        hierarchical ones may end at this number.
     seconds
-        Or: for how long to trace, such as 60, 5min or 1h.
+        Time to trace, such as 60, 5min or 1h.
     error
-        Or: until the relative error is below this, such as 1% or 0.01; in 95 % of runs the true error is. Lines or seconds given
-        beside it are a limit. A run that ends above the error, or on too few lines to tell it, has the status "not reached" and
-        the exit status 3. Without a limit it ends at 4 billion lines for each replicate, where its counters are full.
+        Trace until the relative error is below this, such as 1% or 0.01. In 95 % of runs the true error then is. A number of
+        lines or seconds beside it is a limit. A run that ends above the error, or with too few lines to tell, has the status
+        "not reached" and the exit status 3. Without a limit it ends at 4 billion lines a replicate, when its counters are full.
     error_of
-        Whose error: surface:NAME (RMS over its patches) or mean:NAME (of its mean irradiance, the ± of the report); NAME may be
-        a pattern. Default: the whole scene's.
+        What --error is the error of: surface:NAME (RMS over its patches), or mean:NAME (its mean irradiance, the ± of the
+        report). NAME may be a pattern. Default: RMS over all patches.
     quanta
-        Or: exactly so many quanta of power in each replicate; the report of a run names its number.
+        Reproduce a run: energy packets (quanta) of each replicate, as its report says.
     method
-        A named method; `radiosity methods` lists them.
+        Name of a method; `radiosity methods` lists them. The options below change a part of it.
     equation
-        Another choice for the method's part of this name: where a particle leaves the patch that it hit.
+        Where a particle leaves the patch that it hit: discrete (a new point) or continuous (the same point).
     lines
-        Likewise: what carries it.
+        Line type: local, global, or another one that `radiosity methods lines` lists.
     order
-        Likewise: which line is fired next.
+        Which line is fired next; `radiosity methods order` lists the choices.
     numbers
-        Likewise: which points of the unit cube the lines are made from.
+        Sequence of points that lines are made from; `radiosity methods numbers` lists the choices.
     randomisation
-        Of numbers: by-patch (each patch shifts the sequence by its own amount) or shared (one shift for all patches).
+        by-patch: each patch shifts the sequence by its own amount. shared: one shift for all patches.
     estimator
-        Likewise: what is scored of a walk or line: collision, absorption, survival, gathering, bidirectional.
+        What is counted of a walk or line: collision, absorption, survival, gathering, bidirectional.
     absorption
-        Likewise: how a walk ends: rounded, drawn, fractional.
+        How a walk ends: rounded, drawn, fractional.
     first_shot
-        Of global lines: the share of all lines that sends the lights' own power by local lines first, such as 25%.
+        Global lines: share of all lines that sends the power of the lights by local lines first, such as 25%.
     control_variate
-        Of iterations: take a constant radiosity out of what lines carry.
+        Iterations: take a constant radiosity out of what lines carry.
     warm_up
-        Of regular iterations: begin with incremental ones.
+        Regular iterations: begin with incremental ones.
     reconstruction
-        Of particles: patches (landings are counted) or local-linear (planes are fitted to them).
+        Particles: patches (hits are counted) or local-linear (planes are fitted to them).
     factors
-        Of baselines: where form factors come from: polygons, hemicube, lines.
+        Source of form factors: polygons, hemicube, lines.
     solver
-        Of full-matrix: jacobi, gauss-seidel, southwell, conjugate-gradients.
+        full-matrix: jacobi, gauss-seidel, southwell, conjugate-gradients.
     reciprocal
-        Of full-matrix: make A_i F_ij symmetric, and rows sum to what does not escape.
+        full-matrix: make A_i F_ij symmetric, and rows sum to what does not escape.
     resolution
-        Of hemicubes: pixels along an edge of the top.
+        Hemicubes: pixels along an edge of the top.
     rotated
-        Of hemicubes: turned by random angles (the default), or aligned with their faces.
+        Hemicubes: turned by random angles (the default), or aligned with their faces.
     samples
-        Of baselines: lines of a pair of patches or of a link (16), or of a patch with factors lines (4096).
+        Lines for each pair of patches or link (16), or for each patch with --factors lines (4096).
     ambient
-        Of progressive refinement: add an estimate of the light that was not shot yet.
+        Progressive refinement: add an estimate of the light that was not shot yet.
     overshooting
-        Of progressive refinement: shoot a part of the light that is still to come, too.
+        Progressive refinement: shoot a part of the light that is still to come, too.
     epsilon
-        Of hierarchical radiosity: up to what a link is left as it is, relative to what the scene emits, such as 1e-5.
+        Hierarchical radiosity: refine links whose error exceeds this share of what the scene emits, such as 1e-5.
     refinement
-        Of hierarchical radiosity: brightness-factor, error-radiance, error-power.
+        Hierarchical radiosity: brightness-factor, error-radiance, error-power.
     patch_size
-        Longest edge of a patch, in metres. Default: what gives about 20 000 patches, of baselines 2 000.
+        Longest edge of a patch, in metres. Default: about 20 000 patches in all; 2 000 for baselines.
     cells
-        Or: cut every face into CELLS x CELLS patches.
+        Cut every face into CELLS x CELLS patches.
     powers_of_two
-        Cut faces into 1, 2, 4, 8 ... cells along each edge, as hierarchical radiosity does by itself: then other methods have the
-        same patches to compare with.
+        Cut faces into 1, 2, 4, 8 ... cells along each edge. Hierarchical radiosity always does; with this option other methods
+        have the same patches, to compare with it.
     replicates
-        Independent randomised runs, from which the errors come. Default: 8, of baselines 1.
+        Number of independent randomised runs, from which errors are found. Default: 8; 1 for baselines.
     seed
-        Of all randomisation; equal seeds give equal results.
+        Seed of all random numbers. Equal seeds give equal results.
     device
         auto, cpu or cuda.
     resume
-        Go on from this .npz of the same scene, method, seed and replicates, also an interrupted one. Its lines count.
-        Default of the patches: as it has them. Not for full-matrix and hierarchical.
+        Continue from this .npz file of the same scene, method, seed and replicates, finished or interrupted. Its lines count.
+        It reuses its patches unless you set others. Not for full-matrix and hierarchical.
     checkpoint
-        An .npz file to keep the run's state in, every 30 seconds or so, for --resume after a crash, a kill or a power cut; it is
-        removed when all outputs are written. Default: once a run takes a minute, beside the first output: out/box.glb ->
-        out/box.checkpoint.npz.
+        An .npz file that keeps the state of the run, written about every 30 seconds, for --resume after a crash, a kill or a
+        power cut. It is removed when all outputs are written. Default: for runs of a minute and more, beside the first output:
+        out/box.glb -> out/box.checkpoint.npz.
     no_checkpoint
-        Keep none.
+        Write no checkpoint.
     memory
-        That the run may take, such as 8G or none; more is refused before it begins. Default: 70 % of what is free.
+        Memory limit, such as 8G or none. A run that needs more is refused before it begins. Default: 70 % of what is free.
     coherent
-        Trace packets of like lines: faster where a patch fires 50 000 and more in a sweep, but not equal bit for bit where a
-        line meets two faces in one point.
+        Trace similar lines together. Faster where a patch fires 50 000 lines or more in a sweep; bits may differ where a line
+        meets two faces in one point.
     max_reflectance
-        Bring larger reflectances in files down to this; what your own .toml sets below 1 stays as it is.
+        Bring larger reflectances in files down to this. What your own .toml sets below 1 stays as it is.
     strict
-        Faults in the scene that could be skipped with a warning are errors.
+        Treat faults in the scene as errors, also those that could be skipped with a warning.
     refine_check
-        Solve on patches cut into four, too, and report sampling and discretisation errors apart; with a .csv output also as
+        Solve on patches cut into four, too, and report sampling and discretisation errors apart. With a .csv output also as
         NAME.refine.csv.
     allow_outside
-        The scene may name files (includes, meshes, textures) outside its folder.
+        Let the scene name files (includes, meshes, textures) outside its folder.
     exposure
-        Of pictures and meshes: stops brighter than the automatic scale; +1 is twice.
+        Brightness of pictures and meshes, in stops above the automatic scale; +1 is twice.
     """
     asked = {"rays": rays, "seconds": seconds, "error": error, "quanta": quanta}
     given = [f"--{name}" for name, value in asked.items() if value is not None]

@@ -39,7 +39,8 @@ def warn_of_missing(method: Baseline, books: tuple[dict, ...], state: dict) -> N
     if off > MISSING and state.get("done", False):
         way_out = "factors polygons (a hemicube is one point)" if method.factors == "hemicube" else "more samples"
         warnings.warn(
-            f"{off:.1%} of the emitted power is out of balance, so far off are form factors; take {way_out}, or smaller patches",
+            f"{off:.1%} of the emitted power is out of balance: form factors are inaccurate by this much; "
+            f"take {way_out}, or smaller patches",
             RadiosityWarning,
             stacklevel=6,
         )

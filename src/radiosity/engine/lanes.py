@@ -65,8 +65,8 @@ class Batch:
         lanes: UInt32, in so many lanes.
         begins: UInt64, lanes of all before it.
         fired: UInt32, lines each has fired before.
-        entries: UInt32, in fours, all that a lane asks: the number; what turns the how-manieth lane of all into the first of its
-            lines of the patch (fired + 1 - begins * each; 32-bit arithmetic goes round, and the sum is right); and the patch's
+        entries: UInt32, in fours, all that a lane asks: the number; the offset that maps a lane to its first line of the
+            patch (fired + 1 - begins * each; 32-bit arithmetic goes round, and the sum is right); and the patch's
             record, see `Geometry.patch_records`.
         start: where the piece begins in its sweep, on the device.
         total: lanes of all.

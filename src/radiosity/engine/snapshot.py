@@ -80,6 +80,8 @@ class Snapshot:
     @cached_property
     def surface_power(self) -> np.ndarray:
         """See `Solution.surface_power`."""
+        if self.side_power is not None:
+            return self.side_power[:, :, 0::2] + self.side_power[:, :, 1::2]
         patches = self.problem.patches
         return self.sums(patches.surface, len(patches.scene.names))
 

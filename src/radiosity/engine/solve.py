@@ -72,7 +72,7 @@ def solve(
             after the process has been killed. Until a first stage is complete it has no results (NaN, 0 quanta). An interruption
             writes it too; at the end it stays, brought up to date.
         checkpoint_every: seconds; longer where writing takes more than a thirtieth of that.
-        memory: that the run may take, such as "8G", a number of bytes, or "none" for no limit. Default: 70 % of what is free.
+        memory: the limit, such as "8G", a number of bytes, or "none" for no limit. Default: 70 % of what is free.
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an

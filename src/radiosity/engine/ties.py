@@ -26,7 +26,9 @@ WORDS = 16  # of a face's record: origin, edges, normal in units of hit records,
 KIND_BIT = 28  # of a rank: what a line meets first is lowest
 NONE = 0xFFFFFFFF
 QUAD = 1 << 28  # of a face's flags, as in `geometry`
-FEW = 8  # faces on a face: where there are more it is cut into cells, each with those that reach it
+FEW = 2  # faces in a cell, about: a face is cut into cells, each with those that reach it
+EACH_CELLS = (8, 4, 2, 1)  # along each edge of every face on which others lie, the first that makes few enough cells in all:
+AT_LEAST_ALL = 1 << 18
 MOST_CELLS = 256  # along each edge
 ALIKE = 1e-5  # areas that differ by less are equal
 BESIDE = 1 / 64  # of a cell, and so much of a face's edge, that faces reach further into others' cells
@@ -112,7 +114,8 @@ class Ties:
         more = np.flatnonzero(self.behind[other] != other)
         at, other = np.concatenate([at, at[more]]), np.concatenate([other, self.behind[other[more]]])
         many = np.bincount(at)
-        along = np.where(many > FEW, np.ceil(np.sqrt(many / FEW * 4)), 1).clip(1, MOST_CELLS).astype(np.int64)
+        least = np.where(many > 1, next(n for n in EACH_CELLS if n == 1 or n * n * len(many) <= AT_LEAST_ALL), 1)
+        along = np.maximum(least, np.ceil(np.sqrt(many / FEW))).clip(1, MOST_CELLS).astype(np.int64)
         low, high = self._places(at, other)
         n = along[at][:, None]
         margin = BESIDE * (1 + 1 / n)

@@ -1,4 +1,4 @@
-"""How many quanta a small number of lines makes, which a run that is thrown away tells."""
+"""How many quanta a small number of lines makes, estimated by a discarded pilot run."""
 
 import math
 import warnings

@@ -16,7 +16,7 @@ from .look import Look
 from .output import replacing
 
 CHUNK = 1 << 16
-POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net", "net_error", "net_low", "net_high")
+POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net", "net error", "net low", "net high")
 
 
 def write(solution, path, look: Look | None = None) -> None:

@@ -46,7 +46,7 @@ class Baseline:
         samples: lines of a pair of patches or elements (polygons, links), or of a patch (lines); None: 16, or 4096.
         ambient: progressive: add an estimate of the light not shot yet, the same on all patches.
         overshooting: progressive: shoot a part of the light that is still to come, too.
-        epsilon: hierarchical: up to what a link is left as it is, relative to what the scene emits; see docs/hierarchical.md.
+        epsilon: hierarchical: links whose error exceeds this share of what the scene emits are refined; see docs/hierarchical.md.
         refinement: hierarchical: which links are cut.
 
     Raises:

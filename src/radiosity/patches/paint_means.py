@@ -11,13 +11,13 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..pieces import PIECE, pieces
-from ..scene.image_means import ImageMeans
+from ..scene.image_means import ImageMeans, bands_at_once
 from ..scene.paint import Paint, between
 from ..scene.ramp import mean_below
 from . import cells
 
-FINEST = 32  # parts along the edge of a cell
-PARTS = 64  # along the edge of a cell where colours vary by as much as the brightest
+FINEST = (32, 128)  # parts along the edge of a cell where there are many of them, and where there are few
+ALL_PARTS = 1 << 20  # what makes many
 BENT_PARTS = 16  # where texture coordinates are not linear
 BENT = 1e-4  # of their extent over a face: what differs less from linear is linear
 
@@ -73,17 +73,18 @@ def cell_means(paint: Paint, base: np.ndarray, columns: np.ndarray, rows: np.nda
     first = np.concatenate([[0], np.cumsum(count)])
     result = np.empty((first[-1], base.shape[1]))
     for image, texels, weight, faces in _groups(paint, base):
-        means = None if texels is None else ImageMeans(texels, paint.sampler(image))
-        all_cells = _ranges(first[faces], count[faces])
-        owners = np.repeat(faces, count[faces])
-        for part in pieces(len(all_cells)):
-            cell, owner = all_cells[part], owners[part]
-            place = cells.place(cell - first[owner], columns[owner], is_quad[owner])
-            grid = Grid(owner, *place, columns[owner].astype(np.int64), rows[owner].astype(np.int64), is_quad[owner])
-            if means is None:
-                result[cell] = _of_colors(paint, weight, grid)
-            else:
-                result[cell] = _of_image(means, paint, weight, grid)
+        all_cells, owners = _ranges(first[faces], count[faces]), np.repeat(faces, count[faces])
+        for bands in [slice(None)] if texels is None else bands_at_once(texels):
+            means = None if texels is None else ImageMeans(texels[:, :, bands], paint.sampler(image))
+            color = paint.color[:, :, bands]
+            for part in pieces(len(all_cells)):
+                cell, owner = all_cells[part], owners[part]
+                place = cells.place(cell - first[owner], columns[owner], is_quad[owner])
+                grid = Grid(owner, *place, columns[owner].astype(np.int64), rows[owner].astype(np.int64), is_quad[owner])
+                if means is None:
+                    result[cell] = _of_colors(paint, weight, grid)
+                else:
+                    result[cell, bands] = _of_image(means, paint.uv, color, weight[:, bands], grid)
     return result
 
 
@@ -127,34 +128,35 @@ def _of_colors(paint: Paint, weight: np.ndarray, grid: Grid) -> np.ndarray:
     return result
 
 
-def _of_image(means: ImageMeans, paint: Paint, weight: np.ndarray, grid: Grid) -> np.ndarray:
+def _of_image(means: ImageMeans, uv: np.ndarray, color: np.ndarray, weight: np.ndarray, grid: Grid) -> np.ndarray:
     """Means of an image times colours times weights."""
     owner = grid.owner
     result = np.empty((len(owner), weight.shape[1]))
-    parts = _parts(paint, grid)
+    parts = _parts(uv, color, grid)
     for times in np.unique(parts):
         chosen = np.flatnonzero(parts == times)
         step = max(1, PIECE // int(times) ** 2)
         for begin in range(0, len(chosen), step):
             some = chosen[begin : begin + step]
             finer = grid.take(some).finer(int(times))
-            value = _over_cells(means, paint.uv, finer) * between(paint.color[finer.owner], finer.is_quad, *finer.middle)
+            value = _over_cells(means, uv, finer) * between(color[finer.owner], finer.is_quad, *finer.middle)
             result[some] = value.reshape(len(some), -1, value.shape[1]).mean(axis=1) * weight[owner[some]]
     return result
 
 
-def _parts(paint: Paint, grid: Grid) -> np.ndarray:
+def _parts(at: np.ndarray, colors: np.ndarray, grid: Grid) -> np.ndarray:
     """(m,) int, a power of two: into how many parts each cell's edges are cut, so that each part has nearly one colour and linear
     texture coordinates."""
-    color, uv = (_steps(values[grid.owner].astype(np.float64), grid.is_quad) for values in (paint.color, paint.uv))
-    top = np.maximum(paint.color[grid.owner].max(axis=1), 1e-30)
+    color, uv = (_steps(values[grid.owner].astype(np.float64), grid.is_quad) for values in (colors, at))
+    top = np.maximum(colors[grid.owner].max(axis=1), 1e-30)
     across = (np.abs(color[0]) + np.abs(color[2])) / top / grid.columns[:, None]
     along = (np.abs(color[1]) + np.abs(color[2])) / top / grid.rows[:, None]
-    wanted = PARTS * np.maximum(across, along).max(axis=1)
-    extent, rounding = np.maximum(np.abs(uv[0]), np.abs(uv[1])).max(axis=1), 1e-6 * np.abs(paint.uv[grid.owner]).max(axis=(1, 2))
+    finest = int(np.clip(np.sqrt(ALL_PARTS / max(len(grid.owner), 1)), *FINEST))
+    wanted = 2 * finest * np.maximum(across, along).max(axis=1)  # cells whose colours vary by half are cut into the finest parts
+    extent, rounding = np.maximum(np.abs(uv[0]), np.abs(uv[1])).max(axis=1), 1e-6 * np.abs(at[grid.owner]).max(axis=(1, 2))
     bent = np.abs(uv[2]).max(axis=1) > BENT * extent + rounding
     wanted = np.where(bent, np.maximum(wanted, BENT_PARTS), wanted)
-    return 2 ** np.ceil(np.log2(np.clip(wanted, 1, FINEST))).astype(np.int64)
+    return 2 ** np.ceil(np.log2(np.clip(wanted, 1, finest))).astype(np.int64)
 
 
 def _steps(corners: np.ndarray, is_quad: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

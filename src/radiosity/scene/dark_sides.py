@@ -7,10 +7,9 @@ import numpy as np
 from ..errors import shown
 from . import leaks
 from .model import Back, Scene
-from .reached import Lit, lit_sides
+from .reached import MANY, Lit, lit_sides
 from .report import NOTE, WARNING, Finding
 
-MANY = 30  # lines on one side of a surface, from which on none on the other one says that it is dark
 ADVICE = {
     Lit.FRONT: "write sides = 1 for them in a .toml (docs/scene-toml.md)",
     Lit.BACK: "write flip = true and sides = 1 for them in a .toml (docs/scene-toml.md): their fronts look outward",
@@ -29,17 +28,19 @@ def findings(scene: Scene, fates: leaks.Fates, power: np.ndarray) -> Iterator[Fi
     lit, back_is_dark = _lit(scene, fates)
     n = len(scene.names)
     area = np.bincount(scene.surface, scene.area, n)
+    radiating = (scene.area * np.where(scene.back == Back.RADIATES, 2, 1)).sum()
     wasted = np.bincount(scene.surface, np.where(back_is_dark, power[1], power[0]), n)
+    ranks = np.round(area / area.max(), 6)  # equal areas in the order of surfaces, wherever they lie
     for side, advice in ADVICE.items():
         for shines in (False, True):
             here = np.flatnonzero((lit == side) & ((wasted > 0) == shines))
             if not len(here):
                 continue
-            names = [scene.names[s] for s in here[np.argsort(-area[here], kind="stable")]]
+            names = [scene.names[s] for s in here[np.argsort(-ranks[here], kind="stable")]]
             text = f"the faces of {shown(names, 4)} are two-sided and enclose the scene, or a body in it: no line reaches "
-            text += f"their other side ({area[here].sum():.4g} m²), "
+            text += f"their other side ({100 * area[here].sum() / radiating:.3g} % of all area that radiates), "
             if shines:
-                text += f"which emits {wasted[here].sum():.4g} {scene.power_unit} to where nothing receives it"
+                text += f"which emits {100 * wasted[here].sum() / power.sum():.3g} % of all power to where nothing receives it"
             else:
                 text += "which tables leave out and patches are spent on"
             yield Finding(WARNING if shines else NOTE, "two-sided faces", f"{text}; to make them one-sided, {advice}")

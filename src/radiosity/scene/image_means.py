@@ -23,12 +23,9 @@ class ImageMeans:
 
     def __init__(self, image: np.ndarray, sampler: Sampler):
         self.n_bands = image.shape[2]
-        self.image = image[:, :, :1] if (image == image[:, :, :1]).all() else image
+        self.image = image[:, :, :1] if _is_grey(image) else image
         self.sampler = sampler
-        together = max(1, AT_ONCE // (image.shape[0] * image.shape[1]))
-        bands = range(self.image.shape[2])
-        self.groups = [list(bands[i : i + together]) for i in range(0, len(bands), together)]
-        self._known: tuple[tuple, dict[int, Tables]] = ((), {})
+        self._known: dict[int, Tables] = {}
 
     def over(self, origin: np.ndarray, first: np.ndarray, second: np.ndarray, *, triangles: bool) -> np.ndarray:
         """Means over footprints, (m, n_bands) float64.
@@ -51,15 +48,11 @@ class ImageMeans:
         across = np.abs(area)[owner] / np.maximum(np.linalg.norm(edge, axis=1), 1e-300)
         start, edge, weight, which, level = self._followed(start, edge, across)
         owner = owner[which]
-        for bands in self.groups:
-            for scale in np.unique(level):
-                at = np.flatnonzero(level == scale)
-                tables = self._tables(bands, int(scale))
-                found = along_edges(tables, start[at], edge[at])
-                for number, band in enumerate(bands):
-                    total[:, band] += np.bincount(owner[at], found[number] * weight[at], len(origin))
-        mean = np.concatenate([self._tables(bands, 0).mean for bands in self.groups])
-        total = mean + total / (area * (0.5 if triangles else 1.0))[:, None]
+        for scale in np.unique(level):
+            at = np.flatnonzero(level == scale)
+            for band, found in enumerate(along_edges(self._tables(int(scale)), start[at], edge[at])):
+                total[:, band] += np.bincount(owner[at], found * weight[at], len(origin))
+        total = self._tables(0).mean + total / (area * (0.5 if triangles else 1.0))[:, None]
         return np.broadcast_to(np.clip(total, 0, None), (len(total), self.n_bands))
 
     def _followed(self, start: np.ndarray, edge: np.ndarray, across: np.ndarray):
@@ -72,7 +65,7 @@ class ImageMeans:
             start, edge: (m, 2) texel coordinates.
             across: (m,) texels, the footprints' widths.
         """
-        tables = self._tables(self.groups[0], 0)
+        tables = self._tables(0)
         most = np.clip(ALL_CROSSINGS // len(start), *CROSSINGS)
         wanted = np.ceil(np.log2(np.maximum(crossings(tables, start, edge) / most, 1)))
         weight, which, run = np.ones(len(start)), np.arange(len(start)), np.full(len(start), np.inf)
@@ -82,20 +75,27 @@ class ImageMeans:
         needed = np.ceil(np.log2(np.maximum(crossings(tables, start, edge) / CROSSINGS[1], 1)))
         return start, edge, weight, which, np.maximum(np.minimum(wanted, largest)[which], needed).astype(np.int64)
 
-    def _tables(self, bands: list[int], level: int) -> Tables:
-        """Kept until other bands are asked for."""
-        if self._known[0] != tuple(bands):
-            self._known = (tuple(bands), {})
-        known = self._known[1]
+    def _tables(self, level: int) -> Tables:
         level = min(level, max(self.image.shape[:2]).bit_length())
-        if level not in known:
-            image = self.image[:, :, bands]
+        if level not in self._known:
             if level == 0:
-                known[0] = Tables(image, self.sampler)
+                self._known[0] = Tables(self.image, self.sampler)
             else:
-                image, scale = coarser(image, self.sampler, 2**level)
-                known[level] = Tables(image, Sampler(self.sampler.wrap, "nearest"), scale)
-        return known[level]
+                image, scale = coarser(self.image, self.sampler, 2**level)
+                self._known[level] = Tables(image, Sampler(self.sampler.wrap, "nearest"), scale)
+        return self._known[level]
+
+
+def bands_at_once(image: np.ndarray) -> list[slice]:
+    """The bands of an image in groups whose tables fit into memory together."""
+    if _is_grey(image):
+        return [slice(None)]  # one band may stand for all that a scene has
+    n, together = image.shape[2], max(1, AT_ONCE // (image.shape[0] * image.shape[1]))
+    return [slice(i, min(i + together, n)) for i in range(0, n, together)]
+
+
+def _is_grey(image: np.ndarray) -> bool:
+    return bool((image == image[:, :, :1]).all())
 
 
 def _widened(origin, first, second, centre: float):

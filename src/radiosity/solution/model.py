@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..patches.model import Patches
+from ..scene.model import Back
 from . import intervals, means
 from .brief import brief
 from .errors import relative_error
@@ -24,7 +25,7 @@ class Solution:
         irradiance: (n_patches, n_bands) float64, W/m² or lm/m².
         irradiance_standard_error: the same shape; NaN (unknown) without replicates. Of density estimation, with the size of its
             bias: the root of their sum of squares.
-        arrivals: (n_patches,) int64, lines that landed, all replicates together. 0: never visited, so zero is no measurement,
+        arrivals: (n_patches,) int64, lines that landed, all replicates together. 0: no line reached it, so its value is unknown,
             and the standard error is that of one arrival.
         rays: lines traced in all.
         seconds: wall time.
@@ -93,8 +94,10 @@ class Solution:
     @cached_property
     def few(self) -> np.ndarray:
         """(n_patches,) bool: so few lines landed (fewer than `intervals.FEW`) that the standard error says little, and `interval`
-        goes up to a bound from their number. Of baselines, which do not count lines, nowhere."""
-        return (self.arrivals < intervals.FEW) & (not self.by_baseline)
+        goes up to a bound from their number. Not where lines pass on both sides (`Back.OPEN`), and of baselines, which do not
+        count lines, nowhere."""
+        passed = self.patches.scene.back[self.patches.face] == Back.OPEN
+        return (self.arrivals < intervals.FEW) & ~passed & (not self.by_baseline)
 
     @cached_property
     def sides(self) -> Sides:

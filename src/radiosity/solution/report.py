@@ -17,7 +17,6 @@ def report(solution) -> str:
     rate = solution.rays / solution.seconds / 1e6 if solution.seconds > 0 else math.nan
     error = _error(solution)
     inside = ~solution.sides.dark
-    unvisited = int(((solution.arrivals == 0) & inside).sum())
     lines = [
         f"scene     {printable(scene.source)}: {scene.n_faces} faces, {len(scene.names)} surfaces, "
         f"{len(solution.patches)} patches",
@@ -26,13 +25,15 @@ def report(solution) -> str:
         f"error     {error}",
         f"status    {_status(solution)}",
     ]
-    few = int((solution.few & inside).sum())
-    if few:
-        none = f", {unvisited} of them none (their zero is no measurement)" if unvisited else ""
-        lines.append(f"few       {few} patches that fewer than {FEW} lines reached{none}: their errors are rough (see the .csv)")
+    few = solution.few & inside
+    unvisited = int((few & (solution.arrivals == 0)).sum())
+    if few.any():
+        none = f", of which no line reached {unvisited} (their value is unknown)" if unvisited else ""
+        count = f"{few.sum()} patches that fewer than {FEW} lines reached{none}"
+        lines.append(f"few       {count}: their errors are rough (see the .csv)")
     for name, book in zip(scene.bands, solution.books, strict=True):
         label = f"power [{name}]" if len(scene.bands) > 1 else "power"
-        closed = {True: "closes exactly", False: "DOES NOT CLOSE", None: "rounding is what does not balance"}[book["closes"]]
+        closed = {True: "closes exactly", False: "DOES NOT CLOSE", None: "the residual is shown as rounding"}[book["closes"]]
         lines.append(
             f"{label}: emitted {number(book['emitted'], '.6g')} {unit} + rounding {number(book['rounding'], '.3g')} = "
             f"absorbed {number(book['absorbed'], '.6g')} + escaped {number(book['escaped'])} + lost on backs "
@@ -52,7 +53,7 @@ def _error(solution) -> str:
     if solution.quanta == 0:
         return "unknown (no stage is complete yet)"
     if solution.by_baseline:
-        return "unknown: it is that of the form factors, which replicates do not show"
+        return "unknown: it is that of the form factors, which replicates cannot measure"
     if solution.replicates < 2:
         return "unknown (one replicate; from 2 on there are errors)"
     if not solution.irradiance.any():
@@ -120,7 +121,7 @@ def _why(solution) -> str:
     if solution.quanta == 0:
         return "since no stage is complete yet"
     if solution.by_baseline:
-        return "since replicates do not show the error of form factors"
+        return "since replicates cannot measure the error of form factors"
     if solution.replicates < 2:
         return "since errors need 2 replicates or more"
     return "since no line landed there" if solution.surface_power is not None else "since none landed there, or the file is old"

@@ -13,6 +13,7 @@ from ..scene.reached import Lit, lit_sides
 from .intervals import FEW
 
 FRONT, BACK, LIT = "front", "back", "lit"  # lit: fronts of some faces and backs of others, where a surface is wound both ways
+ALL = "both"  # sides of a surface that no line reached
 _NAMES = {Lit.FRONT: FRONT, Lit.BACK: BACK, Lit.MIXED: LIT}
 
 
@@ -24,7 +25,7 @@ class Sides:
         dark: (n_patches,) bool, on a side of a face that no line reached, though lines reached its other side.
         left_out: (n_patches,) bool, on the dark side of a whole surface, which emits nothing: no row holds them.
         surface: (n_rows,) int, index of the surface.
-        side: (n_rows,) of "front", "back" and "lit".
+        side: (n_rows,) of "front", "back", "lit", and "both" where no line reached the surface.
         row: (n_patches,) int, the row of each patch; -1 where it is left out.
         dark_area: (n_rows,) m² of the side that is left out.
         whole: (n_rows,) bool, all that the surface receives is in this row.
@@ -49,7 +50,7 @@ def sides_of(solution) -> Sides:
     counts = np.where(solution.few | ~received, solution.arrivals, np.maximum(solution.arrivals, FEW))
     reached = np.zeros((scene.n_faces, 2))
     np.add.at(reached, place, counts)
-    kind = lit_sides(scene, reached, FEW)
+    kind = lit_sides(scene, reached, 1)
     back_is_less = reached[:, 0] >= reached[:, 1]
     of_face, outside = kind[surface], np.zeros((scene.n_faces, 2), bool)
     outside[:, 0] = two & ((of_face == Lit.BACK) | (of_face == Lit.MIXED) & ~back_is_less)
@@ -59,11 +60,15 @@ def sides_of(solution) -> Sides:
     shines = np.bincount(patches.surface[left_out & patches.emission.any(axis=1)], minlength=n) > 0
     kind[shines] = Lit.BOTH
     left_out &= ~shines[patches.surface]
-    double = (kind == Lit.BOTH) & (np.bincount(surface[two], minlength=n) > 0)
+    met = np.bincount(surface, reached.sum(axis=1), n) > 0
+    double = (kind == Lit.BOTH) & (np.bincount(surface[two], minlength=n) > 0) & (met | shines)
     first = np.concatenate([[0], np.cumsum(np.where(double, 2, 1))])
     row = first[patches.surface] + np.where(double[patches.surface], patches.is_back, 0)
     rows = np.repeat(np.arange(n), np.diff(first))
     is_second = np.arange(first[-1]) > first[rows]
-    names = tuple(BACK if second else _NAMES.get(kind[s], FRONT) for s, second in zip(rows, is_second, strict=True))
+    unmet = ~double & (kind == Lit.BOTH) & (np.bincount(surface[two], minlength=n) > 0)
+    names = tuple(
+        BACK if second else ALL if unmet[s] else _NAMES.get(kind[s], FRONT) for s, second in zip(rows, is_second, strict=True)
+    )
     area = np.bincount(patches.surface[left_out], patches.area[left_out], n)[rows]
     return Sides(dark[place], left_out, rows, names, np.where(left_out, -1, row), area, ~double[rows])

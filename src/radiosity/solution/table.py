@@ -9,13 +9,13 @@ def surface_table(solution) -> list[dict]:
     """A row for each surface. A surface of two sides has two rows, front and back, or only the side that light reached; then
     ``dark`` tells the area of the other one, which no line reached.
 
-    Keys: surface, side (front, back, or lit: fronts of some faces and backs of others), patches, area (m² of this side), dark
-    (m²); then for each band (suffix " [band]" where there are several): radiosity and irradiance (area means), emitted, received,
-    reflected, absorbed, left (emitted + reflected: the power that leaves), net (left - received = emitted - absorbed: above zero
-    where the surface gives more than it gets), net_error (standard error of net), net_low and net_high (ends of its 95 %
-    interval), all of these in W or lm; then interval (half the 95 % interval of the mean irradiance, relative to it, the largest
-    of the bands), error (relative, RMS over the patches), arrivals, few (patches with few arrivals) and unvisited (patches), both
-    without patches in the dark. What is unknown is NaN.
+    Keys: surface, side (front, back, lit: fronts of some faces and backs of others, or both: no line met any), patches, area (m²
+    of this side), dark (m²); then for each band (suffix " [band]" where there are several): radiosity and irradiance (means),
+    emitted, received, reflected, absorbed, left (emitted + reflected: the power that leaves), net (left - received = emitted -
+    absorbed: above zero where the surface gives more than it gets), net error (standard error of net), net low and net high (ends
+    of its 95 % interval), all of these in W or lm; then interval (half the 95 % interval of the mean irradiance, relative to it,
+    the largest of the bands), error (relative, RMS over the patches), arrivals, few (patches with few arrivals) and unvisited
+    (patches), both without patches in the dark. What is unknown is NaN.
     """
     patches, sides = solution.patches, solution.sides
     scene, n, some = patches.scene, len(sides.surface), sides.row >= 0
@@ -41,9 +41,9 @@ def surface_table(solution) -> list[dict]:
         columns[f"absorbed{tail}"] = total(power - reflected)
         columns[f"left{tail}"] = total(emitted) + total(reflected)
         columns[f"net{tail}"] = total(emitted) + total(reflected) - total(power)
-        columns[f"net_error{tail}"] = absorbs.error[:, band] * areas
-        columns[f"net_low{tail}"] = total(emitted) - absorbs.high[:, band] * areas
-        columns[f"net_high{tail}"] = total(emitted) - absorbs.low[:, band] * areas
+        columns[f"net error{tail}"] = absorbs.error[:, band] * areas
+        columns[f"net low{tail}"] = total(emitted) - absorbs.high[:, band] * areas
+        columns[f"net high{tail}"] = total(emitted) - absorbs.low[:, band] * areas
     groups = np.split(np.flatnonzero(some)[np.argsort(row, kind="stable")], np.cumsum(count)[:-1])
     ends = of_rows(solution, 0.95, "irradiance")
     middle = np.stack([columns[f"irradiance{f' [{name}]' if len(scene.bands) > 1 else ''}"] for name in scene.bands], axis=1)

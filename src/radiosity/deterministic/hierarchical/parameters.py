@@ -12,7 +12,8 @@ REFINEMENTS = ("brightness-factor", "error-radiance", "error-power")
 @dataclass(frozen=True)
 class Hierarchical:
     """Attributes:
-    epsilon: up to what a link is left as it is; a pure number, so that neither units nor the scene's size or brightness matter.
+    epsilon: links whose error exceeds this are refined; a pure number, so that neither units nor the scene's size or
+        brightness matter.
         brightness-factor: F B_s A_r over the total emitted power of the scene. error-radiance: the link's error of radiosity
         over the largest emitted radiosity. error-power: that error times A_r, over the total emitted power. See `oracle`.
     refinement: one of `REFINEMENTS`.
