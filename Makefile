@@ -10,13 +10,16 @@ WORKERS := 2
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 python; do \
 	"$$p" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo "$$p"; break; }; done)
 
-.PHONY: help demo test bench validate check ci clean
+.PHONY: help demo test coverage bench bench-compare validate docs check ci clean
 
 help:
 	@echo 'make demo    solve a furnished room in colour and write a picture, a mesh and the numbers into $(OUT)/'
 	@echo 'make test    run the tests (make test ARGS="-k name" for some of them; WORKERS=0 in one process)'
-	@echo 'make bench   print lines per second against the bare ray caster'
+	@echo 'make coverage  run the tests, and say which lines none of them reached'
+	@echo 'make bench   print lines per second against the bare ray caster, and add the figures to benchmarks/history.jsonl'
+	@echo 'make bench-compare  ratios of the last two runs of make bench'
 	@echo 'make validate  compare with exact solutions, Mitsuba and Radiance, and write docs/validation (ARGS=--quick: a minute)'
+	@echo 'make docs    build the documentation site into build/docs'
 	@echo 'make check   lint and types'
 	@echo 'make ci      what the continuous integration runs: check, test and every command of the README'
 	@echo 'make clean   remove what these made, except $(VENV)'
@@ -27,11 +30,25 @@ demo: $(VENV)/.user
 test: $(VENV)/.developer
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile $(ARGS)
 
+coverage: $(VENV)/.developer
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest $(ARGS)
+	$(BIN)/coverage combine --quiet
+	$(BIN)/coverage report
+	$(BIN)/coverage html --quiet
+
 bench: $(VENV)/.developer
 	$(BIN)/python benchmarks/bench.py $(ARGS)
 
+bench-compare: $(VENV)/.developer
+	$(BIN)/python benchmarks/history.py $(ARGS)
+
 validate: $(VENV)/.developer
 	$(BIN)/python -m validation $(ARGS)
+
+docs: $(VENV)/.writer
+	$(BIN)/python -m sphinx -W --keep-going --nitpicky -q -b html -d build/doctrees docs build/docs
+	@echo 'open build/docs/index.html'
 
 check: $(VENV)/.developer
 	$(BIN)/ruff check
@@ -41,7 +58,7 @@ ci:
 	.ci/run
 
 clean:
-	rm -rf $(OUT) build dist .bench .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(OUT) build dist htmlcov .coverage* .pytest_cache .ruff_cache .hypothesis
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # an environment that is there already is used; one that is broken or too old is made anew
@@ -60,4 +77,9 @@ $(VENV)/.user: pyproject.toml $(VENV)/.made
 $(VENV)/.developer: pyproject.toml $(VENV)/.made
 	@echo 'installing radiosity and the tools of its developers into $(VENV)'
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all,dev]'
+	@touch $@
+
+$(VENV)/.writer: pyproject.toml $(VENV)/.made
+	@echo 'installing radiosity and what builds its documentation into $(VENV)'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all,docs]'
 	@touch $@

@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from history import FILE, keep, note
 from methods import methods
 from rates import LINES, measure
 from scenes import black, room, strangers
@@ -25,7 +26,7 @@ def main() -> None:
     """Print every table."""
     import drjit as dr
 
-    print(f"{os.cpu_count()} processors, {dr.thread_count()} threads, sweeps of {LINES:,} lines; rates in million lines a second")
+    print(f"{os.cpu_count()} processors, {dr.thread_count()} threads, wavefronts of {LINES:,} lines; rates in M lines a second")
     print(ROW.format("incoherent", "faces", "patches", "ours", "bare", "ratio", "wanted"))
     warnings.simplefilter("ignore")
     for tiles, cells, wanted in ((2, 12, ">= 0.8"), (24, 1, ">= 0.9"), (188, 1, ">= 0.9")):
@@ -41,12 +42,16 @@ def main() -> None:
     whole_run("room, 2 million patches", rd.load_scene("room"), cells=354)
     methods()
     start_up()
+    keep()
+    print(f"the figures are in {FILE}; `make bench-compare` compares the last two runs")
 
 
 def row(name: str, patches, wanted: str, **choices):
     """One line of the table."""
     rates = measure(patches, **choices)
     n, faces = len(patches), patches.scene.n_faces
+    note(f"{name}, {faces} faces, {n} patches", rates.ours, "M/s")
+    note(f"{name}, {faces} faces, {n} patches, over the bare caster", rates.ratio, "ratio")
     print(ROW.format(name, faces, n, f"{rates.ours:.1f}", f"{rates.bare:.1f}", f"{rates.ratio:.2f}", wanted), flush=True)
     return rates
 
@@ -82,6 +87,7 @@ def whole_run(name: str, scene, **cut) -> None:
             solution = rd.solve(patches, rays=10_000_000, replicates=replicates, progress=listener)
             first = next(t for t, p in told if p.message == "tracing") - begun
             last, whole = told[-1][0] - begun, time.perf_counter() - begun
+            note(f"{name}, {len(patches)} patches, 10^7 lines, {replicates} replicate(s){again}", whole, "s")
             print(
                 f"{name}, {len(patches):,} patches, {replicates} replicate(s){again}: {solution.rays:,} lines; end of the first "
                 f"sweep after {first:.2f} s, of the last after {last:.2f} s, in all {whole:.2f} s",
@@ -113,7 +119,9 @@ def start_up() -> None:
     """A new process, to the end of its first sweep."""
     begun = time.perf_counter()
     print(subprocess.run([sys.executable, "-c", START], capture_output=True, text=True).stdout.strip(), end="; ")
-    print(f"the whole process {time.perf_counter() - begun:.2f} s")
+    whole = time.perf_counter() - begun
+    note("start-up, a whole process to the end of its first sweep", whole, "s")
+    print(f"the whole process {whole:.2f} s")
 
 
 if __name__ == "__main__":

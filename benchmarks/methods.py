@@ -2,6 +2,8 @@
 
 import time
 
+from history import note
+
 import radiosity as rd
 
 RAYS = 10_000_000
@@ -30,6 +32,7 @@ def methods(scene: str = "room", cells: int = 12) -> None:
         assert solution is not None
         rate = solution.rays / best / 1e6
         first = first or rate
+        note(f"{name} on {scene}, {len(patches)} patches", rate, "M/s")
         lines = f"{solution.rays / 1e6:.1f} M"
         print(ROW.format(name, f"{best:.2f}", f"{rate:.1f}", f"{rate / first:.2f}", f"{solution.error:.2%}", lines), flush=True)
 

@@ -4,6 +4,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+from history import note
 from scenes import room
 
 import radiosity as rd
@@ -40,6 +41,7 @@ def spans() -> None:
         patches = rd.subdivide(room(tiles), cells=cells)
         local, costs = measure(patches)
         for kind, cost in costs.items():
+            note(f"spans of {kind}, {patches.scene.n_faces} faces", cost.rate, "M/s")
             print(ROW.format("room", patches.scene.n_faces, kind, f"{cost.spans:.2f}", f"{cost.rate:.1f}", f"{local:.1f}",
                              f"{cost.ratio:.2f}"), flush=True)  # fmt: skip
 

@@ -15,6 +15,8 @@ from . import llvm
 from .errors import DeviceError, MethodError, OutputError, RadiosityError, RadiosityWarning, SceneError
 
 if TYPE_CHECKING:
+    __version__: str
+
     from .engine.refine import refine_check
     from .engine.solve import solve
     from .method import BASELINES, PRESETS, Baseline, Method
@@ -64,6 +66,8 @@ def __getattr__(name: str):
     if name in _HOME:
         value = globals()[name] = getattr(import_module(f".{_HOME[name]}", __name__), name)
         return value
+    if name == "__version__":
+        return import_module("importlib.metadata").version(__name__)
     if name in ("engine", *_HOMES):
         return import_module(f".{name}", __name__)
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

@@ -7,27 +7,78 @@ from contextlib import contextmanager, suppress
 
 
 class RadiosityError(Exception):
-    """Every error that the library raises on purpose."""
+    """Every error that the library raises on purpose.
+
+    Example:
+        >>> try:
+        ...     rd.load_scene("missing.obj")
+        ... except rd.RadiosityError as error:
+        ...     print(error)
+        missing.obj: no such file; built-in scenes are ...
+    """
 
 
 class SceneError(RadiosityError, ValueError):
-    """A scene, or the file it comes from, cannot be used as it is."""
+    """A scene, or the file it comes from, cannot be used as it is.
+
+    Example:
+        >>> try:
+        ...     rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], reflectance=1.5, emission=0)
+        ... except rd.SceneError as error:
+        ...     print(error)
+        arrays: reflectance of face 0 (surface 'surface', band 0) is 1.5; it must lie in [0, 1): strictly below 1
+    """
 
 
 class MethodError(RadiosityError, ValueError):
-    """A method, one of its axes, or a budget was asked for that does not exist or makes no sense."""
+    """A method, one of its axes, or a budget was asked for that does not exist or makes no sense.
+
+    Example:
+        >>> try:
+        ...     rd.Method(numbers="dice")
+        ... except rd.MethodError as error:
+        ...     print(error)
+        numbers 'dice' does not exist; known are faure, ...
+    """
 
 
 class OutputError(RadiosityError, OSError):
-    """A file cannot be written."""
+    """A file cannot be written.
+
+    Example:
+        >>> solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=10_000)
+        >>> try:
+        ...     solution.export("room.doc")
+        ... except rd.OutputError as error:
+        ...     print(error)
+        room.doc: unknown output format '.doc'; known are .npz, ...
+    """
 
 
 class DeviceError(RadiosityError, RuntimeError):
-    """The ray tracing back end cannot run on this machine as it is set up."""
+    """The ray tracing back end cannot run on this machine as it is set up.
+
+    Example:
+        >>> try:
+        ...     rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=1000, device="abacus")
+        ... except rd.DeviceError as error:
+        ...     print(error)
+        device 'abacus' does not exist; known are auto, cpu, cuda
+    """
 
 
 class RadiosityWarning(UserWarning):
-    """Something in the input was taken differently from what it says; the message says how."""
+    """Something in the input was taken differently from what it says; the message says how.
+
+    Example:
+        >>> import warnings
+        >>> with warnings.catch_warnings(record=True) as told:
+        ...     warnings.simplefilter("always", rd.RadiosityWarning)
+        ...     corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [2, 0, 0]]
+        ...     scene = rd.Scene.from_arrays(corners, [[0, 1, 2], [0, 1, 3]], reflectance=0.5, emission=0)
+        >>> print(told[0].message)
+        arrays: 1 face without area left out ...
+    """
 
 
 @contextmanager

@@ -244,7 +244,8 @@ class Engine:
 
     def land_in(self, line, replicate, active):
         """The slot of ``arrivals`` where lines land, from their origins and directions."""
-        return self._land(*line, replicate, False, active)
+        origin, direction = line
+        return self._land(origin, direction, replicate, False, active)
 
     def _replicate(self, number):
         return self.types.UInt32(0) if self.replicates == 1 else self.replicate(number)

@@ -39,6 +39,11 @@ def refine_check(
     Raises:
         MethodError: as of `solve`, or fewer than 2 replicates: then nothing tells noise from change. SceneError: patches too
             small. KeyboardInterrupt: before both runs had a complete stage.
+
+    Example:
+        >>> check = rd.refine_check(rd.subdivide(rd.load_scene("room"), cells=1), rays=5_000)
+        >>> len(check.coarse.patches), len(check.fine.patches)
+        (18, 72)
     """
     from .solve import prepared
 

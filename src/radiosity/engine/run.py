@@ -123,7 +123,7 @@ class Run:
                 target = steps[-1]
                 continue
             target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
-            steps = [target]
+            steps = [target] if target else []
             if target and large and self.replicates > 1:
                 snapshot.settle()
                 give_back_memory()
@@ -237,7 +237,7 @@ class Run:
             if isinstance(snapshot.tally, AbstractMeanTally):
                 unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
             ends = snapshot.lines / self.replicates / len(self.patches)
-            global_factors = self.method.machine == "matrix" and self.method.lines != "local"
+            global_factors = isinstance(self.method, Method) and self.method.machine == "matrix" and self.method.lines != "local"
             if global_factors and ends < ENDS_ENOUGH:
                 warnings.warn(
                     f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over "

@@ -119,8 +119,8 @@ class Snapshot:
     def _irradiance(self, group: int) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
         """Mean and standard error of a group, a piece of the patches at a time."""
         values, unit = self.tally.irradiance(self.problem, self.state, group)
-        biased = isinstance(self.tally, AbstractBiasedTally)
-        bias = self.tally.bias(self.problem, self.state, group) if biased else None
+        tally = self.tally
+        bias = tally.bias(self.problem, self.state, group) if isinstance(tally, AbstractBiasedTally) else None
         for part in pieces(len(self.problem.patches)):
             mean, error = mean_and_error(values[:, part])
             if bias is not None:
@@ -150,7 +150,7 @@ class Snapshot:
         told = np.where(lines > 0, lines, 1.0)[:, known]
         return bool(known.any() and (FEW * (share**2 / told).sum(axis=0) <= 1 + 1e-9).all())
 
-    def error_of_mean(self, rows: np.ndarray, surfaces: np.ndarray) -> float:
+    def error_of_mean(self, rows: np.ndarray | slice, surfaces: np.ndarray) -> float:
         """Relative standard error of the mean irradiance over some surfaces, the largest of the bands, NaN where nothing landed.
 
         Args:
@@ -162,7 +162,7 @@ class Snapshot:
         lit, blind = mean > 0, (mean <= 0) & (error > 0)
         return float((error[lit] / mean[lit]).max()) if lit.any() and not blind.any() else float("nan")
 
-    def judged_mean(self, rows: np.ndarray) -> bool:
+    def judged_mean(self, rows: np.ndarray | slice) -> bool:
         """`FEW` lines or more landed there, counted as in `judged`."""
         patches, mean = self.problem.patches, self.irradiance[0]
         power, line = (mean * patches.area[:, None])[rows], np.broadcast_to(self.line, mean.shape)[rows]
@@ -170,7 +170,7 @@ class Snapshot:
         lit = power.sum(axis=0) > 0
         return bool(lit.any() and (lines[:, lit].sum(axis=0) >= FEW).all())
 
-    def _bias_of_sum(self, rows: np.ndarray) -> np.ndarray:
+    def _bias_of_sum(self, rows: np.ndarray | slice) -> np.ndarray:
         """(n_bands,) W or lm: what the biases of some patches, where a tally tells them, add up to at most."""
         if not isinstance(self.tally, AbstractBiasedTally):
             return np.zeros(len(self.problem.groups.index))

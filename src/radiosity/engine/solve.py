@@ -83,6 +83,12 @@ def solve(
             more memory than the run may take. OutputError: no checkpoint can be written there. DeviceError: nothing to run on,
             or hits were lost, since another thread ran kernels of Dr.Jit or Mitsuba.
             KeyboardInterrupt: Ctrl-C before the first stage was complete; a checkpoint has been written.
+
+    Example:
+        >>> patches = rd.subdivide(rd.load_scene("room"), cells=2)
+        >>> solution = rd.solve(patches, rays=10_000, seed=1)
+        >>> solution.radiosity.shape, solution.status
+        ((72, 1), 'complete')
     """
     with limited(memory), turn():
         return prepared(

@@ -51,6 +51,10 @@ class Baseline:
 
     Raises:
         MethodError: a value that does not exist, or a choice that the scheme makes no use of.
+
+    Example:
+        >>> print(rd.Baseline(scheme="full-matrix", solver="jacobi"))
+        full-matrix/polygons/jacobi
     """
 
     scheme: str = "full-matrix"

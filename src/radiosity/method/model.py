@@ -39,6 +39,11 @@ class Method:
 
     Raises:
         MethodError: a value that does not exist, or a combination that makes no sense.
+
+    Example:
+        >>> method = rd.Method(order="depth-first", numbers="sobol")
+        >>> print(method)
+        discrete/local/depth-first/sobol
     """
 
     equation: str = "discrete"

@@ -18,6 +18,11 @@ class Patches:
     Attributes:
         scene: whose faces they divide.
         columns, rows: (n_faces,) int32, cells along the face's first and second edge (equal for triangles).
+
+    Example:
+        >>> patches = rd.subdivide(rd.load_scene("room"), cells=2)
+        >>> len(patches), patches.area.shape, patches.scene.names[patches.surface[0]]
+        (72, (72,), 'south wall')
     """
 
     scene: Scene

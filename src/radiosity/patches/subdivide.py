@@ -35,6 +35,11 @@ def subdivide(
 
     Raises:
         SceneError: both or senseless values, or more patches than can be counted.
+
+    Example:
+        >>> room = rd.load_scene("room")
+        >>> len(rd.subdivide(room, cells=1)), len(rd.subdivide(room, size=0.5))
+        (18, ...)
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"subdivide takes a Scene, not {type(scene).__name__}; load a file with load_scene")

@@ -15,13 +15,18 @@ def load_scene(name, *, max_reflectance: float = 0.95, strict: bool = False, all
 
     Args:
         name: path of a .xml (Mitsuba), .glb, .gltf, .obj, .ply, .stl, .mgf or .toml file, or a built-in scene:
-            ``cornell-box``, ``room``, ``labyrinth``.
+            ``cornell-box``, ``room``, ``studio``, ``labyrinth``.
         max_reflectance: larger reflectances in the file are brought down to this, with one warning.
         strict: faults in a file that could be skipped with a warning are errors.
         allow_outside: the file may name others (includes, meshes, textures) that lie outside its folder.
 
     Raises:
         SceneError: the file cannot be used; the message says why and what to do.
+
+    Example:
+        >>> scene = rd.load_scene("cornell-box")
+        >>> scene.bands, scene.n_faces
+        (('red', 'green', 'blue'), 21)
     """
     from . import builtin, formats
 

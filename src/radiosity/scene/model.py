@@ -15,7 +15,14 @@ from .sampler import DEFAULT_SAMPLER
 
 
 class Back(IntEnum):
-    """What the back of a face does."""
+    """What the back of a face does.
+
+    Example:
+        >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+        >>> scene = rd.Scene.from_arrays(corners, [[0, 1, 2, 3]], reflectance=0.5, emission=1, back=[rd.Back.PASSES])
+        >>> rd.Back(scene.back[0]).name
+        'PASSES'
+    """
 
     ABSORBS = 0
     RADIATES = 1
@@ -44,6 +51,12 @@ class Scene:
         cameras: cameras found in the file.
         scale: metres per unit of length of the file (already applied).
         source: where the scene comes from, for messages.
+
+    Example:
+        >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+        >>> scene = rd.Scene.from_arrays(corners, [[0, 1, 2, 3]], reflectance=0.5, emission=100, names=["lamp"])
+        >>> scene.area.tolist(), scene.normal.tolist(), scene.unit
+        ([1.0], [[0.0, 0.0, 1.0]], 'W/m²')
     """
 
     vertices: np.ndarray
@@ -111,10 +124,12 @@ class Scene:
 
     @property
     def n_faces(self) -> int:
+        """Number of faces."""
         return len(self.faces)
 
     @property
     def n_bands(self) -> int:
+        """Number of bands."""
         return self.reflectance.shape[1]
 
     @property
@@ -124,6 +139,7 @@ class Scene:
 
     @property
     def power_unit(self) -> str:
+        """Unit of power, W or lm."""
         return "lm" if self.photometric else "W"
 
     @cached_property

@@ -42,6 +42,12 @@ class Solution:
             reflect, in each replicate. None in files of older versions.
         side_power: (2, replicates, 2 n_surfaces, n_bands) float64, the same of front and back of each surface in turn. None where
             no back radiates, and in files of older versions.
+
+    Example:
+        >>> solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), rays=10_000)
+        >>> low, high = solution.surface_interval(0.95)  # of the mean irradiance of each surface
+        >>> low.shape, bool((low < high).all())
+        ((9, 1), True)
     """
 
     patches: Patches
@@ -72,14 +78,17 @@ class Solution:
 
     @property
     def bands(self) -> tuple[str, ...]:
+        """Names of the scene's bands."""
         return self.patches.scene.bands
 
     @property
     def unit(self) -> str:
+        """Unit of radiosity and irradiance, W/m² or lm/m²."""
         return self.patches.scene.unit
 
     @property
     def escaped(self) -> np.ndarray:
+        """(n_bands,) float64, W or lm: power that left the scene."""
         return np.array([book["escaped"] for book in self.books])
 
     @cached_property

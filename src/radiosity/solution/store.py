@@ -78,6 +78,11 @@ def load_solution(path) -> Solution:
 
     Raises:
         SceneError: the file is missing, damaged, or no solution.
+
+    Example:
+        >>> rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=10_000).save("room.npz")
+        >>> rd.load_solution("room.npz").status
+        'complete'
     """
     path = Path(path)
     try:

@@ -53,8 +53,8 @@ class Entrance:
                 if geometry.ties is not None:
                     flat &= ~geometry.ties.flagged  # what lines meet first there is found by the line
                 for face in np.flatnonzero(flat):
-                    _paint(table[2 * axis + high], face, *(x[face][[b, c]] for x in (origin, first, second)), quad[face],
-                           self.low[[b, c]], self.high[[b, c]])  # fmt: skip
+                    _paint(table[2 * axis + high], face, origin[face][[b, c]], first[face][[b, c]], second[face][[b, c]],
+                           quad[face], self.low[[b, c]], self.high[[b, c]])  # fmt: skip
         return table
 
     @cached_property

@@ -7,6 +7,7 @@ other end of a span of patch i lies on patch j with probability F_ij, at both en
 import warnings
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -105,7 +106,8 @@ class Spans:
         if len(parts) != 1:
             none = np.zeros(0, np.uint32)
             parts = [[np.concatenate(column) for column in zip((none, none, none), *parts, strict=True)]]
-        return Pairs(*parts[0], self.ends_per_line)
+        line, one, other = parts[0]
+        return Pairs(line, one, other, self.ends_per_line)
 
     @cached_property
     def ends_per_line(self) -> np.ndarray:
@@ -186,7 +188,8 @@ class Spans:
             return dr.select(within, inside, outside), direction, within, patch
 
         meets = crossing_box(*line(lane), *box)[0] & (lane < dr.opaque(UInt32, count))
-        index = dr.gather(UInt32, lane, dr.compress(meets))
+        met: Any = dr.compress(meets)
+        index = dr.gather(UInt32, lane, met)
         room = int(ROOM * count * self.ends_per_line.sum()) + 1024
         walked = walk(self.crossings, index, max(count, 2), entering, room, coherent=self.coherent)
         return walked.line, walked.one, walked.other

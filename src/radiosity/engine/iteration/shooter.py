@@ -81,7 +81,7 @@ class Shooter:
         if self.groups:
             self.received = dr.opaque(types.Int64, 0, self.slots * self.groups)
         dr.eval(counts, weights)
-        rows = dr.compress(counts > 0)
+        rows: Any = dr.compress(counts > 0)
         if dr.width(rows) == 0:
             return 0
         columns = dr.gather(types.UInt32, counts, rows), dr.gather(types.UInt32, engine.fired, rows)

@@ -25,7 +25,7 @@ class IterationTally(AbstractTally):
 
     def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
         """Of the lines traced, of which few-lined stages have more than quanta."""
-        return super().line(problem, state | {"quanta": self.lines(problem, state) // len(state["fired"])}, group)
+        return super().line(problem, state | {"quanta": np.asarray(self.lines(problem, state) // len(state["fired"]))}, group)
 
     def books(self, problem: Problem, state: State, group: int) -> dict:
         if "left" in state:

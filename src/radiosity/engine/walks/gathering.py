@@ -70,7 +70,7 @@ class Gathering(AbstractLaunches):
         flock, visit = self._land(flock, lane, number, step, chunk.real(types))
         while True:
             visits.append(visit)
-            rows = dr.compress(visit.alive)
+            rows: Any = dr.compress(visit.alive)
             if dr.width(rows) == 0:
                 break
             lane, left = (dr.gather(types.UInt32, column, rows) for column in (visit.lane, visit.landed))

@@ -5,6 +5,7 @@ of light", 3rd Eurographics Workshop on Rendering, 1992. Discrete: M. Sbert 1997
 """
 
 from dataclasses import replace
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -73,14 +74,14 @@ class Walks(AbstractLaunches):
             leg += 1
             flock, alive = self._settle(flock, step, True, leg, flock.size)
 
-    def _settle(self, flock: Flock, step, real, leg: int, width: int) -> tuple[Flock, object]:
+    def _settle(self, flock: Flock, step, real, leg: int, width: int) -> tuple[Flock, Any]:
         """Score landings and decide who goes on, in a kernel of its own."""
         mode = dr.ReduceMode.Expand if width > DENSE * self.engine.total else dr.ReduceMode.Direct
         after, alive = self._landed(flock, step, real, leg, mode)
         dr.eval(self.engine.arrivals, *self.scores.arrays(), alive, after.columns())
         return after, alive
 
-    def _landed(self, flock: Flock, step, real, leg, mode) -> tuple[Flock, object]:
+    def _landed(self, flock: Flock, step, real, leg, mode) -> tuple[Flock, Any]:
         engine, types = self.engine, self.types
         on = real & (step.landed < engine.total)
         patch = step.landed - engine.replicate(flock.walk) * engine.n_opaque

@@ -43,7 +43,7 @@ class WalkTally(AbstractTally):
             counts, missed = state["received"][..., group], state["received_missed"][..., group]
         watts = problem.source.power / quanta / unit / 2**32 / replicates
         reflectance = problem.groups.reflectance[:, group]
-        emission = problem.groups.emission[:, group] @ problem.patches.area
+        emission = float(problem.groups.emission[:, group] @ problem.patches.area)
         if not self.collisions:
             received = counts.sum(axis=0, dtype=np.float64)
             escaped, lost = (float(exact_sum(x)) * 2**32 * watts for x in missed)

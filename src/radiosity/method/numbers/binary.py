@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -41,7 +42,7 @@ class Binary(AbstractNumbers):
         _tables(self.matrices, types.UInt32)
 
     def points(self, index, patch, randomisation, bits):
-        Float = dr.float32_array_t(type(index))
+        Float: Any = dr.float32_array_t(type(index))
         return [Float(word >> 8) * 2.0**-24 for word in self.words(index, randomisation, bits)]
 
     def words(self, index, randomisation, bits: int) -> list:

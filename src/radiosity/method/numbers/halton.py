@@ -45,9 +45,14 @@ class Halton(AbstractNumbers):
         return LARGEST
 
 
+def _float_of(array) -> Any:
+    """The type of single precision that goes with an array's type."""
+    return dr.float32_array_t(type(array))
+
+
 def shifts(randomisation) -> list:
     """Of each dimension, in [0, 1)."""
-    return [dr.float32_array_t(type(shift))(shift >> 8) * 2.0**-24 for shift in randomisation[: len(BASES)]]
+    return [_float_of(shift)(shift >> 8) * 2.0**-24 for shift in randomisation[: len(BASES)]]
 
 
 def moved(point: list, by: list) -> list:
@@ -58,7 +63,7 @@ def moved(point: list, by: list) -> list:
 
 def binary(index):
     """The radical inverse in base 2, to 24 bits."""
-    return dr.float32_array_t(type(index))(dr.brev(index) >> 8) * 2.0**-24
+    return _float_of(index)(dr.brev(index) >> 8) * 2.0**-24
 
 
 def radical_inverse(index, base: int, bits: int):
@@ -94,7 +99,7 @@ class Neighbours:
         """Of so many indices from ``first`` (UInt32) on."""
         short = next(digits for digits in range(1, turns + 1) if base**digits >= turns)
         quotient = first // base**short
-        begin = dr.float32_array_t(type(first))(first - quotient * base**short)
+        begin = _float_of(first)(first - quotient * base**short)
         return Neighbours(base, short, begin, *(_mirrored(q, base, bits, short) for q in (quotient, quotient + 1)))
 
     def at(self, turn):
@@ -114,7 +119,7 @@ def _value(parts: list, base: int):
 def _mirrored(index, base: int, bits: int, short: int) -> list:
     """The mirrored digits of an index of 2**bits without its ``short`` lowest digits, which are the first ones then, in units of
     base**-LOW_DIGITS: whole ones, and the rest where there are more digits."""
-    Float = dr.float32_array_t(type(index))
+    Float = _float_of(index)
     low, high = LOW_DIGITS[base] - short, HIGH_DIGITS[base]
     if 2**bits <= base ** LOW_DIGITS[base]:
         return [_mirror(Float(index), base, digits_of(base, bits) - short, low)]

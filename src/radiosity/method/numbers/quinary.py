@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -53,7 +54,7 @@ class Quinary(AbstractNumbers):
         _table(self.matrices, types.UInt32)
 
     def points(self, index, patch, randomisation, bits):
-        Float = dr.float32_array_t(type(index))
+        Float: Any = dr.float32_array_t(type(index))
         values = [
             dr.fma(Float(low), 1 / BASE**12, Float(high) * (1 / BASE**8)) for high, low in self.digits(index, randomisation, bits)
         ]
@@ -101,7 +102,7 @@ def _halves(word):
 
 def first_digits(word):
     """UInt32: the first four digits of ``word`` / 2^32, at the upper end, four bits each."""
-    four = dr.mul_hi(word, type(word)(BASE**4))
+    four: Any = dr.mul_hi(word, type(word)(BASE**4))
     two = (four * 1311) >> 15  # the quotient by 25
     pairs = (two << 16) | (four - two * BASE**2)
     upper = ((pairs * 13) >> 6) & 0x00070007  # by 5

@@ -4,6 +4,7 @@ J. K. Salmon, M. A. Moraes, R. O. Dror and D. E. Shaw, "Parallel random numbers:
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -29,7 +30,7 @@ class Random(AbstractNumbers):
         pass  # reads nothing
 
     def points(self, index, patch, randomisation, bits):
-        Float = dr.float32_array_t(type(index))
+        Float: Any = dr.float32_array_t(type(index))
         words = philox([index, patch, *randomisation[2:4]], randomisation[:2])
         more = philox([index, patch, *randomisation[6:8]], randomisation[4:6])
         return [Float(word >> 8) * 2.0**-24 for word in [*words, more[0]]]

@@ -4,6 +4,8 @@ The arrival that raises what a patch owes fires the patch's next line. Which lan
 arrival and every line number is claimed once, by an atomic counter, so the counters end as in any other order.
 """
 
+from typing import Any
+
 import drjit as dr
 
 from ...engine.recorded import loop
@@ -31,7 +33,8 @@ def walk(engine, chunk) -> None:
     number, _, _ = chunk.read(types)
 
     def body(number, going):
-        index = dr.scatter_inc(engine.fired, number, going) + 1
+        taken: Any = dr.scatter_inc(engine.fired, number, going)
+        index = taken + 1
         landed = engine.trace(number, index, engine.record(number), 32)
         before = dr.scatter_inc(engine.arrivals, landed, going)
         going = going & (landed < engine.total)
