@@ -2,6 +2,7 @@
 
 from collections import Counter
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 
 from ....errors import SceneError
@@ -16,6 +17,8 @@ WITHOUT_EFFECT = (
     "vn", "vp", "s", "deg", "bmat", "step", "cstype", "parm", "trim", "hole", "scrv", "sp", "end", "con", "mg",
     "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech", "stech",
 )  # fmt: skip
+MOST_COMMENTS = 50
+PAINTED = "#MRGB"  # ZBrush's colours
 NONE = -1
 
 
@@ -32,6 +35,7 @@ class Tables:
     left_out: Counter[str] = field(default_factory=Counter)  # statements that are not read, by what they are
     begun: Counter[str] = field(default_factory=Counter)  # how often each object begins
     codec: str = "utf-8"
+    comments: list[str] = field(default_factory=list)  # the first ones
     highest: dict[str, tuple[int, int]] = field(default_factory=dict)  # number used of a table, and its line
 
 
@@ -43,6 +47,9 @@ def parse(path: Path) -> Tables:
     """
     text = read_text(path)
     tables = Tables(codec=text.codec)
+    tables.comments += islice((line for line in text.text.split("\n") if line.startswith("#")), MOST_COMMENTS)
+    if painted := text.text.count(PAINTED):
+        tables.left_out[f"{PAINTED} (colours of vertices in comments)"] = painted
     name = {"o": "", "g": ""}
     material, faces = "", None
     for number, words in lines(text.text):
