@@ -215,6 +215,27 @@ def test_objects_outside_the_scene_are_told(tmp_path):
     assert told == ["objects outside the scene that the file shows are left out: 'lamp'"]
 
 
+def test_stl_normals_that_point_to_the_back_are_told(tmp_path):
+    """The corners hold; zeros, and what is no normal, are not compared."""
+    for normal, said in (("0 0 -1", True), *((other, False) for other in ("0 0 1", "0 0 0", "nan 0 0", "1 0 -0.1", ""))):
+        (tmp_path / "x.stl").write_text(stl_text({"x": TRIANGLES}).replace("0 0 1\nouter", f"{normal}\nouter"))
+        data = bytearray(stl_bytes(TRIANGLES))
+        numbers = np.array([float(word) for word in normal.split()] or [0, 0, 0], "<f4").tobytes()
+        data[84:96] = data[134:146] = numbers
+        (tmp_path / "y.stl").write_bytes(bytes(data))
+        for name in ("x.stl", "y.stl"):
+            scene, *_, told = read(tmp_path / name)
+            assert scene.normal.tolist() == [[0, 0, 1]]
+            assert any("normals of 2 of 2 triangles point to the back" in text for text in told) == said
+
+
+def test_a_colour_in_the_header_of_an_stl_is_told(tmp_path):
+    data = bytearray(stl_bytes(TRIANGLES))
+    data[:10] = b"COLOR=\xff\x00\x00\xff"
+    (tmp_path / "x.stl").write_bytes(bytes(data))
+    assert "the colour in the header (COLOR=) is left out" in read(tmp_path / "x.stl")[3]
+
+
 # units
 
 
