@@ -132,6 +132,9 @@ def _geometry(file: str, factor: float, name: str | None, looks: Looks, options:
     if not path.exists() and (other := in_any_case(source.parent, file)):
         warn_of_case(source, [(file, other)])
         path = options.admit(other, source)
+    if not path.exists():
+        hint = "; write / in place of the backslash" if "\\" in file else ""
+        raise SceneError(f"{source}: geometry '{file}' does not exist; paths are relative to the folder of the .toml{hint}")
     if path.suffix.lower() == ".toml":
         raise SceneError(f"{source}: geometry '{path.name}' is a .toml file; name its geometry files instead")
 
