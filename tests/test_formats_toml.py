@@ -278,7 +278,7 @@ def test_units_scale_the_cameras_of_files_as_they_scale_their_faces(load, tmp_pa
         ('geometry = ["room.obj"]\n[surface]\nname = "x"', ["surface: write [[surface]] with two brackets"]),
         ('geometry = ["room.obj"]\n[camera]\nfov = 3', ["camera: write [[camera]] with two brackets"]),
         ('geometry = ["room.obj"]\nsurface = ["x"]', ["surface 1", "write a table", "it is 'x'"]),
-        ('geometry = ["gone.stl"]', ["gone.stl", "no such file"]),
+        ('geometry = ["gone.stl"]', ["scene.toml", "gone.stl", "does not exist; paths are relative"]),
         ('geometry = ["scene.toml"]', ["scene.toml", ".toml file"]),
         ('geometry = ["room.xyz"]', ["room.xyz"]),
         ('geometry = ["room.obj", 3]', ["geometry 2", "it is 3"]),

@@ -101,7 +101,7 @@ def inside_out(monkeypatch):
 
 def colors_not_decoded(monkeypatch):
     """Colours of PLY vertices are taken as linear."""
-    import radiosity.scene.formats.mesh as mesh
+    import radiosity.scene.formats.mesh.ply_colors as mesh
 
     monkeypatch.setattr(mesh, "decode_srgb", lambda values: values)
 

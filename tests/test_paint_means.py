@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity.errors import RadiosityWarning
 from radiosity.scene import Back, image_means
 from radiosity.scene.assemble import Material, Part, ReadOptions, assemble
 from radiosity.scene.paint import Paint
@@ -104,6 +105,22 @@ def test_limits_do_not_depend_on_the_patch_size():
         for cells in (1, 4, 32):  # texels of 0.16 and 0.6 where the colour is brightest
             found = rd.subdivide(replace(both, reflectance_paint=paint), cells=cells).reflectance
             np.testing.assert_allclose(found.mean(), 0.16 / 8 + 0.6 * 3 / 8, rtol=1e-3)
+
+
+@pytest.mark.parametrize("base", [(1.0,), (0.98,), (2.0,), (1.0, 0.5, 0.96)])
+@pytest.mark.parametrize("limit", [0.95, 0.6])
+def test_white_faces_are_limited(base, limit):
+    """A colour of 1 at all corners, as programs write it for what nobody has painted, beside coloured faces or alone."""
+    corners = np.array([*SQUARE, *SQUARE], float)
+    red = np.array([[1, 1, 1]] * 4 + [[1, 0.2, 0.2]] * 4, float)
+    for faces, color in (([(0, 1, 2, 3), (4, 5, 6, 7)], red), ([(0, 1, 2, 3)], red[:, :1]), (HALVES, red[:, :1])):
+        part = Part("wall", corners, np.array(faces), Material(base), color=color)
+        with pytest.warns(RadiosityWarning, match="brought down"):
+            scene = assemble([part], "x", ReadOptions(max_reflectance=limit))
+        found = rd.subdivide(scene, cells=1).reflectance
+        np.testing.assert_allclose(found[0], np.broadcast_to(np.minimum(base, limit), found[0].shape), rtol=1e-6)
+        if color is red:
+            np.testing.assert_allclose(found[-1], np.minimum(np.array(base) * red[-1], limit), rtol=1e-6)
 
 
 def test_bands_of_large_images_one_after_another(monkeypatch):

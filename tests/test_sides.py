@@ -8,6 +8,8 @@ import pytest
 import radiosity as rd
 from radiosity.cli.app import run
 from radiosity.scene.check import check
+from radiosity.scene.dark_parts import dark_parts
+from radiosity.scene.reached import Lit
 
 WALLS = {"floor": (1, 2, 3, 4), "ceiling": (5, 8, 7, 6), "south": (1, 5, 6, 2), "north": (4, 3, 7, 8), "west": (1, 4, 8, 5),
          "east": (2, 6, 7, 3)}  # fmt: skip
@@ -113,6 +115,65 @@ def test_a_sheet_lit_from_both_sides_has_two_rows(room, tmp_path):
     again = rd.load_solution(tmp_path / "a.npz")
     assert str(again.surface_table()) == str(solution.surface_table())
     assert again.surface_interval()[0][7] < (top["irradiance"] + under["irradiance"]) / 2 < again.surface_interval()[1][7]
+
+
+def with_sheet(room, cells, corners, faces, **options) -> rd.Patches:
+    """A room of one surface that holds a sheet, too: all of it is the surface ``room/paint``."""
+    scene = room(one=True, **options).scene
+    paint = scene.names.index("room/paint")
+    faces, n = np.array(faces) + len(scene.vertices), len(faces)
+    every = rd.Scene.from_arrays(
+        [*scene.vertices, *corners], [*scene.faces, *faces], [*scene.reflectance[:, 0], *[0.6] * n],
+        [*scene.emission[:, 0], *[0] * n],
+        surface=[*scene.surface, *[paint] * n], names=scene.names, back=[*scene.back, *[1] * n],
+    )  # fmt: skip
+    return rd.subdivide(every, cells=cells)
+
+
+SHEET = [(1, 1, 1), (4, 1, 1), (4, 3, 1), (1, 3, 1)]  # its front looks up
+
+
+@pytest.mark.parametrize("outward", [(), tuple(WALLS), ("floor", "east")])
+@pytest.mark.parametrize("joined", [False, True])
+def test_dark_parts_of_a_surface_that_is_lit_on_both_sides(room, outward, joined):
+    """An STL of a whole room is one surface. A table top in it, or a wall that stands on its floor, does not bring the outside of
+    the room into the table: what lines received is the same whichever way its walls are wound."""
+    sheet = [(0, 0, 0), (5, 4, 0), (5, 4, 3), (0, 0, 3)] if joined else SHEET
+    solution = rd.solve(with_sheet(room, 2, sheet, [(0, 1, 2, 3)], outward=outward), rays=60_000)
+    front, back = (row for row in solution.surface_table() if row["surface"] == "room/paint")
+    size = 3 * 41**0.5 if joined else 6
+    turned = sum(AREAS[name] for name in outward)
+    assert (front["side"], back["side"]) == ("front", "back")
+    assert front["area"] == pytest.approx(94 - turned + size)
+    assert back["area"] == pytest.approx(turned + size)
+    assert front["dark"] == pytest.approx(turned)
+    assert back["dark"] == pytest.approx(94 - turned)
+    assert "their other sides (94 m²)" in solution.report()
+    received = solution.irradiance[:, 0] * solution.patches.area
+    on_paint = solution.patches.surface == solution.patches.scene.names.index("room/paint")
+    assert front["received"] + back["received"] == pytest.approx(received[on_paint].sum())
+    assert 0 < front["interval"] < 0.1
+    assert 0 < back["interval"] < 0.1
+    mean = received.sum() / solution.patches.area[~solution.sides.left_out].sum()
+    assert solution.scene_interval()[0][0] < mean < solution.scene_interval()[1][0]
+
+
+def test_dim_faces_that_few_lines_reach_are_not_dark(room):
+    """Of a sheet of many faces close above the floor many lower faces have no line by chance, and keep their part in the mean."""
+    k = 16
+    corners = [(1 + 3 * i / k, 1 + 2 * j / k, 0.1) for i in range(k + 1) for j in range(k + 1)]
+    first = [i * (k + 1) + j for i in range(k) for j in range(k)]
+    scene = with_sheet(room, 1, corners, [(at, at + k + 1, at + k + 2, at + 1) for at in first]).scene
+    sheet = np.isclose(scene.vertices[scene.faces[:, :3], 2], 0.1).all(axis=1)
+    walls = (scene.back == 1) & ~sheet
+    assert (sheet.sum(), walls.sum()) == (256, 6)
+    reached = np.zeros((scene.n_faces, 2))
+    reached[walls, 0], reached[sheet, 0] = 2000, 40
+    reached[sheet, 1] = np.random.Generator(np.random.Philox(1)).poisson(2, 256)
+    assert (reached[sheet, 1] == 0).sum() > 20
+    dark = dark_parts(scene, reached, np.full(len(scene.names), Lit.BOTH))
+    assert dark.any(axis=1).tolist() == walls.tolist()
+    assert dark[walls].tolist() == [[False, True]] * 6
 
 
 def test_a_surface_that_no_line_reached_has_one_row(room):

@@ -5,6 +5,7 @@ from .options import DeviceName, Flag
 
 COLORS = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 MOST_ROWS = 40
+SMALL, LARGE = 0.05, 300.0  # metres: scenes beyond are more often in another unit
 
 
 def check(
@@ -59,6 +60,8 @@ def _facts(report):
     yield printable(report.source)
     scale = "" if abs(scene.scale - 1) < 1e-12 else f" (a unit of the file is {scene.scale:g} m)"
     yield f"extent    {size} m{scale}, from {_point(low)} to {_point(high)}"
+    if not SMALL <= (high - low).max() <= LARGE:
+        yield 'size      rare for a scene: for another unit write unit = "mm" (cm, in, ft) in a .toml; powers depend on it'
     quads = int(scene.is_quad.sum())
     yield f"faces     {scene.n_faces}: {scene.n_faces - quads} triangles, {quads} parallelograms"
     yield f"surfaces  {len(report.surfaces)}, {sum(s.area for s in report.surfaces):.4g} m² radiating"

@@ -68,6 +68,13 @@ def _lower(part: Part, limit: float) -> Part:
     if part.color is None and part.texture is None:
         back = m.back_reflectance and tuple(min(v, limit) for v in m.back_reflectance)
         return replace(part, material=replace(m, reflectance=tuple(min(v, limit) for v in front), back_reflectance=back))
+    if max(front) > limit and _has_white_face(part):
+        # a paint that is 1 everywhere is none, and would leave the base as it is
+        base = np.minimum(front, limit)
+        share = np.where(base > 0, np.asarray(front) / np.where(base > 0, base, 1), 1)
+        back = m.back_reflectance and tuple(float(v) for v in np.asarray(m.back_reflectance) / share)
+        m = replace(m, reflectance=tuple(float(v) for v in base), back_reflectance=back)
+        return replace(part, color=np.asarray(part.color) * share, material=m)
     if max(front) >= 1.0:
         # a base of 1 and more moves into the corner colours, so that the product stays what the file says
         color = np.ones((len(part.vertices), 1)) if part.color is None else part.color
@@ -75,6 +82,14 @@ def _lower(part: Part, limit: float) -> Part:
         m = replace(m, reflectance=(BELOW_ONE,))
     back = m.back_reflectance and tuple(min(v, BELOW_ONE) for v in m.back_reflectance)
     return replace(part, material=replace(m, back_reflectance=back))
+
+
+def _has_white_face(part: Part) -> bool:
+    """Whether a face has no image and the colour 1 at all corners."""
+    if part.texture is not None or part.color is None:
+        return False
+    faces, white = np.asarray(part.faces), (np.asarray(part.color, np.float32) == 1).all(axis=1)
+    return bool((white[faces] | (faces < 0)).all(axis=1).any())
 
 
 def _check_values(name: str, m, source: str) -> None:

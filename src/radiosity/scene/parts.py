@@ -86,6 +86,7 @@ class ReadOptions:
         strict: faults that can be skipped are errors.
         edit: changes the parts that were read before they become a scene (the .toml reader's hook).
         root: the folder outside which no file is read, resolved; None: any file may be.
+        unit: metres, what the user's own .toml takes a length of 1 for.
         textures: how large images may be; it is used up while files are read.
     """
 
@@ -93,6 +94,7 @@ class ReadOptions:
     strict: bool = False
     edit: Callable[[list[Part]], list[Part]] | None = None
     root: Path | None = None
+    unit: float = 1.0
     textures: TextureMemory = field(default_factory=TextureMemory)
 
     def __post_init__(self):

@@ -109,7 +109,7 @@ def _called(surface: str, side: str) -> str:
 
 def _dark(rows: list[dict]) -> list[str]:
     """A word of the sides that no line reached, which have no row."""
-    names = [row["surface"] for row in rows if row["dark"] > 0]
+    names = list(dict.fromkeys(row["surface"] for row in rows if row["dark"] > 0))
     if not names:
         return []
     area = sum(row["dark"] for row in rows)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..scene.dark_parts import dark_parts
 from ..scene.model import Back
 from ..scene.reached import Lit, lit_sides
 from .intervals import FEW
@@ -23,11 +24,11 @@ class Sides:
 
     Attributes:
         dark: (n_patches,) bool, on a side of a face that no line reached, though lines reached its other side.
-        left_out: (n_patches,) bool, on the dark side of a whole surface, which emits nothing: no row holds them.
+        left_out: (n_patches,) bool, on the dark side of a surface, or of parts of it, which emits nothing: no row holds them.
         surface: (n_rows,) int, index of the surface.
         side: (n_rows,) of "front", "back", "lit", and "both" where no line reached the surface.
         row: (n_patches,) int, the row of each patch; -1 where it is left out.
-        dark_area: (n_rows,) m² of the side that is left out.
+        dark_area: (n_rows,) m² that are left out: the other side, or of two rows what is dark on this side.
         whole: (n_rows,) bool, all that the surface receives is in this row.
     """
 
@@ -55,6 +56,7 @@ def sides_of(solution) -> Sides:
     of_face, outside = kind[surface], np.zeros((scene.n_faces, 2), bool)
     outside[:, 0] = two & ((of_face == Lit.BACK) | (of_face == Lit.MIXED) & ~back_is_less)
     outside[:, 1] = two & ((of_face == Lit.FRONT) | (of_face == Lit.MIXED) & back_is_less)
+    outside |= dark_parts(scene, reached, kind)
     dark = outside | (two[:, None] & (reached == 0) & (reached[:, ::-1] >= FEW))
     left_out = outside[place]
     shines = np.bincount(patches.surface[left_out & patches.emission.any(axis=1)], minlength=n) > 0
@@ -63,12 +65,12 @@ def sides_of(solution) -> Sides:
     met = np.bincount(surface, reached.sum(axis=1), n) > 0
     double = (kind == Lit.BOTH) & (np.bincount(surface[two], minlength=n) > 0) & (met | shines)
     first = np.concatenate([[0], np.cumsum(np.where(double, 2, 1))])
-    row = first[patches.surface] + np.where(double[patches.surface], patches.is_back, 0)
+    row = first[patches.surface] + np.where(double[patches.surface], patches.is_back, 0)  # also of what is left out
     rows = np.repeat(np.arange(n), np.diff(first))
     is_second = np.arange(first[-1]) > first[rows]
     unmet = ~double & (kind == Lit.BOTH) & (np.bincount(surface[two], minlength=n) > 0)
     names = tuple(
         BACK if second else ALL if unmet[s] else _NAMES.get(kind[s], FRONT) for s, second in zip(rows, is_second, strict=True)
     )
-    area = np.bincount(patches.surface[left_out], patches.area[left_out], n)[rows]
+    area = np.bincount(row[left_out], patches.area[left_out], len(rows))
     return Sides(dark[place], left_out, rows, names, np.where(left_out, -1, row), area, ~double[rows])

@@ -83,6 +83,14 @@ def with_means(part: Part, base: bool, emissive: bool) -> Part:
     return part
 
 
+def warn_of_black(source, without_effect: dict[str, str]) -> None:
+    """Tell once of images and strengths that a colour of zero makes black: the colour's name in the file by material."""
+    if without_effect:
+        names = [f"{name} ({key})" for name, key in without_effect.items()]
+        text = "a colour of zero makes black what it multiplies (an image, a strength), as the format says; set it to 1"
+        warn(f"{source}: {text}: {shown(names)}")
+
+
 def warn_of_means(before: list[Part], after: list[Part], source: str) -> None:
     """Tell once which surfaces `with_means` has changed."""
     names = [one.name for one, two in zip(before, after, strict=True) if one is not two]

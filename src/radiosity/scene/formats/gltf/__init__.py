@@ -16,6 +16,7 @@ from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
 from ...sampler import DEFAULT_SAMPLER
 from ..beside import warn_of_case
+from ..mesh_colors import FULL, are_bytes
 from ..textures import warn_of_means, with_means
 from .accessor import accessor
 from .deform import Skins, morphed
@@ -78,6 +79,9 @@ def _part(file: GltfFile, node: Node, mesh: dict, primitive: dict, materials: Ma
     color = None
     if "COLOR_0" in attributes:
         color = _attribute(file, attributes, "COLOR_0", (3, 4), what, count)[:, :3]
+        if are_bytes(color):
+            materials.bytes[node.name] = None
+            color = color / FULL
         if (color == 1).all():
             color = None
     if "material" in primitive:

@@ -8,7 +8,8 @@ from ....errors import shown
 from ...assemble import DEFAULT_REFLECTANCE, Material, warn
 from ...model import Back
 from ...sampler import DEFAULT_SAMPLER, Sampler
-from ..textures import linear_image
+from ..mesh_colors import warn_of_bytes
+from ..textures import linear_image, warn_of_black
 from .extensions import GLOSSY
 from .file import GltfFile
 
@@ -56,6 +57,8 @@ class Materials:
     transparent: list[str] = field(default_factory=list)
     unlit: list[str] = field(default_factory=list)
     colorless: dict[str, None] = field(default_factory=dict)
+    bytes: dict[str, None] = field(default_factory=dict)  # objects whose vertex colours are counted from 0 to 255
+    black: dict[str, str] = field(default_factory=dict)  # materials with an image that a factor of zero makes black
 
     def __getitem__(self, index) -> Finish:
         info = self.file.item("materials", index)
@@ -76,6 +79,8 @@ class Materials:
         if self.colorless:
             warn(f"{self.file.path}: materials without a base colour (by default white metal, which exporters write where they "
                  f"cannot convert one): reflectance {DEFAULT_REFLECTANCE} taken for {shown(self.colorless)}")  # fmt: skip
+        warn_of_black(self.file.path, self.black)
+        warn_of_bytes(self.file.path, self.bytes)
         if self.unlit:
             warn(f"{self.file.path}: unlit materials are taken as diffuse ones of their base colour: {shown(self.unlit)}")
         if self.transparent:
@@ -96,6 +101,11 @@ class Materials:
         strength = file.dictionary(extensions.get("KHR_materials_emissive_strength", {}), f"emissive strength of {what}")
         (power,) = file.numbers({"v": [strength.get("emissiveStrength", 1.0)]}, "v", (1.0,), f"emissiveStrength of {what}")
         radiance = np.array(file.numbers(info, "emissiveFactor", (0.0,) * 3, what)) * power
+        strong = "emissiveStrength" in strength and power > 0
+        if (info.get("emissiveTexture") is not None or strong) and not radiance.any():
+            self.black[name] = "emissiveFactor" if power > 0 else "emissiveStrength"
+        if texture is not None and not any(factor[:3]):
+            self.black[name] = f"{key}Factor"
         if info.get("alphaMode", "OPAQUE") != "OPAQUE":
             self.transparent.append(name)
         material = Material(

@@ -58,6 +58,10 @@ def walk(file: GltfFile) -> list[Node]:
         if "mesh" in info:
             alike[name] = alike.get(name, 0) + 1
         stack += [(child, matrix, hidden) for child in reversed(file.items(info, "children"))]
+    nodes = file.items(file.tree, "nodes")
+    rest = [(index, file.dictionary(nodes[index], f"node {index}")) for index in range(len(nodes)) if index not in seen]
+    if result and (outside := [_name(file, info, index) for index, info in rest if "mesh" in info]):
+        warn(f"{file.path}: objects outside the scene that the file shows are left out: {shown(outside)}")
     if several := [f"{name} ({count})" for name, count in alike.items() if count > 1]:
         warn(f"{file.path}: objects of the same name get numbers (name#2, ...) in the order of the file: {shown(several)}")
     return result
@@ -119,7 +123,11 @@ def _name(file: GltfFile, info: dict, index: int) -> str:
 def local_matrix(file: GltfFile, info: dict, what: str) -> np.ndarray:
     """(4, 4) transform of a node in that of its parent."""
     if "matrix" in info:
-        return np.array(file.numbers(info, "matrix", tuple(np.eye(4).ravel()), what)).reshape(4, 4).T
+        matrix = np.array(file.numbers(info, "matrix", tuple(np.eye(4).ravel()), what)).reshape(4, 4).T
+        if not np.allclose(matrix[3], (0, 0, 0, 1), atol=1e-6):
+            text = "glTF writes matrices by columns, so that the fourth, eighth and twelfth numbers are 0 and the last is 1"
+            raise file.fail(f"matrix of {what} has the last row {matrix[3].tolist()}; expected (0, 0, 0, 1): {text}")
+        return matrix
     rotation = np.array(file.numbers(info, "rotation", (0.0, 0.0, 0.0, 1.0), what))
     if not rotation.any():
         raise file.fail(f"rotation of {what} is zero; expected a unit quaternion")

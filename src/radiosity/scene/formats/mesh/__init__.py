@@ -12,13 +12,15 @@ from ....errors import SceneError
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...model import Scene
 from ..faces import cut, warn_of_crossing
-from ..textures import decode_srgb, warn_of_means, with_means
+from ..textures import warn_of_means, with_means
+from ..units import warn_of_unit
 from .ply import read_ply
+from .ply_colors import colors_of
 from .ply_faces import of_polygons
 from .ply_faces import polygons as polygons_of
 from .ply_rows import Columns
 from .ply_textures import NONE, of_corners, of_faces, of_vertices, textures
-from .stl import read_stl
+from .stl import HEADER, read_stl
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -27,14 +29,23 @@ def read(path: Path, options: ReadOptions) -> Scene:
     Raises:
         SceneError: damaged, truncated, or without faces.
     """
-    parts = read_stl(path) if path.suffix.lower() == ".stl" else _ply(path, options)
+    parts = _stl(path, options) if path.suffix.lower() == ".stl" else _ply(path, options)
     placed = [with_means(part, part.uv is None, False) for part in parts]
     warn_of_means(parts, placed, str(path))
     return assemble(placed, str(path), options)
 
 
+def _stl(path: Path, options: ReadOptions) -> list[Part]:
+    parts = read_stl(path)
+    with path.open("rb") as file:
+        first = file.read(HEADER).decode("latin-1").split("\n", 1)[0]
+    warn_of_unit(path, [first], options)
+    return parts
+
+
 def _ply(path: Path, options: ReadOptions) -> list[Part]:
     ply = read_ply(path)
+    warn_of_unit(path, ply.comments, options)
     vertex = ply.columns.get("vertex", Columns({}, {}))
     if not set("xyz") <= set(vertex.numbers):
         raise SceneError(f"{path}: the vertices have no x, y, z; the file is damaged")
@@ -57,7 +68,9 @@ def _ply(path: Path, options: ReadOptions) -> list[Part]:
     faces = cut(points[index], polygons.sizes, crossed)
     warn_of_crossing(path, {path.stem: crossed})
     polygon = np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)[faces[:, 0]]
-    color, face_color, uv = _color(path, vertex), _color(path, face), of_vertices(vertex)
+    color, face_color, uv = colors_of(path, vertex, "vertex"), colors_of(path, face, "face"), of_vertices(vertex)
+    if color is not None and face_color is not None:
+        warn(f"{path}: colours of faces are left out, since vertices have colours too")
     wedges, placed = of_corners(path, face.lists.get("texcoord"), polygons.sizes)
     if wedges is not None:
         uv = wedges
@@ -78,19 +91,3 @@ def _ply(path: Path, options: ReadOptions) -> list[Part]:
         material = Material() if color is None and image is None else Material((1.0,))
         parts.append(Part(path.stem, points, faces[number[polygon] == which], material, uv, color, image))
     return parts
-
-
-def _color(path: Path, columns: Columns) -> np.ndarray | None:
-    """(n, 3) linear colours of an element."""
-    found = [columns.numbers[name] for name in ("red", "green", "blue") if name in columns.numbers]
-    if len(found) < 3:
-        return None
-    color = np.column_stack(found)
-    if color.dtype.kind == "f":
-        return color.astype(np.float64)
-    largest = max(np.iinfo(column.dtype).max for column in found)
-    if largest > 65535:
-        largest = 255
-    if color.min(initial=0) < 0 or color.max(initial=0) > largest:
-        raise SceneError(f"{path}: colours reach from {color.min()} to {color.max()}; expected 0 to {largest}")
-    return decode_srgb(color / largest)

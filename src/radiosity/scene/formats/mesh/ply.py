@@ -93,9 +93,9 @@ def _header(path: Path, lines: list[str]):
         words = line.split()
         try:
             match words:
-                case [] | ["obj_info" | "format", *_]:
+                case [] | ["format", *_]:
                     pass
-                case ["comment", *_]:
+                case ["comment" | "obj_info", *_]:
                     comments.append(line.split(None, 1)[1] if len(words) > 1 else "")
                 case ["element", name, count] if int(count) >= 0:
                     elements.append((name, int(count), []))

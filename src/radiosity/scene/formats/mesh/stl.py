@@ -12,6 +12,7 @@ from ....errors import SceneError, shown
 from ...assemble import Part, warn
 from ..encoding import decode
 from ..names import numbered, repeated
+from .stl_normals import normal_of, warn_of_turned
 
 HEADER = 84  # bytes before the first triangle
 KEYWORDS = ("solid", "facet", "outer", "vertex", "endloop", "endfacet", "endsolid")
@@ -60,6 +61,9 @@ def read_stl(path: Path) -> list[Part]:
 
 def _binary(path: Path, data: bytes, count: int) -> Solid:
     table = np.frombuffer(data, ROW, count, HEADER)
+    warn_of_turned(path, table["normal"], table["corners"])
+    if b"COLOR=" in data[:HEADER]:
+        warn(f"{path}: the colour in the header (COLOR=) is left out")
     if left := len(data) - HEADER - table.nbytes:
         warn(f"{path}: {left} bytes after the last of {count} triangles are left out")
     if colored := int((table["attribute"] != 0).sum()):
@@ -69,6 +73,7 @@ def _binary(path: Path, data: bytes, count: int) -> Solid:
 
 def _ascii(path: Path, data: bytes) -> list[Solid]:
     found: list[tuple[str, list[str]]] = []
+    normals: list[list[float]] = []
     count = {"facet": 0, "endfacet": 0, "vertex": 0}
     text = decode(data, str(path)).text.replace("\r\n", "\n").replace("\r", "\n")
     for number, line in enumerate(text.split("\n"), 1):
@@ -78,6 +83,8 @@ def _ascii(path: Path, data: bytes) -> list[Solid]:
             found.append((" ".join(words[1:]), []))
         elif key in count and found:
             count[key] += 1
+            if key == "facet":
+                normals.append(normal_of(words))
             if key == "endfacet" and count["vertex"] != 3 * count["facet"]:
                 break
             if key == "vertex":
@@ -94,6 +101,9 @@ def _ascii(path: Path, data: bytes) -> list[Solid]:
         raise SceneError(f"{path}: {count['endfacet']} of {count['facet']} facets are complete, with {count['vertex']} vertices; "
                          "the file is truncated or damaged")  # fmt: skip
     try:
-        return [Solid(name, np.array(words, np.float64).reshape(-1, 3, 3)) for name, words in found if words]
+        solids = [Solid(name, np.array(words, np.float64).reshape(-1, 3, 3)) for name, words in found if words]
     except ValueError as error:
         raise SceneError(f"{path}: a vertex is no number ({error}); the file is damaged") from None
+    if solids:
+        warn_of_turned(path, np.array(normals), np.concatenate([solid.corners for solid in solids]))
+    return solids

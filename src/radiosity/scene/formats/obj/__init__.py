@@ -17,8 +17,10 @@ from ...sampler import DEFAULT_SAMPLER
 from ..beside import in_any_case, warn_of_case
 from ..faces import cut, warn_of_crossing
 from ..textures import decode_srgb, warn_of_means, with_means
+from ..units import warn_of_unit
 from .mtl import Finish, read_library
 from .tables import NO_NAME, Tables, parse
+from .vertex_colors import colors_of
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -28,6 +30,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
         SceneError: a line that is not understood, a vertex that does not exist, or no faces.
     """
     tables = parse(path)
+    warn_of_unit(path, tables.comments, options)
     if tables.faults:
         n = len(tables.faults)
         text = f"{path}: {n} face{'s'[: n > 1]} of fewer than three corners left out ({', '.join(tables.faults[:3])})"
@@ -45,12 +48,16 @@ def read(path: Path, options: ReadOptions) -> Scene:
     if missing := sorted(wanted - set(finishes)):
         warn(f"{path}: materials that no library defines: {shown(missing)}")
     vertices = np.array([row[:3] for row in tables.vertices], np.float64).reshape(-1, 3)
-    colors = np.array([row[3:6] if len(row) >= 6 else [np.nan] * 3 for row in tables.vertices]).reshape(-1, 3)
+    colors = colors_of(path, tables.vertices)
     uv = np.array(tables.uv, np.float64).reshape(-1, 2)
     crossed: dict[str, list[int]] = {}
-    parts = [_part(name or path.stem, material, rows, (vertices, colors, uv), finishes.get(material), crossed)
+    partly: list[str] = []
+    parts = [_part(name or path.stem, material, rows, (vertices, colors, uv), finishes.get(material), crossed, partly)
              for (name, material), rows in tables.groups.items() if rows]  # fmt: skip
     warn_of_crossing(path, crossed)
+    if partly:
+        text = "vertex colours are left out where some vertices of a surface have none"
+        warn(f"{path}: {text}: {shown(dict.fromkeys(partly))}")
     placed = [with_means(part, part.uv is None, part.emission_uv is None) for part in parts]
     warn_of_means(parts, placed, str(path))
     return assemble(placed, str(path), options)
@@ -82,7 +89,9 @@ def _libraries(path: Path, tables: Tables, options: ReadOptions) -> dict[str, Fi
     return result
 
 
-def _part(name: str, material: str, rows, tables, finish: Finish | None, crossed: dict[str, list[int]]) -> Part:
+def _part(
+    name: str, material: str, rows, tables, finish: Finish | None, crossed: dict[str, list[int]], partly: list[str]
+) -> Part:
     name = f"{name}/{material}" if material and material != name else name
     vertices, colors, uv = tables
     flat = np.array([corner for row in rows for corner in row], np.int64)
@@ -97,6 +106,8 @@ def _part(name: str, material: str, rows, tables, finish: Finish | None, crossed
         part = replace(part, color=color)
         if finish.material.reflectance is None:
             part = replace(part, material=replace(finish.material, reflectance=(1.0,)))
+    elif np.isfinite(color).any():
+        partly.append(name)
     base, emissive = finish.base, finish.emissive
     part = replace(
         part, texture=base and base.image, emission_texture=emissive and emissive.image,

@@ -11,6 +11,7 @@ from ...model import Back
 from ..beside import warn_of_case
 from ..color import unit_rgb
 from ..encoding import read_text
+from ..textures import warn_of_black
 from .mtl_map import Map, Maps
 from .text import lines
 
@@ -77,6 +78,8 @@ def _warn_of_rest(path: Path, entries: dict) -> None:
     converted = [name for name, entry in entries.items() if any(_is(entry, key, "xyz") for key in ("kd", "ke"))]
     if converted:
         warn(f"{path}: CIE XYZ colours become red, green and blue of an equal-energy white: {shown(converted)}")
+    pairs = [(name, key.title()) for name, entry in entries.items() for key in ("kd", "ke") if f"map_{key}" in entry]
+    warn_of_black(path, {name: key for name, key in pairs if not any(_color(path, entries[name], key.lower()) or (1.0,))})
     for key, what in UNREAD.items():
         if names := [name for name, entry in entries.items() if key in entry]:
             warn(f"{path}: {what} ({key}) are left out: {shown(names)}")
@@ -89,9 +92,9 @@ def _is(entry: dict, key: str, kind: str) -> bool:
 def _finish(path: Path, entry: dict, maps: Maps) -> Finish:
     base, emissive = (maps.read(*entry[key]) if key in entry else None for key in ("map_kd", "map_ke"))
     diffuse = _color(path, entry, "kd")
-    radiance = _color(path, entry, "ke") or (0.0,)
     if diffuse is None and base is not None:
         diffuse = (1.0,)
+    radiance = _color(path, entry, "ke") or ((0.0,) if emissive is None else (1.0,))
     specular = max(_color(path, entry, "ks") or (0.0,))
     illumination = _number(path, entry, "illum", 2.0)
     # many programs write Ks 0.5 with illum 2 for everything: only what outweighs Kd, or is traced as a mirror, counts
@@ -132,6 +135,8 @@ def _color(path: Path, entry: dict, key: str) -> tuple[float, ...] | None:
     values = _floats(path, entry, key)
     if not values:
         return None
+    if len(values) == 2:
+        raise SceneError(f"{path}, line {entry[key][0]}: {key} is {shown(values)}; expected one number, or red, green and blue")
     values = values[:3] if len(values) >= 3 else values[:1]
     if not all(0 <= v < LARGEST for v in values):
         raise SceneError(

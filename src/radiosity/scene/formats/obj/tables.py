@@ -16,6 +16,8 @@ WITHOUT_EFFECT = (
     "vn", "vp", "s", "deg", "bmat", "step", "cstype", "parm", "trim", "hole", "scrv", "sp", "end", "con", "mg",
     "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech", "stech",
 )  # fmt: skip
+HEAD = 1 << 16  # characters in which comments are looked at
+PAINTED = "#MRGB"  # ZBrush's colours
 NONE = -1
 
 
@@ -32,6 +34,7 @@ class Tables:
     left_out: Counter[str] = field(default_factory=Counter)  # statements that are not read, by what they are
     begun: Counter[str] = field(default_factory=Counter)  # how often each object begins
     codec: str = "utf-8"
+    comments: list[str] = field(default_factory=list)  # those at the beginning
     highest: dict[str, tuple[int, int]] = field(default_factory=dict)  # number used of a table, and its line
 
 
@@ -43,6 +46,9 @@ def parse(path: Path) -> Tables:
     """
     text = read_text(path)
     tables = Tables(codec=text.codec)
+    tables.comments += [line for line in text.text[:HEAD].splitlines() if line.startswith("#")]
+    if painted := text.text.count(PAINTED):
+        tables.left_out[f"{PAINTED} (colours of vertices in comments)"] = painted
     name = {"o": "", "g": ""}
     material, faces = "", None
     for number, words in lines(text.text):

@@ -14,6 +14,7 @@ from ...assemble import Part, ReadOptions, warn
 from ...combine import combine
 from ...model import Back, Camera, Scene
 from ..beside import in_any_case, warn_of_case
+from ..units import UNITS
 
 BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
 SIDES = {1: Back.ABSORBS, 2: Back.RADIATES}
@@ -25,7 +26,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
     Raises:
         SceneError: not TOML, a key or value that is not understood, or geometry that cannot be read.
     """
-    from .schema import UNITS, checked
+    from .schema import checked
 
     try:
         values = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
@@ -131,6 +132,9 @@ def _geometry(file: str, factor: float, name: str | None, looks: Looks, options:
     if not path.exists() and (other := in_any_case(source.parent, file)):
         warn_of_case(source, [(file, other)])
         path = options.admit(other, source)
+    if not path.exists():
+        hint = "; write / in place of the backslash" if "\\" in file else ""
+        raise SceneError(f"{source}: geometry '{file}' does not exist; paths are relative to the folder of the .toml{hint}")
     if path.suffix.lower() == ".toml":
         raise SceneError(f"{source}: geometry '{path.name}' is a .toml file; name its geometry files instead")
 
@@ -141,7 +145,7 @@ def _geometry(file: str, factor: float, name: str | None, looks: Looks, options:
             result.append(looks.apply(part))
         return result
 
-    scene = read_any(path, replace(options, edit=edit))
+    scene = read_any(path, replace(options, edit=edit, unit=factor))
     cameras = [replace(c, origin=_times(c.origin, factor), target=_times(c.target, factor)) for c in scene.cameras]
     return replace(scene, cameras=tuple(cameras))
 
