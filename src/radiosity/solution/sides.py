@@ -51,7 +51,7 @@ def sides_of(solution) -> Sides:
     counts = np.where(solution.few | ~received, solution.arrivals, np.maximum(solution.arrivals, FEW))
     reached = np.zeros((scene.n_faces, 2))
     np.add.at(reached, place, counts)
-    kind = lit_sides(scene, reached, 1)
+    kind = lit_sides(scene, reached, FEW)
     back_is_less = reached[:, 0] >= reached[:, 1]
     of_face, outside = kind[surface], np.zeros((scene.n_faces, 2), bool)
     outside[:, 0] = two & ((of_face == Lit.BACK) | (of_face == Lit.MIXED) & ~back_is_less)
