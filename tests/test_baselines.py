@@ -81,7 +81,7 @@ def test_three_surface_enclosure(solver):
 # ---- against the random walk -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scene", ["room", "box"])
+@pytest.mark.parametrize("scene", [pytest.param("room", marks=pytest.mark.slow), "box"])
 def test_full_matrix_of_lines_agrees_with_the_random_walk_within_errors(scene, request):
     patches, _ = request.getfixturevalue(scene)
     expected = powers(rd.solve(patches, rays=20_000_000, replicates=16, seed=98))
@@ -122,6 +122,7 @@ def test_replicates_of_a_matrix_are_not_alike(factors):
     assert (solution.irradiance_standard_error > 0)[solution.irradiance > 0].all()
 
 
+@pytest.mark.slow
 def test_errors_fall_with_samples_and_with_patches_for_hemicubes(room):
     patches, reference = room
     errors = [error(rd.solve(patches, rd.Baseline(samples=samples)), reference) for samples in (4, 32, 256)]
@@ -262,8 +263,7 @@ def test_shots_go_on_to_the_same_bits(room):
 @pytest.mark.filterwarnings("ignore:.*on this machine:radiosity.RadiosityWarning")  # which may be busy
 @pytest.mark.parametrize("name", [name for name, preset in rd.BASELINES.items()])
 def test_a_name_solves_a_scene_and_files_keep_it(name, tmp_path):
-    solution = rd.solve(rd.load_scene("room"), name) if name == "full-matrix" else rd.solve(
-        rd.subdivide(rd.load_scene("room"), cells=2, powers_of_two=True), name)  # fmt: skip
+    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2, powers_of_two=True), name)
     assert solution.status == "complete"
     assert np.isnan(solution.irradiance_standard_error).all()
     assert "error     unknown" in solution.report()

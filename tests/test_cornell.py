@@ -1,6 +1,7 @@
 """`cornell-box` against a dense solve on the same patches, and against Mitsuba's own path tracer."""
 
 import numpy as np
+import pytest
 
 import radiosity as rd
 from radiosity.engine.caster import first_hits
@@ -110,6 +111,7 @@ def _properties(mi, scene, face):
     return properties
 
 
+@pytest.mark.slow
 def test_difference_from_the_path_tracer_falls_with_the_patch_size():
     """The path tracer solves the continuous equation: what is left is the discretisation error, and it vanishes."""
     scene = rd.load_scene("cornell-box")

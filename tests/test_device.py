@@ -99,6 +99,20 @@ def test_a_users_variant_is_left_as_it_was():
     assert done.stdout.split() == ["scalar_rgb", "complete"], done.stderr
 
 
+def test_a_users_variant_brings_no_warning_of_drjit():
+    """Each change of variant decorates functions of Mitsuba again; above 1000 of them Dr.Jit warns, here an error."""
+    code = (
+        "import radiosity as rd, mitsuba as mi, drjit.ast, warnings\n"
+        "mi.set_variant('scalar_rgb')\n"
+        "assert drjit.ast._syntax_counter > 0\n"
+        "drjit.ast._syntax_counter = 1000\n"
+        "warnings.simplefilter('error')\n"
+        "print(rd.solve(rd.subdivide(rd.load_scene('room'), cells=2), rays=10**5).status, drjit.ast._syntax_counter > 1000)"
+    )
+    done = python(code)
+    assert done.stdout.split() == ["complete", "True"], done.stderr
+
+
 def test_launches_set_no_variant():
     """It takes 50 ms each time: a user with a variant of his own waited eight times as long for a run."""
     code = (

@@ -181,6 +181,7 @@ def errors_at(patches: rd.Patches, truth: np.ndarray, target: float, runs: int) 
 DOUBLING = 2**0.6  # how much less the error is after twice as many lines
 
 
+@pytest.mark.slow
 def test_a_target_error_is_reached():
     """Against the truth, in 95 % of runs; and no more than twice the lines are traced that a run of known error needs, in which
     the 95 % quantile of errors would be the target itself."""

@@ -50,7 +50,7 @@ def statistic(scene, name: str, quanta: int, runs: int = RUNS) -> tuple[float, f
     return float(np.abs(t).max()), float(student.ppf(1 - ALPHA / 2 / seen.sum(), runs - 1))
 
 
-@pytest.mark.parametrize("quanta", [5, 40])
+@pytest.mark.parametrize("quanta", [5, pytest.param(40, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", UNBIASED)
 def test_short_runs_are_right_in_the_mean(room, name, quanta):
     """5 quanta: fewer lines than patches, so that rounding and roulette decide nearly everything."""
@@ -58,7 +58,7 @@ def test_short_runs_are_right_in_the_mean(room, name, quanta):
     assert largest < bound
 
 
-@pytest.mark.parametrize("quanta", [6, 40])
+@pytest.mark.parametrize("quanta", [pytest.param(6, marks=pytest.mark.slow), 40])
 @pytest.mark.parametrize("name", UNBIASED)
 def test_short_runs_are_right_where_all_sides_emit(lit, name, quanta):
     largest, bound = statistic(lit, name, quanta)

@@ -139,6 +139,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         assert abs(share - level) < 4 * error + 0.005
 
 
+@pytest.mark.slow
 def test_discretisation_error_falls_with_the_mesh_and_is_less_for_continuous_walks():
     coarse, fine = (discretisation(count, 3e6, 5) for count in (2, 5))
     assert fine.discrete < 0.9 * coarse.discrete
@@ -158,6 +159,7 @@ def test_the_command_writes_a_report_that_stands_alone(tmp_path, capsys):
     assert "known are 1, 2, 3, 4, 5, 6 and all" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_page_of_baselines_compares_runs_in_processes_of_their_own(tmp_path, monkeypatch):
     from radiosity.lab import contest
     from radiosity.lab.experiments import baselines

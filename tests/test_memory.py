@@ -169,7 +169,7 @@ def test_planes_count():
 
 
 @needs_proc
-@pytest.mark.parametrize("method", ["random-walk", "stochastic-jacobi", "density-estimation"])
+@pytest.mark.parametrize("method", ["random-walk", *(pytest.param(m, marks=pytest.mark.slow) for m in ("stochastic-jacobi", "density-estimation"))])
 def test_expected_memory_is_within_a_factor_of_two(method):
     """All methods: benchmarks/demand.py."""
     about = 30_000 if method == "density-estimation" else 100_000

@@ -44,7 +44,10 @@ def reference(room, plates):
     return get
 
 
-@pytest.mark.parametrize("mean_reflectance", [0.1, 0.5, 0.9])
+SLOW = pytest.mark.slow
+
+
+@pytest.mark.parametrize("mean_reflectance", [pytest.param(0.1, marks=SLOW), pytest.param(0.5, marks=SLOW), 0.9])
 @pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
 def test_furnace(method, mean_reflectance):
     patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean_reflectance}"), cells=1)

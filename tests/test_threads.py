@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity.engine import device
 from radiosity.engine import turn as turns
 from radiosity.engine.caster import first_hits
 from radiosity.engine.device import choose
@@ -22,6 +23,15 @@ from radiosity.image import render
 from radiosity.scene.leaks import follow
 
 LONG = 60  # seconds: nothing waits so long, unless it waits for ever
+
+
+@pytest.fixture(autouse=True)
+def two_threads_of_drjit():
+    """What is lost where Python threads do not take turns is lost with two or more."""
+    import drjit as dr
+
+    with device.threads(max(dr.thread_count(), 2)):
+        yield
 
 
 @pytest.fixture

@@ -103,6 +103,7 @@ def _triangles(shape) -> np.ndarray:
 def _mitsuba():
     import mitsuba
 
-    mitsuba.set_variant("scalar_rgb")
+    if mitsuba.variant() != "scalar_rgb":  # each change is slow, and leaves something behind
+        mitsuba.set_variant("scalar_rgb")
     mitsuba.set_log_level(mitsuba.LogLevel.Error)
     return mitsuba

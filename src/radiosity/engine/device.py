@@ -1,6 +1,7 @@
 """The one place that chooses and enters a Dr.Jit back end, and the one door from numpy to it."""
 
 import os
+import warnings
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
@@ -63,12 +64,22 @@ def entered(device: Device):
         yield mi
         return
     before = mi.variant()
-    mi.set_variant(device.variant)
+    _set(device.variant)
     try:
         yield mi
     finally:
         if before is not None:
-            mi.set_variant(before)
+            _set(before)
+
+
+def _set(variant: str) -> None:
+    """Each change loads modules of Mitsuba anew, and after some sixty Dr.Jit warns that they decorate functions more than 1000
+    times, which tells users nothing."""
+    import mitsuba as mi
+
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "The AST-transforming decorator", RuntimeWarning)
+        mi.set_variant(variant)
 
 
 def upload(dtype, values: np.ndarray):
