@@ -168,8 +168,11 @@ def test_planes_count():
     assert expected(80_000, 100) > 2 * expected(80_000, 1e6)
 
 
+SLOW_METHODS = [pytest.param(name, marks=pytest.mark.slow) for name in ("stochastic-jacobi", "density-estimation")]
+
+
 @needs_proc
-@pytest.mark.parametrize("method", ["random-walk", *(pytest.param(m, marks=pytest.mark.slow) for m in ("stochastic-jacobi", "density-estimation"))])
+@pytest.mark.parametrize("method", ["random-walk", *SLOW_METHODS])
 def test_expected_memory_is_within_a_factor_of_two(method):
     """All methods: benchmarks/demand.py."""
     about = 30_000 if method == "density-estimation" else 100_000
