@@ -199,3 +199,24 @@ def test_results_do_not_need_a_size_of_blocks(monkeypatch):
     monkeypatch.setattr(blocks, "_functions", lambda: None)
     without = rd.solve(patches, quanta=2**17, replicates=2).state
     assert all(np.array_equal(with_blocks[key], without[key]) for key in with_blocks)
+
+
+def test_exr_files_are_written_and_read_with_one_thread(tmp_path):
+    """As on a machine of one core, where Mitsuba's own bitmaps wait for ever."""
+    code = (
+        "import numpy as np, radiosity as rd\n"
+        "from pathlib import Path\n"
+        "from radiosity.engine.device import choose\n"
+        "choose('cpu')\n"
+        "import drjit as dr\n"
+        "dr.set_thread_count(1)\n"
+        "from radiosity.image.bitmap import write_exr\n"
+        "from radiosity.scene.formats.mitsuba.image import read_image\n"
+        "from radiosity.scene.parts import ReadOptions\n"
+        f"path = Path({str(tmp_path / 'a.exr')!r})\n"
+        "write_exr(np.full((300, 400, 3), 0.25), path, {}, ('red', 'green', 'blue'))\n"
+        "image = read_image(path, True, ReadOptions())\n"
+        "print(image.shape, image.min(), image.max(), dr.thread_count())"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout.strip() == "(300, 400, 3) 0.25 0.25 1", done.stderr

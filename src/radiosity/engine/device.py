@@ -13,6 +13,7 @@ import numpy as np
 from .. import llvm
 from ..errors import DeviceError
 from .recorded import not_recorded
+from .turn import turn
 
 VARIANTS = {"cpu": "llvm_ad_rgb", "cuda": "cuda_ad_rgb"}
 PACKET = 64  # kernels may read whole packets past an array's end: every upload is padded to this
@@ -135,6 +136,19 @@ def threads(count: int):
         yield
     finally:
         dr.set_thread_count(before)
+
+
+@contextmanager
+def bitmaps():
+    """For what reads or writes EXR files by Mitsuba's `Bitmap`: with one thread of Dr.Jit, as on machines of one core, it waits
+    for ever (Mitsuba 3.9.1, Dr.Jit 1.5.0)."""
+    import drjit as dr
+
+    if dr.thread_count() > 1:
+        yield
+        return
+    with turn(), threads(2):
+        yield
 
 
 def describe() -> dict[str, str]:

@@ -32,6 +32,8 @@ def write_exr(values: np.ndarray, path, facts: dict[str, str], bands: tuple[str,
     """
     import mitsuba as mi  # its Bitmap needs no variant, and none is set here
 
+    from ..engine.device import bitmaps
+
     names = [f"band.{re.sub(r'[^A-Za-z0-9]+', '_', band)}" for band in bands] if values.shape[2] not in (1, 3) else []
     image = mi.Bitmap(np.ascontiguousarray(values, np.float32), **({"channel_names": names} if names else {}))
     metadata = image.metadata()
@@ -39,6 +41,7 @@ def write_exr(values: np.ndarray, path, facts: dict[str, str], bands: tuple[str,
         metadata[key] = value
     with replacing(path) as temporary:
         try:
-            image.write(str(temporary))
+            with bitmaps():
+                image.write(str(temporary))
         except RuntimeError as error:
             raise OutputError(f"{path}: cannot be written ({error})") from error

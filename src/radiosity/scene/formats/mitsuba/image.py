@@ -47,8 +47,11 @@ def read_image(file: Path, raw: bool, options: ReadOptions) -> np.ndarray:
 def _float_image(file: Path) -> np.ndarray:
     import mitsuba
 
+    from ....engine.device import bitmaps  # the engine stands later in the pipeline, and takes a while to start
+
     try:
-        bitmap = mitsuba.Bitmap(str(file))
+        with bitmaps():
+            bitmap = mitsuba.Bitmap(str(file))
         grey = bitmap.pixel_format() in (mitsuba.Bitmap.PixelFormat.Y, mitsuba.Bitmap.PixelFormat.YA)
         kind = mitsuba.Bitmap.PixelFormat.Y if grey else mitsuba.Bitmap.PixelFormat.RGB
         bitmap = bitmap.convert(kind, mitsuba.Struct.Type.Float32, False)
