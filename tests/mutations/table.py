@@ -371,7 +371,7 @@ MISTAKES = (
             ("test_polygon.py",), "the plane of a polygon may be seen from behind"),
     Mistake("scene/formats/textures.py", "most = 65535 if wide else 255", "most = 255", ("test_textures.py",),
             "texture: 16 bits are taken for 8"),
-    Mistake("scene/formats/toml/schema.py", '"ft": 0.3048', '"ft": 0.3408', ("test_formats_toml.py",),
+    Mistake("scene/formats/units.py", '"ft": 0.3048', '"ft": 0.3408', ("test_formats_toml.py",),
             "a foot with digits swapped"),
     Mistake("scene/formats/obj/mtl_map.py", '"-mm": 2', '"-mm": 1', ("test_formats_obj.py",),
             "the second value of an option is part of the file's name"),
