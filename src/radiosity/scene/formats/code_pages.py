@@ -60,11 +60,16 @@ def _japanese(before: str, character: str, after: str) -> float:
     return -math.log(3000) if 0x88 <= _lead(character, "cp932") <= 0x98 else RARE
 
 
-def _simplified(before: str, character: str, after: str) -> float:
-    if character in SIMPLIFIED:
+def _of_table(character: str, listed, codec: str, last: int, count: int) -> float:
+    """Of a table of ``count`` characters in rows 0xB0 to ``last`` of a code page; those ``listed`` are frequent."""
+    if character in listed:
         return -math.log(300)
-    data = character.encode("gb18030", "ignore")
-    return -math.log(3760) if len(data) == 2 and 0xB0 <= data[0] <= 0xD7 and data[1] >= 0xA1 else RARE
+    data = character.encode(codec, "ignore")
+    return -math.log(count) if len(data) == 2 and 0xB0 <= data[0] <= last and data[1] >= 0xA1 else RARE
+
+
+def _simplified(before: str, character: str, after: str) -> float:
+    return _of_table(character, SIMPLIFIED, "gb18030", 0xD7, 3760)
 
 
 def _traditional(before: str, character: str, after: str) -> float:
@@ -74,10 +79,7 @@ def _traditional(before: str, character: str, after: str) -> float:
 
 
 def _korean(before: str, character: str, after: str) -> float:
-    if character in KOREAN:
-        return -math.log(300)
-    data = character.encode("cp949", "ignore")
-    return -math.log(2350) if len(data) == 2 and 0xB0 <= data[0] <= 0xC8 and data[1] >= 0xA1 else RARE
+    return _of_table(character, KOREAN, "cp949", 0xC8, 2350)
 
 
 def _western(before: str, character: str, after: str) -> float:
