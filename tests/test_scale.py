@@ -84,8 +84,9 @@ def test_powers_of_two_leave_every_bit(load, name, exponent):
     assert np.array_equal(two.escaped, scale**2 * one.escaped)
     for row, scaled in zip_longest(one.surface_table(), two.surface_table()):
         for key, value in row.items():
-            grows = key.split(" ")[0] in EXTENSIVE
-            assert scaled[key] == (value * scale**2 if grows else value), key
+            expected = value * scale**2 if key.split(" ")[0] in EXTENSIVE else value
+            unknown = expected != expected
+            assert scaled[key] == expected or (unknown and scaled[key] != scaled[key]), key
     here, there = check(scene), check(other)
     words = re.compile(r"\([^()]* m\)")
     assert [(f.severity, f.kind, words.sub("", f.message)) for f in here.findings] == [
