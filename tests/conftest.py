@@ -1,5 +1,6 @@
 """What the tests share: scenes made by strangers, where a checkout has them, and a small closed box."""
 
+import os
 import signal
 from functools import wraps
 from pathlib import Path
@@ -34,6 +35,19 @@ def strangers_or_none() -> Path | None:
 def ctrl_c_is_heard():
     """As in a program of its own: test processes of pytest-xdist do not hear it, nor do the programs that they start."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_thread_in_each_test_process():
+    """Where pytest-xdist runs several: threads that wait for each other's cores take a third of the time. Tests of threads set
+    their number themselves, and results do not depend on it. What reads EXR files by Mitsuba needs `device.bitmaps`."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        from radiosity.engine.device import choose
+
+        choose("cpu")  # before drjit is imported
+        import drjit as dr
+
+        dr.set_thread_count(1)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -4,6 +4,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from radiosity.engine import device
+
 
 def files(folder):
     """A cube as OBJ, PLY and serialized mesh, with and without normals: names by (plugin, has normals)."""
@@ -60,18 +62,17 @@ def random_rays(bounds, count, seed):
 
 @contextmanager
 def scalar_mitsuba():
-    """Mitsuba in the variant scalar_rgb; the variant that was set before comes back."""
+    """Mitsuba in the variant scalar_rgb, which may read EXR files; the variant that was set before comes back."""
     import mitsuba as mi
 
     before = mi.variant()
-    if before == "scalar_rgb":
-        yield mi
-        return
-    mi.set_variant("scalar_rgb")
+    if before != "scalar_rgb":
+        mi.set_variant("scalar_rgb")
     try:
-        yield mi
+        with device.bitmaps():
+            yield mi
     finally:
-        if before is not None:
+        if before not in (None, "scalar_rgb"):
             mi.set_variant(before)
 
 

@@ -8,6 +8,7 @@ from mitsuba_rays import mitsuba_hits, our_hits
 from samples import CORNERS, Gltf, png
 
 import radiosity as rd
+from radiosity.engine import device
 from radiosity.errors import RadiosityWarning, SceneError
 from radiosity.scene import texture_memory
 from radiosity.scene.sampler import Sampler
@@ -79,11 +80,12 @@ def images(folder):
 
     import mitsuba as mi
 
-    mi.Bitmap(np.full((4, 4, 1), 0.3, np.float32)).write(str(folder / "grey.exr"))
-    mi.Bitmap(np.tile(np.array([0.5, 0.25, 0.1], np.float32), (4, 4, 1))).write(str(folder / "color.exr"))
-    mi.Bitmap(np.tile(np.array([0.5, 0.25, 0.1, 0.5], np.float32), (4, 4, 1))).write(str(folder / "alpha.exr"))
-    mi.Bitmap(np.tile(np.array([0.5, 0.25, 0.125], np.float32), (4, 4, 1))).write(str(folder / "color.hdr"))
-    mi.Bitmap(np.tile(np.array([0.5, 0.25, 0.1], np.float32), (4, 4, 1))).write(str(folder / "color.pfm"))
+    with device.bitmaps():
+        mi.Bitmap(np.full((4, 4, 1), 0.3, np.float32)).write(str(folder / "grey.exr"))
+        mi.Bitmap(np.tile(np.array([0.5, 0.25, 0.1], np.float32), (4, 4, 1))).write(str(folder / "color.exr"))
+        mi.Bitmap(np.tile(np.array([0.5, 0.25, 0.1, 0.5], np.float32), (4, 4, 1))).write(str(folder / "alpha.exr"))
+        mi.Bitmap(np.tile(np.array([0.5, 0.25, 0.125], np.float32), (4, 4, 1))).write(str(folder / "color.hdr"))
+        mi.Bitmap(np.tile(np.array([0.5, 0.25, 0.1], np.float32), (4, 4, 1))).write(str(folder / "color.pfm"))
     return sorted(file.name for file in folder.iterdir())
 
 

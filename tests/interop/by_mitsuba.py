@@ -3,6 +3,8 @@
 import numpy as np
 from mitsuba_rays import mitsuba_hits, our_hits, random_rays
 
+from radiosity.engine import device
+
 from .compare import Difference
 from .images import spots, square
 from .record import Reading, Refused, Surface, surface
@@ -24,7 +26,8 @@ def scene(path) -> Reading:
     """All shapes but instances, which Mitsuba hides; rays find those."""
     mitsuba = _mitsuba()
     try:
-        loaded = mitsuba.load_file(str(path), optimize=False)
+        with device.bitmaps():
+            loaded = mitsuba.load_file(str(path), optimize=False)
     except RuntimeError as error:
         raise Refused(str(error)) from None
     return {shape.id(): _surface(mitsuba, shape) for shape in loaded.shapes() if not str(shape).startswith("Instance")}
