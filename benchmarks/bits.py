@@ -1,7 +1,7 @@
 """Hashes of the results of some thirty small runs: for a change that must leave every bit as it was.
 
-Run it before and after (``python benchmarks/bits.py > before.txt``), on the same machine, and compare the two files. Only public names are
-used, so that the code before and after may be built in different ways.
+Run it before and after (``python benchmarks/bits.py > before.txt``), on the same machine, and compare the two files. Only public
+names are used, so that the code before and after may be built in different ways.
 """
 
 import hashlib
