@@ -12,10 +12,16 @@ import radiosity as rd
 FIELDS = ("radiosity", "standard_error", "irradiance", "irradiance_standard_error", "arrivals")
 CHOICES = {
     "random-walk": (
-        {"order": "depth-first"}, {"numbers": "sobol"}, {"numbers": "random"}, {"randomisation": "shared"}, {"coherent": True},
-        {"estimator": "absorption"}, {"absorption": "fractional"}, {"estimator": "gathering"},
+        {"order": "depth-first"},
+        {"numbers": "sobol"},
+        {"numbers": "random"},
+        {"randomisation": "shared"},
+        {"coherent": True},
+        {"estimator": "absorption"},
+        {"absorption": "fractional"},
+        {"estimator": "gathering"},
     ),
-}  # fmt: skip
+}
 
 
 def runs():

@@ -20,9 +20,14 @@ BUDGETS = (16_000, 500_000)  # lines of a replicate
 REFERENCE = 400_000_000
 METHODS = ("random-walk", "sobol", "random", "particle-tracing", "stochastic-jacobi", "global-multipath-first-shot")
 TARGETS = (
-    ("labyrinth-0.5", 1, 0.0018, None), ("labyrinth-0.5", 1, 0.001, None), ("room", 3, 0.004, None), ("room", 3, 0.0025, None),
-    ("cornell-box", 3, 0.005, None), ("cornell-box", 3, 0.003, None), ("room", 3, 0.0012, "surface:floor"),
-)  # fmt: skip
+    ("labyrinth-0.5", 1, 0.0018, None),
+    ("labyrinth-0.5", 1, 0.001, None),
+    ("room", 3, 0.004, None),
+    ("room", 3, 0.0025, None),
+    ("cornell-box", 3, 0.005, None),
+    ("cornell-box", 3, 0.003, None),
+    ("room", 3, 0.0012, "surface:floor"),
+)
 RUNS, SLOPE = 100, 0.6
 
 

@@ -1,11 +1,11 @@
-"""Memory of runs at their peak, and as `radiosity.engine.demand` expects it: ``python benchmarks/demand.py [METHOD ...]``."""
+"""Memory of runs at their peak, and as `radiosity.run.demand` expects it: ``python benchmarks/demand.py [METHOD ...]``."""
 
 import sys
 
 import radiosity as rd
-from radiosity.engine.demand import demand
-from radiosity.engine.problem import Problem
 from radiosity.lab.footprint import footprints, scene_of
+from radiosity.problem.model import Problem
+from radiosity.run.demand import demand
 
 METHODS = ("random-walk", "particle-tracing", "stochastic-jacobi", "global-multipath", "transillumination", "global-form-factors")
 SIZES, REPLICATES, RAYS = (15_000, 200_000), (1, 8), 4_000_000

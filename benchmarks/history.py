@@ -27,8 +27,12 @@ def note(name: str, value: float, unit: str) -> None:
 
 def machine() -> dict:
     """What figures depend on, besides the code."""
-    return {"processor": platform.processor() or platform.machine(), "processors": os.cpu_count(),
-            "python": platform.python_version(), **{package: version(package) for package in PACKAGES}}  # fmt: skip
+    return {
+        "processor": platform.processor() or platform.machine(),
+        "processors": os.cpu_count(),
+        "python": platform.python_version(),
+        **{package: version(package) for package in PACKAGES},
+    }
 
 
 def keep(file: Path = FILE) -> None:
@@ -59,8 +63,9 @@ def compare(file: Path = FILE) -> str:
         known = old is not None
         ratio = f"{value / old:.2f}" if old else "?"
         rows.append(ROW.format(name, f"{old:.2f}" if known else "new", f"{value:.2f}", ratio))
-    rows += [ROW.format(name, f"{value:.2f}", "gone", "") for name, value in before["figures"].items()
-             if name not in last["figures"]]  # fmt: skip
+    rows += [
+        ROW.format(name, f"{value:.2f}", "gone", "") for name, value in before["figures"].items() if name not in last["figures"]
+    ]
     return "\n".join(rows)
 
 

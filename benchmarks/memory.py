@@ -11,9 +11,9 @@ ROW = "{:<12} {:>6} {:>10} {:>11} {:>7} {:>9} {:>8}"
 CHILD = """
 import resource, sys, time
 import radiosity as rd
-from radiosity.engine.budget import first_stage
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
+from radiosity.run.budget import first_stage
+from radiosity.device.backend import choose
+from radiosity.tracing.geometry import Geometry
 
 name, cells, replicates, stages = sys.argv[1], *map(int, sys.argv[2:])
 rd.solve(rd.subdivide(rd.load_scene(name), cells=2), quanta=2**18, replicates=replicates)  # compiler and kernels

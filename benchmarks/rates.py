@@ -8,11 +8,11 @@ import radiosity as rd  # first: it points Dr.Jit to a libLLVM
 # isort: split
 import drjit as dr
 
-from radiosity.engine.device import choose, entered
-from radiosity.engine.firing import Engine
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.lines import local_line
-from radiosity.engine.quanta import Source
+from radiosity.algorithms.firing.counters import Engine
+from radiosity.device.backend import choose, entered
+from radiosity.problem.quanta import Source
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.lines import local_line
 
 LINES = 1 << 22  # of a sweep
 TURNS = 7

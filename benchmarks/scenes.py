@@ -24,9 +24,15 @@ def black(scene: rd.Scene) -> rd.Scene:
     """The same geometry, grey: every side emits alike and nothing is reflected, so that a sweep is what is asked for."""
     one, none = np.ones((scene.n_faces, 1)), np.zeros((scene.n_faces, 1))
     return replace(
-        scene, emission=one, back_emission=one, reflectance=none, back_reflectance=none, bands=("grey",),
-        reflectance_paint=None, emission_paint=None,
-    )  # fmt: skip
+        scene,
+        emission=one,
+        back_emission=one,
+        reflectance=none,
+        back_reflectance=none,
+        bands=("grey",),
+        reflectance_paint=None,
+        emission_paint=None,
+    )
 
 
 def strangers() -> dict[str, Path]:

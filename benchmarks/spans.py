@@ -12,11 +12,11 @@ import radiosity as rd
 # isort: split
 import drjit as dr
 
-from radiosity.engine.device import choose
-from radiosity.engine.firing import Engine
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.global_lines.spans import Spans
-from radiosity.engine.quanta import Source
+from radiosity.algorithms.firing.counters import Engine
+from radiosity.device.backend import choose
+from radiosity.problem.quanta import Source
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.global_lines.spans import Spans
 
 KINDS = ("global", "global-disc", "spans", "bundles")
 LINES = 1 << 20  # of a turn
@@ -42,8 +42,18 @@ def spans() -> None:
         local, costs = measure(patches)
         for kind, cost in costs.items():
             note(f"spans of {kind}, {patches.scene.n_faces} faces", cost.rate, "M/s")
-            print(ROW.format("room", patches.scene.n_faces, kind, f"{cost.spans:.2f}", f"{cost.rate:.1f}", f"{local:.1f}",
-                             f"{cost.ratio:.2f}"), flush=True)  # fmt: skip
+            print(
+                ROW.format(
+                    "room",
+                    patches.scene.n_faces,
+                    kind,
+                    f"{cost.spans:.2f}",
+                    f"{cost.rate:.1f}",
+                    f"{local:.1f}",
+                    f"{cost.ratio:.2f}",
+                ),
+                flush=True,
+            )
 
 
 def measure(patches: rd.Patches, turns: int = TURNS, lines: int = LINES) -> tuple[float, dict[str, Cost]]:

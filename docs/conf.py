@@ -57,8 +57,11 @@ def inside(app, docname: str, source: list[str]) -> None:
 def included(app, relative_path: Path, parent: str, content: list[str]) -> None:
     """The same for included files, whose links begin with ``docs/`` or name a file beside them."""
     text = re.sub(r"\]\(docs/", "](", content[0])
-    content[0] = re.sub(r"\]\((" + "|".join(map(re.escape, OUTSIDE)) + r")(#[^)]*)?\)",
-                        lambda match: f"]({OUTSIDE[match[1]]}{match[2] or ''})", text)  # fmt: skip
+    content[0] = re.sub(
+        r"\]\((" + "|".join(map(re.escape, OUTSIDE)) + r")(#[^)]*)?\)",
+        lambda match: f"]({OUTSIDE[match[1]]}{match[2] or ''})",
+        text,
+    )
 
 
 def several(app, what, name, value, options, lines: list[str]) -> None:

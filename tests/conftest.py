@@ -42,7 +42,7 @@ def one_thread_in_each_test_process():
     """Where pytest-xdist runs several: threads that wait for each other's cores take a third of the time. Tests of threads set
     their number themselves, and results do not depend on it. What reads EXR files by Mitsuba needs `device.bitmaps`."""
     if "PYTEST_XDIST_WORKER" in os.environ:
-        from radiosity.engine.device import choose
+        from radiosity.device.backend import choose
 
         choose("cpu")  # before drjit is imported
         import drjit as dr
@@ -55,7 +55,7 @@ def nothing_is_evaluated_in_recorded_loops():
     """In all tests: what kernels are made of calls nothing of Dr.Jit that evaluates arrays while a loop is recorded."""
     import drjit as dr
 
-    from radiosity.engine.recorded import not_recorded
+    from radiosity.device.recorded import not_recorded
 
     def guarded(name):
         function = getattr(dr, name)
@@ -103,7 +103,7 @@ def cube() -> rd.Scene:
 @pytest.fixture(scope="session")
 def geometry_of():
     """Patches on the device that there is."""
-    from radiosity.engine.device import choose
-    from radiosity.engine.geometry import Geometry
+    from radiosity.device.backend import choose
+    from radiosity.tracing.geometry import Geometry
 
     return lambda patches: Geometry(patches, choose())

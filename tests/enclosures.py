@@ -79,9 +79,7 @@ def facing(first: np.ndarray, second: np.ndarray) -> rd.Scene:
 def parallel_squares() -> tuple[rd.Scene, float]:
     """Unit squares at distance 1; F from Howell's catalogue, C-11."""
     x2 = 2.0
-    value = 2 / np.pi * (
-        0.5 * np.log(x2 * x2 / (1 + 2)) + 2 * np.sqrt(x2) * np.arctan(1 / np.sqrt(x2)) - 2 * np.arctan(1.0)
-    )  # fmt: skip
+    value = 2 / np.pi * (0.5 * np.log(x2 * x2 / (1 + 2)) + 2 * np.sqrt(x2) * np.arctan(1 / np.sqrt(x2)) - 2 * np.arctan(1.0))
     return facing(quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0, 0, 1), (0, 1, 0), (1, 0, 0))), float(value)
 
 

@@ -19,10 +19,19 @@ def solution(patches, radiosity=None, *, unit="W/m²"):
         for name in patches.scene.names
     ]
     return SimpleNamespace(
-        patches=patches, radiosity=radiosity, irradiance=2 * radiosity, standard_error=0.1 * radiosity,
-        irradiance_standard_error=0.2 * radiosity, arrivals=np.arange(n), bands=bands, unit=unit, surface_table=lambda: table,
-        quanta=1, few=np.arange(n) < 30, interval=lambda level, quantity: (1.5 * radiosity, 2.5 * radiosity),
-    )  # fmt: skip
+        patches=patches,
+        radiosity=radiosity,
+        irradiance=2 * radiosity,
+        standard_error=0.1 * radiosity,
+        irradiance_standard_error=0.2 * radiosity,
+        arrivals=np.arange(n),
+        bands=bands,
+        unit=unit,
+        surface_table=lambda: table,
+        quanta=1,
+        few=np.arange(n) < 30,
+        interval=lambda level, quantity: (1.5 * radiosity, 2.5 * radiosity),
+    )
 
 
 def quad_scene(names=("floor",), **more):
@@ -34,9 +43,12 @@ def plain_hits(scene, origins, directions):
     """First hits by solving for every face: for small scenes, and independent of the ray caster."""
     origin, first, second = scene.frames
     best = SimpleNamespace(
-        face=np.full(len(origins), -1), u=np.zeros(len(origins)), v=np.zeros(len(origins)),
-        front=np.zeros(len(origins), bool), distance=np.full(len(origins), np.inf),
-    )  # fmt: skip
+        face=np.full(len(origins), -1),
+        u=np.zeros(len(origins)),
+        v=np.zeros(len(origins)),
+        front=np.zeros(len(origins), bool),
+        distance=np.full(len(origins), np.inf),
+    )
     for face in range(scene.n_faces):
         across = np.cross(directions, second[face])
         scale = across @ first[face]

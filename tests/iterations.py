@@ -23,6 +23,13 @@ def open_room(*, two_sided: bool = False) -> rd.Scene:
     if not two_sided:
         return scene
     return rd.Scene.from_arrays(
-        scene.vertices, scene.faces, scene.reflectance, scene.emission, two_sided=True, back_reflectance=0.4,
-        back_emission=np.zeros((1, 1)), surface=scene.surface, names=scene.names,
-    )  # fmt: skip
+        scene.vertices,
+        scene.faces,
+        scene.reflectance,
+        scene.emission,
+        two_sided=True,
+        back_reflectance=0.4,
+        back_emission=np.zeros((1, 1)),
+        surface=scene.surface,
+        names=scene.names,
+    )

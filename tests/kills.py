@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 import radiosity as rd
-from radiosity.engine import checkpoint as checkpoints
-from radiosity.engine.global_lines import multipath
+from radiosity.algorithms.global_lines import multipath
+from radiosity.run import checkpoint as checkpoints
 
 SPANS = 1 << 16  # of multipath runs between two looks at the clock, so that there are many
 PAUSE = 0.03  # seconds at most from a sweep to the kill: longer than it takes to write a checkpoint

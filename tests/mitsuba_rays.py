@@ -4,7 +4,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from radiosity.engine import device
+from radiosity.device import backend as device
 
 
 def files(folder):

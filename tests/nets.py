@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from radiosity.engine.device import choose, upload
-from radiosity.method.numbers import WORDS, make
-from radiosity.method.numbers.binary import Binary
+from radiosity.device.backend import choose, upload
+from radiosity.sampling.numbers import WORDS, make
+from radiosity.sampling.numbers.binary import Binary
 
 NONE, DEGREES = dict.fromkeys(range(2, 6), 0), {2: 0, 3: 1, 4: 3, 5: 5}  # the sum of the polynomials' degrees less one
 T = {"faure": NONE, "generalized-faure": NONE, "niederreiter": DEGREES, "sobol": DEGREES}  # t of the first s dimensions

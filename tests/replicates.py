@@ -3,10 +3,11 @@
 import numpy as np
 
 import radiosity as rd
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.problem import Problem
-from radiosity.engine.process import AbstractTally, make
+from radiosity.algorithms.process import AbstractTally
+from radiosity.algorithms.table import make
+from radiosity.device.backend import choose
+from radiosity.problem.model import Problem
+from radiosity.tracing.geometry import Geometry
 
 
 def powers(solution: rd.Solution, *, key=None, tally: AbstractTally | None = None, group: int = 0) -> np.ndarray:

@@ -11,11 +11,12 @@ import numpy as np
 from iterations import open_room
 
 import radiosity as rd
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.problem import Problem
-from radiosity.engine.process import AbstractProcess, State, make
-from radiosity.engine.progress import Interrupted
+from radiosity.algorithms.process import AbstractProcess, State
+from radiosity.algorithms.table import make
+from radiosity.device.backend import choose
+from radiosity.problem.model import Problem
+from radiosity.run.progress import Interrupted
+from radiosity.tracing.geometry import Geometry
 
 STAGES = (1_000, 6_000)  # quanta; the first stage of a run is short
 ODD = (1, 7, 1_000, 1_001, 3_000, 3_000, 6_000)
@@ -34,9 +35,17 @@ def coloured() -> tuple[Geometry, Problem]:
     scene = open_room()
     reflectance = np.column_stack([scene.reflectance[:, 0], scene.reflectance[::-1, 0] / 2])
     tinted = rd.Scene.from_arrays(
-        scene.vertices, scene.faces, reflectance, scene.emission * [[1.0, 0.5]], surface=scene.surface, names=scene.names,
-        bands=["one", "other"], two_sided=True, back_reflectance=0.4, back_emission=np.zeros((1, 2)),
-    )  # fmt: skip
+        scene.vertices,
+        scene.faces,
+        reflectance,
+        scene.emission * [[1.0, 0.5]],
+        surface=scene.surface,
+        names=scene.names,
+        bands=["one", "other"],
+        two_sided=True,
+        back_reflectance=0.4,
+        back_emission=np.zeros((1, 2)),
+    )
     patches = rd.subdivide(tinted, cells=2)
     return Geometry(patches, choose("cpu")), Problem.of(patches)
 

@@ -14,7 +14,7 @@ from methods import critical
 from replicates import powers
 
 import radiosity as rd
-from radiosity.engine.walks.flock import Legs
+from radiosity.algorithms.walks.flock import Legs
 from radiosity.method.equation import EQUATIONS
 
 REPLICATES, RAYS = 16, 400_000

@@ -16,9 +16,9 @@ from methods import critical
 from replicates import powers
 
 import radiosity as rd
-from radiosity.engine.device import upload
-from radiosity.engine.walks.gathering import Gathering
-from radiosity.engine.walks.scores import Scores
+from radiosity.algorithms.walks.gathering import Gathering
+from radiosity.algorithms.walks.scores import Scores
+from radiosity.device.backend import upload
 from radiosity.method.estimator import ABSORPTIONS, ESTIMATORS
 
 REPLICATES, RAYS = 32, 300_000

@@ -15,8 +15,9 @@ from replicates import powers
 from scipy import stats
 
 import radiosity as rd
-from radiosity.engine import departure
-from radiosity.method.lines import LINES, global_lines
+from radiosity.method.lines import LINES
+from radiosity.sampling import global_lines
+from radiosity.tracing import departure
 
 ALPHA, RAYS, REPLICATES, RUNS = 1e-4, 30_000, 16, 6
 EDGE = 1e-4  # of all power: lines within single precision of an edge

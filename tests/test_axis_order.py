@@ -11,11 +11,12 @@ from members import accepted, each, plainest, varied
 from states import MOST, ODD, STAGES, SUMS, begun, interrupted, same, scene_of, whole
 
 import radiosity as rd
-from radiosity.engine import lanes
-from radiosity.engine.global_lines import mixing, multipath, pooling
-from radiosity.engine.matrix import process as matrix
-from radiosity.engine.walks.launches import AbstractLaunches
-from radiosity.method.order import ORDERS, breadth_first
+from radiosity.algorithms.firing.orders import breadth_first
+from radiosity.algorithms.global_lines import mixing, multipath, pooling
+from radiosity.algorithms.matrix import process as matrix
+from radiosity.algorithms.walks.launches import AbstractLaunches
+from radiosity.method.order import ORDERS
+from radiosity.tracing import lanes
 
 pytestmark = pytest.mark.filterwarnings("ignore::radiosity.errors.RadiosityWarning")  # of few lines
 

@@ -5,11 +5,11 @@ import pytest
 from enclosures import cube
 
 import radiosity as rd
-from radiosity.deterministic.factors import exchange
-from radiosity.engine.matrix.balance import BALANCED, restored, restored_matrix
-from radiosity.engine.matrix.counts import WORD
-from radiosity.engine.matrix.factors import Factors
-from radiosity.engine.matrix.solve import of_both_ways
+from radiosity.factors.balance import BALANCED, restored, restored_matrix
+from radiosity.factors.counts import WORD
+from radiosity.factors.model import Factors
+from radiosity.factors.polygons import exchange
+from radiosity.factors.solve import of_both_ways
 
 
 def exact() -> tuple[np.ndarray, np.ndarray]:

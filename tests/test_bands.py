@@ -5,7 +5,7 @@ import pytest
 from enclosures import cube
 
 import radiosity as rd
-from radiosity.engine.bands import BandGroups
+from radiosity.problem.bands import BandGroups
 
 COLORS = [[0.8, 0.5, 0.1], [0.2, 0.5, 0.7], [0.6, 0.3, 0.3], [0.1, 0.7, 0.2], [0.5, 0.5, 0.6], [0.3, 0.3, 0.75]]
 LIGHT = [[1.0, 1.0, 1.0], [0.0, 0.0, 0.0], [0.5, 0.1, 0.0], [0.0, 0.0, 0.0], [0.0, 0.2, 0.9], [0.0, 0.0, 0.0]]

@@ -10,9 +10,9 @@ from methods import critical
 from replicates import difference, powers
 
 import radiosity as rd
-from radiosity.deterministic import estimate
-from radiosity.deterministic.progressive import recent
-from radiosity.engine import memory
+from radiosity.algorithms import estimate
+from radiosity.algorithms.progressive import recent
+from radiosity.device import memory
 
 # coarse hemicubes and few samples say that they are off; one test looks for it
 pytestmark = pytest.mark.filterwarnings("ignore:.*out of balance:radiosity.RadiosityWarning")
@@ -142,9 +142,10 @@ def test_reciprocity_is_restored_on_request(room):
 
 
 @pytest.mark.parametrize(
-    "choices", [*({"scheme": s, "factors": f} for s in SCHEMES for f in FACTORS), {"scheme": "hierarchical"}],
+    "choices",
+    [*({"scheme": s, "factors": f} for s in SCHEMES for f in FACTORS), {"scheme": "hierarchical"}],
     ids=lambda choices: "/".join(choices.values()),
-)  # fmt: skip
+)
 def test_what_lands_on_backs_is_lost_and_what_passes_them_escapes(choices):
     """A square of 1 W over a square whose back absorbs; the form factor is in Howell's catalogue. Errors of 16 lines a pair or
     link and of hemicubes stay below a hundredth."""
@@ -194,8 +195,11 @@ def test_the_first_shot_is_that_of_the_most_power(factors, overshooting):
     scene = rd.Scene.from_arrays(
         [(0, 0, 0), (1, 0, 0), (1, 3, 0), (0, 3, 0), (0, 0, 2), (1, 0, 2), (1, 3, 2), (0, 3, 2)],
         [(0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)],
-        0.3 if overshooting else 0.0, emission, surface=range(6), names=list("abcdef"),
-    )  # fmt: skip
+        0.3 if overshooting else 0.0,
+        emission,
+        surface=range(6),
+        names=list("abcdef"),
+    )
     power = scene.area[:, None] * scene.emission
     assert power.sum(axis=1).argmax() == 0
     assert power[:, 0].argmax() == 2
@@ -321,7 +325,7 @@ def test_what_does_not_fit_is_refused_with_numbers_and_the_way_out(room, monkeyp
 
 
 def test_faces_that_are_too_many_for_links_are_refused_at_once(room, monkeypatch):
-    from radiosity.deterministic.hierarchical import roots
+    from radiosity.algorithms.hierarchical import roots
 
     monkeypatch.setattr(roots, "MOST_PAIRS", 10)
     with pytest.raises(rd.MethodError, match="merge small faces"):
@@ -333,7 +337,7 @@ def test_what_takes_long_is_told_beforehand(room, monkeypatch):
     for name in ("full-matrix", "progressive-refinement"):
         with pytest.warns(rd.RadiosityWarning, match="minutes on this machine"):
             rd.solve(room[0], name)
-    from radiosity.deterministic.hierarchical import roots
+    from radiosity.algorithms.hierarchical import roots
 
     monkeypatch.setattr(roots, "LONG", 0.0)
     with pytest.warns(rd.RadiosityWarning, match="begins with .* pairs of radiating sides"):
@@ -370,7 +374,7 @@ def test_hemicubes_are_blind_for_it_and_say_so(cove):
 
 
 def test_lines_of_baselines_are_not_counted_in_32_bits(room, monkeypatch):
-    from radiosity.engine import run
+    from radiosity.run import run
 
     monkeypatch.setattr(run, "FULL", 1000.0)  # as if a replicate of counters held no more
     patches = rd.subdivide(rd.load_scene("room"), cells=1)

@@ -15,11 +15,12 @@ from replicates import powers
 from scipy.stats import t as student
 
 import radiosity as rd
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.problem import Problem
-from radiosity.engine.process import AbstractBiasedTally, make
-from radiosity.engine.quanta import Source
+from radiosity.algorithms.process import AbstractBiasedTally
+from radiosity.algorithms.table import make
+from radiosity.device.backend import choose
+from radiosity.problem.model import Problem
+from radiosity.problem.quanta import Source
+from radiosity.tracing.geometry import Geometry
 
 pytestmark = pytest.mark.filterwarnings("ignore:form factors from")  # it tells of the bias that is allowed for here
 RUNS, LINES, ALPHA = 200, 2_000, 1e-3
@@ -101,7 +102,7 @@ def test_a_hundredth_more_reflectance_is_rejected(room, discrete, monkeypatch):
 @pytest.mark.parametrize("name", ["matrix, local", "global-form-factors"])
 def test_own_light_that_is_not_stated_is_rejected(room, discrete, monkeypatch, name):
     """Patches get back their own light by the spans that led it away: 40 % too much on the lamp, by global lines."""
-    from radiosity.engine.matrix import tally
+    from radiosity.algorithms.matrix import tally
 
     monkeypatch.setattr(tally, "of_own_light", lambda *arguments, **named: np.zeros(len(room)))
     assert excess(room, TABLE[name], discrete).max() > BOUND

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine import firing, lanes
-from radiosity.engine.budget import first_stage
-from radiosity.engine.device import choose, upload
-from radiosity.engine.quanta import Source, owed, phases
+from radiosity.algorithms.firing import counters as firing
+from radiosity.device.backend import choose, upload
+from radiosity.problem.quanta import Source, owed, phases
+from radiosity.run.budget import first_stage
+from radiosity.tracing import lanes
 
 QUANTA = 40_000
 
@@ -117,9 +118,17 @@ def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, shif
 def test_half_empty_lanes_are_none():
     types = choose("cpu").types
     for counts, each in (
-        ([8, 8, 16], 8), ([5, 6, 7], 8), ([1, 1, 1], 1), ([9, 9, 9], 4), ([100, 1, 1], 8), ([1, 0, 0], 1), ([3, 4, 3], 4),
-        ([2, 2, 1], 2), ([1, 2, 1], 2), ([2**32 - 1], 8),
-    ):  # fmt: skip
+        ([8, 8, 16], 8),
+        ([5, 6, 7], 8),
+        ([1, 1, 1], 1),
+        ([9, 9, 9], 4),
+        ([100, 1, 1], 8),
+        ([1, 0, 0], 1),
+        ([3, 4, 3], 4),
+        ([2, 2, 1], 2),
+        ([1, 2, 1], 2),
+        ([2**32 - 1], 8),
+    ):
         column = upload(types.UInt32, np.array(counts, np.uint32))
         taken = {shift: int(np.array(lanes.lanes_of(column, shift)).sum(dtype=np.int64)) for shift in range(4)}
         assert taken == {shift: sum(-(-count // 2**shift) for count in counts) for shift in range(4)}
@@ -128,7 +137,7 @@ def test_half_empty_lanes_are_none():
 
 @pytest.mark.parametrize("two_sided", [False, True])
 def test_faces_that_are_not_cut_take_a_shorter_way_to_the_same_integers(two_sided, monkeypatch):
-    from radiosity.engine.geometry import Geometry
+    from radiosity.tracing.geometry import Geometry
 
     scene = rd.load_scene("room")
     tetrahedron = np.array([(0.3, 0.3, 0.2), (0.5, 0.3, 0.2), (0.3, 0.5, 0.2), (0.3, 0.3, 0.4)])

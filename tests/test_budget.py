@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from radiosity.engine.budget import (
+from radiosity.run.budget import (
     FIRST_STAGE,
     LEAST_QUANTA,
     Budget,

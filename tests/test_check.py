@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.scene import leaks, topology
-from radiosity.scene.check import check, check_file
+from radiosity.diagnostics import leaks
+from radiosity.diagnostics.check import check, check_file
+from radiosity.scene import topology
 from radiosity.scene.model import Back
 from radiosity.scene.shapes import box, join, quad
 
@@ -54,8 +55,10 @@ def test_closed_scenes_do_not_leak(name):
 @pytest.mark.parametrize("face", [0, 1])
 def test_lines_leave_from_the_side_that_emits(face, back):
     """Two sheets that radiate both ways, between two more: what the first generation meets tells the side it came from."""
-    sheets = [[(-9 * w, -9 * w, z), (10 * w, -9 * w, z), (10 * w, 10 * w, z), (-9 * w, 10 * w, z)]
-              for z, w in ((1.0, 1), (2.0, 1), (0.0, 99), (3.0, 99))]  # fmt: skip
+    sheets = [
+        [(-9 * w, -9 * w, z), (10 * w, -9 * w, z), (10 * w, 10 * w, z), (-9 * w, 10 * w, z)]
+        for z, w in ((1.0, 1), (2.0, 1), (0.0, 99), (3.0, 99))
+    ]
     scene = rd.Scene.from_arrays(np.concatenate(sheets), np.arange(16).reshape(4, 4), 0.0, 1.0, two_sided=True)
     power = np.zeros((2, 4))
     power[int(back), face] = 1.0
@@ -104,8 +107,13 @@ def test_tracing_is_repeatable(cube):
 
 def test_share_of_escaping_lines_is_the_form_factor():
     # from the bottom of a unit cube without its lid: F of two opposite squares at distance 1 is 0.199825 (Howell, C-11)
-    scene = join([("floor", 0.0, 1.0, [quad((0, 0, 0), (1, 0, 0), (0, 1, 0))]),
-                  ("sides", 0.0, 0.0, box((0, 0, 0), (1, 1, 1), inward=True)[:4])], source="well")  # fmt: skip
+    scene = join(
+        [
+            ("floor", 0.0, 1.0, [quad((0, 0, 0), (1, 0, 0), (0, 1, 0))]),
+            ("sides", 0.0, 0.0, box((0, 0, 0), (1, 1, 1), inward=True)[:4]),
+        ],
+        source="well",
+    )
     power = np.zeros((2, scene.n_faces))
     power[0, 0] = 1
     fates = leaks.follow(scene, power, 40_000)
@@ -176,9 +184,15 @@ def test_a_surface_that_lost_its_faces():
     assert [s.name for s in report.surfaces] == ["floor"]
 
 
-@pytest.mark.parametrize(("second", "two_sided", "severity"),
-                         [([0, 1, 2, 3], False, "warning"), ([1, 2, 3, 0], False, "warning"), ([0, 3, 2, 1], False, "note"),
-                          ([0, 3, 2, 1], True, "warning")])  # fmt: skip
+@pytest.mark.parametrize(
+    ("second", "two_sided", "severity"),
+    [
+        ([0, 1, 2, 3], False, "warning"),
+        ([1, 2, 3, 0], False, "warning"),
+        ([0, 3, 2, 1], False, "note"),
+        ([0, 3, 2, 1], True, "warning"),
+    ],
+)
 def test_faces_that_lie_on_each_other(second, two_sided, severity):
     vertices = np.array([*SQUARE, *SQUARE], float)
     vertices[4:] += 1e-8  # another copy of the corners, a hair away

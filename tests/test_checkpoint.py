@@ -12,11 +12,11 @@ import pytest
 from kills import assert_same
 
 import radiosity as rd
-from radiosity.engine import checkpoint as checkpoints
-from radiosity.engine import lanes
-from radiosity.engine.checkpoint import Checkpoint
-from radiosity.engine.global_lines import multipath, pooling
-from radiosity.engine.matrix import process
+from radiosity.algorithms.global_lines import multipath, pooling
+from radiosity.algorithms.matrix import process
+from radiosity.run import checkpoint as checkpoints
+from radiosity.run.checkpoint import Checkpoint
+from radiosity.tracing import lanes
 
 RUNS = {
     "firing": ("random-walk", {}),
@@ -180,23 +180,32 @@ def test_what_differs_is_named(grey, change, options, reason):
 def test_other_bands_are_another_scene(grey):
     scene = grey.scene
     twice = rd.Scene.from_arrays(
-        scene.vertices, scene.faces, np.repeat(scene.reflectance, 2, axis=1), np.repeat(scene.emission, 2, axis=1),
-        surface=scene.surface, names=scene.names, bands=["a", "b"],
-    )  # fmt: skip
+        scene.vertices,
+        scene.faces,
+        np.repeat(scene.reflectance, 2, axis=1),
+        np.repeat(scene.emission, 2, axis=1),
+        surface=scene.surface,
+        names=scene.names,
+        bands=["a", "b"],
+    )
     before = rd.solve(rd.subdivide(twice, cells=2), quanta=1 << 10, replicates=2)
     other = rd.Scene.from_arrays(
-        scene.vertices, scene.faces, before.patches.scene.reflectance, before.patches.scene.emission,
-        surface=scene.surface, names=scene.names, bands=["a", "c"],
-    )  # fmt: skip
+        scene.vertices,
+        scene.faces,
+        before.patches.scene.reflectance,
+        before.patches.scene.emission,
+        surface=scene.surface,
+        names=scene.names,
+        bands=["a", "c"],
+    )
     with pytest.raises(rd.MethodError, match="scene"):
         rd.solve(rd.subdivide(other, cells=2), quanta=1 << 11, replicates=2, resume=before)
 
 
 @pytest.mark.parametrize(
     ("path", "reason"),
-    [("a.glb", r"is an \.npz file"), ("file/a.npz", "is a file, not a folder"),
-     ("folder.npz", "is a folder")],
-)  # fmt: skip
+    [("a.glb", r"is an \.npz file"), ("file/a.npz", "is a file, not a folder"), ("folder.npz", "is a folder")],
+)
 def test_a_bad_place_is_found_before_the_run(grey, tmp_path, monkeypatch, path, reason):
     (tmp_path / "file").write_text("")
     (tmp_path / "folder.npz").mkdir()
@@ -252,7 +261,7 @@ def test_a_large_state_waits_for_its_first_checkpoint(grey, tmp_path, monkeypatc
 FULL = """
 import resource, sys, warnings
 import radiosity as rd
-from radiosity.engine import checkpoint
+from radiosity.run import checkpoint
 from radiosity.cli import main
 checkpoint.TIMES = 0
 folder, size = sys.argv[1], int(sys.argv[2])

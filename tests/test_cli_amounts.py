@@ -12,9 +12,21 @@ from radiosity.cli.progress import duration
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("1", 1), ("10M", 10**7), ("10m", 10**7), ("500k", 500_000), ("1e7", 10**7), ("1.5M", 1_500_000), ("10_000_000", 10**7),
-     ("2G", 2 * 10**9), ("0.25k", 250), (" 7 ", 7), ("1E3", 1000), ("1 M", 10**6)],
-)  # fmt: skip
+    [
+        ("1", 1),
+        ("10M", 10**7),
+        ("10m", 10**7),
+        ("500k", 500_000),
+        ("1e7", 10**7),
+        ("1.5M", 1_500_000),
+        ("10_000_000", 10**7),
+        ("2G", 2 * 10**9),
+        ("0.25k", 250),
+        (" 7 ", 7),
+        ("1E3", 1000),
+        ("1 M", 10**6),
+    ],
+)
 def test_counts(text, value):
     assert amounts.count(text) == value
     assert isinstance(amounts.count(text), int)

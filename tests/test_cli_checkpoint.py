@@ -16,14 +16,14 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli import checkpoints, main
-from radiosity.engine import checkpoint as engine_checkpoints
 from radiosity.image import tables
+from radiosity.run import checkpoint as engine_checkpoints
 
 RUN = ("solve", "room", "--cells", "2", "--quanta", "300k", "--replicates", "2")
 PROGRAM = """
 import resource, sys
 from radiosity.cli import checkpoints, main
-from radiosity.engine import checkpoint
+from radiosity.run import checkpoint
 checkpoint.TIMES = checkpoint.EVERY = checkpoints.MINUTE = 0
 sys.exit(main())
 """
@@ -204,9 +204,11 @@ def test_a_terminal_that_goes_away(tmp_path, numbers, piped):
 
 def test_sigterm_outside_of_a_run(tmp_path):
     """While there is nothing to keep: one line, and the status that shells give."""
-    code = "import sys, os, signal, time\nimport radiosity as rd\nfrom radiosity.cli import main\n" \
-           "rd.load_scene = lambda *_, **__: (os.kill(os.getpid(), signal.SIGTERM), time.sleep(5))\n" \
-           "sys.exit(main(['solve', 'room']))"  # fmt: skip
+    code = (
+        "import sys, os, signal, time\nimport radiosity as rd\nfrom radiosity.cli import main\n"
+        "rd.load_scene = lambda *_, **__: (os.kill(os.getpid(), signal.SIGTERM), time.sleep(5))\n"
+        "sys.exit(main(['solve', 'room']))"
+    )
     for before in ("", "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n"):  # as in the background of a shell
         done = subprocess.run([sys.executable, "-c", before + code], capture_output=True, text=True)
         assert done.returncode == 143
@@ -262,7 +264,7 @@ def test_an_interruption_while_outputs_are_written_names_the_checkpoint(capsys, 
 FULL_DISK = """
 import resource, sys
 from radiosity.cli import checkpoints, main
-from radiosity.engine import checkpoint
+from radiosity.run import checkpoint
 import radiosity as rd
 if sys.argv.pop(1) == "after a checkpoint":
     checkpoint.TIMES = checkpoints.MINUTE = 0

@@ -24,7 +24,7 @@ def one_line(err):
 
 
 WRONG = {
-    "an unknown command": (["sovle", "room"], "Did you mean \"solve\""),
+    "an unknown command": (["sovle", "room"], 'Did you mean "solve"'),
     "a missing scene": (["solve"], "SCENE"),
     "an unknown option": (["solve", "room", "--ray", "10"], "--ray"),
     "too many scenes": (["solve", "room", "cornell-box"], "cornell-box"),
@@ -47,10 +47,14 @@ WRONG = {
     "no such device to check with": (["check", "room", "--device", "xpu"], '"xpu" for --device'),
     "an output option without a file": (["solve", "room", "-o"], "-o requires at least 1 element"),
     "nothing to go on from": (["solve", "room", "--resume", "nowhere.npz"], "nowhere.npz: no such file"),
-    "a log of no false colours": (["render", "nowhere.npz", "-o", "a.png", "--log"],
-                                  "--log: for false colours only; add --false-color"),
-    "a range and map of no false colours": (["render", "nowhere.npz", "-o", "a.png", "--range", "0,1", "--color-map", "gray"],
-                                            "--range and --color-map: for false colours only; add --false-color"),
+    "a log of no false colours": (
+        ["render", "nowhere.npz", "-o", "a.png", "--log"],
+        "--log: for false colours only; add --false-color",
+    ),
+    "a range and map of no false colours": (
+        ["render", "nowhere.npz", "-o", "a.png", "--range", "0,1", "--color-map", "gray"],
+        "--range and --color-map: for false colours only; add --false-color",
+    ),
     "no such file": (["solve", "nowhere.obj"], "nowhere.obj: no such file"),
     "no such format": (["solve", __file__], "unknown format '.py'"),
     "a reflectance bound above one": (["solve", __file__, "--max-reflectance", "1.5"], "max_reflectance is 1.5"),
@@ -68,7 +72,7 @@ WRONG = {
     "half a camera": (["render", "nowhere.npz", "-o", "a.png", "--origin", "1,2"], "'1,2' is not 3 numbers"),
     "half a range": (["render", "nowhere.npz", "-o", "a.png", "--range", "3"], "'3' is not 2 numbers"),
     "check without a scene": (["check"], "SCENE"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("arguments", "text"), WRONG.values(), ids=WRONG)

@@ -23,8 +23,11 @@ def heard_by_default():
 def test_early_interruptions(delay):
     process = subprocess.Popen(
         [sys.executable, "-c", PROGRAM, "solve", "room", "--cells", "2", "--rays", "20k"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heard_by_default,
-    )  # fmt: skip
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=heard_by_default,
+    )
     assert process.stdout is not None
     assert process.stdout.readline() == "ready\n"
     time.sleep(0.005 + delay)

@@ -12,8 +12,12 @@ def test_the_list_names_every_method(capsys):
     rows = [line.split() for line in out.splitlines()]
     assert {row[0] for row in rows if row} >= set(rd.PRESETS | rd.BASELINES)
     assert next(row for row in rows if row and row[0] == "qmc-radiosity")[1:6] == [
-        "continuous", "local", "breadth-first", "halton", "fractional",
-    ]  # fmt: skip
+        "continuous",
+        "local",
+        "breadth-first",
+        "halton",
+        "fractional",
+    ]
 
 
 @pytest.mark.parametrize("name", rd.PRESETS | rd.BASELINES)

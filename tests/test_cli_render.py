@@ -46,9 +46,12 @@ def test_one_of_the_user_s_own(name, up):
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [({"origin": "0,0,0"}, "go together"), ({"target": "0,0,0"}, "go together"),
-     ({"number": 0, "origin": "0,0,0", "target": "1,0,0"}, "not both")],
-)  # fmt: skip
+    [
+        ({"origin": "0,0,0"}, "go together"),
+        ({"target": "0,0,0"}, "go together"),
+        ({"number": 0, "origin": "0,0,0", "target": "1,0,0"}, "not both"),
+    ],
+)
 def test_what_does_not_go_together(two, options, message):
     with pytest.raises(rd.SceneError, match=message):
         view(two, **options)

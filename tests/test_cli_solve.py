@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity import llvm
 from radiosity.cli import main, progress
 from radiosity.cli.options import DeviceName
-from radiosity.engine.device import VARIANTS
-from radiosity.engine.progress import Progress
+from radiosity.device import llvm
+from radiosity.device.backend import VARIANTS
 from radiosity.image import tables
+from radiosity.run.progress import Progress
 
 SMALL = ("--cells", "2", "--rays", "20k", "--replicates", "2")
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -389,11 +389,26 @@ def test_outputs_are_written_where_nobody_reads_the_report(tmp_path, unbuffered,
     os.close(ours)
     stdout = os.open("/dev/full", os.O_WRONLY) if full else os.dup(theirs)
     done = subprocess.run(
-        [sys.executable, "-c", "import sys; from radiosity.cli import main; sys.exit(main())",
-         "solve", "room", "--cells", "1", "--quanta", "1k", "-o", "a.csv", "b.npz"],
-        cwd=tmp_path, env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
-        stdout=stdout, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-c",
+            "import sys; from radiosity.cli import main; sys.exit(main())",
+            "solve",
+            "room",
+            "--cells",
+            "1",
+            "--quanta",
+            "1k",
+            "-o",
+            "a.csv",
+            "b.npz",
+        ],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+        stdout=stdout,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     os.close(theirs)
     os.close(stdout)
     assert done.returncode == 0

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine.caster import first_hits
-from radiosity.engine.device import choose, upload
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.global_lines.spans import CODES, LOST, Spans
-from radiosity.engine.lines import land
+from radiosity.device.backend import choose, upload
+from radiosity.diagnostics.check import check
 from radiosity.scene import coplanar
-from radiosity.scene.check import check
 from radiosity.scene.coplanar import contacts
 from radiosity.scene.model import Back
 from radiosity.scene.overlap import common, overlapping
 from radiosity.scene.shapes import quad
+from radiosity.tracing.caster import first_hits
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.global_lines.spans import CODES, LOST, Spans
+from radiosity.tracing.lines import land
 from validation.closed_forms.rectangles import parallel
 
 SIDES = ("floor", "ceiling", "west", "east", "south", "north")
@@ -28,9 +28,13 @@ def box(low: float, high: float) -> list[np.ndarray]:
     """The sides of a room from x = low to high, 1 m wide and high, fronts inwards."""
     length = (high - low, 0, 0)
     return [
-        quad((low, 0, 0), length, (0, 1, 0)), quad((low, 0, 1), (0, 1, 0), length), quad((low, 0, 0), (0, 1, 0), (0, 0, 1)),
-        quad((high, 0, 0), (0, 0, 1), (0, 1, 0)), quad((low, 0, 0), (0, 0, 1), length), quad((low, 1, 0), length, (0, 0, 1)),
-    ]  # fmt: skip
+        quad((low, 0, 0), length, (0, 1, 0)),
+        quad((low, 0, 1), (0, 1, 0), length),
+        quad((low, 0, 0), (0, 1, 0), (0, 0, 1)),
+        quad((high, 0, 0), (0, 0, 1), (0, 1, 0)),
+        quad((low, 0, 0), (0, 0, 1), length),
+        quad((low, 1, 0), length, (0, 0, 1)),
+    ]
 
 
 def two_rooms(*, swap=False, cut=(0, 0), turn=None, move=(0.0, 0.0, 0.0)) -> rd.Scene:
@@ -61,11 +65,15 @@ def rotation(seed: int) -> np.ndarray:
 
 
 VARIANTS = {
-    "plain": {}, "swapped": {"swap": True}, "cut alike": {"cut": (1, 1)}, "cut otherwise": {"cut": (1, 2), "swap": True},
-    "cut on one side": {"cut": (0, 2)}, "turned": {"turn": rotation(1), "cut": (0, 2)},
+    "plain": {},
+    "swapped": {"swap": True},
+    "cut alike": {"cut": (1, 1)},
+    "cut otherwise": {"cut": (1, 2), "swap": True},
+    "cut on one side": {"cut": (0, 2)},
+    "turned": {"turn": rotation(1), "cut": (0, 2)},
     "turned and far": {"turn": rotation(2), "cut": (2, 1), "move": (500000.3, 5400000.7, 100.1)},
     "turned and swapped": {"turn": rotation(3), "swap": True},
-}  # fmt: skip
+}
 
 
 def received(solution) -> dict[str, float]:
@@ -83,8 +91,13 @@ def test_both_sides_of_a_wall_get_their_light(name):
 
 
 METHODS = (
-    "particle-tracing", "stochastic-jacobi", "global-multipath-first-shot", "transillumination", "full-matrix", "hierarchical",
-)  # fmt: skip
+    "particle-tracing",
+    "stochastic-jacobi",
+    "global-multipath-first-shot",
+    "transillumination",
+    "full-matrix",
+    "hierarchical",
+)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -104,8 +117,9 @@ def test_no_span_ends_on_a_back_of_a_wall(kind):
     spans = Spans(Geometry(patches, choose("cpu")), rd.Method(lines=kind, order="matrix", numbers="random"), 0, 1)
     count = 60_000
     pairs = spans.draw(0, 0, count)
-    ends = np.bincount(np.concatenate([pairs.one, pairs.other])[np.concatenate([pairs.one, pairs.other]) < CODES],
-                       minlength=len(patches))  # fmt: skip
+    ends = np.bincount(
+        np.concatenate([pairs.one, pairs.other])[np.concatenate([pairs.one, pairs.other]) < CODES], minlength=len(patches)
+    )
     expected = pairs.ends_per_line * count
     assert np.abs(ends / expected - 1).max() < 0.06  # 5 standard deviations of a few thousand
     assert (pairs.other == LOST).sum() + (pairs.one == LOST).sum() <= 1e-4 * len(pairs.one)
@@ -122,9 +136,14 @@ def stacked(*kinds, sizes=None) -> rd.Scene:
     up = [quad((-s / 2, -s / 2, 0), (s, 0, 0), (0, s, 0)) for s in sizes]
     quads = [q if way > 0 else q[::-1] for q, (way, _) in zip(up, kinds, strict=True)]
     return rd.Scene.from_arrays(
-        np.concatenate(quads), np.arange(4 * len(quads)).reshape(-1, 4), 0.5, 0.0, back=[back for _, back in kinds],
-        surface=np.arange(len(quads)), names=[str(i) for i in range(len(quads))],
-    )  # fmt: skip
+        np.concatenate(quads),
+        np.arange(4 * len(quads)).reshape(-1, 4),
+        0.5,
+        0.0,
+        back=[back for _, back in kinds],
+        surface=np.arange(len(quads)),
+        names=[str(i) for i in range(len(quads))],
+    )
 
 
 def met(scene: rd.Scene, above: bool) -> np.ndarray:
@@ -137,9 +156,15 @@ def met(scene: rd.Scene, above: bool) -> np.ndarray:
 
 A, R, P = Back.ABSORBS, Back.RADIATES, Back.PASSES
 ORDERS = [  # faces; what a line from above meets first, and from below (-1: nothing)
-    ([(+1, A), (-1, A)], 0, 1), ([(-1, A), (+1, A)], 1, 0), ([(-1, A), (+1, R)], 1, 0), ([(-1, P), (-1, A)], 1, 0),
-    ([(-1, P), (-1, P)], -1, 0), ([(-1, A), (-1, R)], 1, 0), ([(+1, A), (+1, A), (+1, R)], 0, 2), ([(+1, P), (-1, P)], 0, 1),
-]  # fmt: skip
+    ([(+1, A), (-1, A)], 0, 1),
+    ([(-1, A), (+1, A)], 1, 0),
+    ([(-1, A), (+1, R)], 1, 0),
+    ([(-1, P), (-1, A)], 1, 0),
+    ([(-1, P), (-1, P)], -1, 0),
+    ([(-1, A), (-1, R)], 1, 0),
+    ([(+1, A), (+1, A), (+1, R)], 0, 2),
+    ([(+1, P), (-1, P)], 0, 1),
+]
 
 
 @pytest.mark.parametrize(("kinds", "above", "below"), ORDERS)
@@ -206,8 +231,10 @@ def test_what_a_line_meets_does_not_depend_on_its_packet(swap):
     order = random.permutation(len(directions))
     found = []
     for rows, coherent in ((slice(None), False), (order, False), (slice(None), True)):
-        ray = [types.Array3f(*(upload(types.Float, x.astype(np.float32)) for x in part.T))
-               for part in (np.broadcast_to(middle, directions.shape)[rows], directions[rows])]  # fmt: skip
+        ray = [
+            types.Array3f(*(upload(types.Float, x.astype(np.float32)) for x in part.T))
+            for part in (np.broadcast_to(middle, directions.shape)[rows], directions[rows])
+        ]
         hit = land(geometry, *ray, coherent=coherent)
         dr.eval(hit.primitive, hit.u, hit.front)
         found.append([np.array(x) for x in (hit.primitive, hit.u, hit.front)])
@@ -286,18 +313,22 @@ def test_faces_of_a_flat_mesh_are_beside_each_other_and_a_plate_on_it_is_found()
 def test_polygons_in_common():
     square, right = np.array([[(0, 0), (1, 0), (1, 1), (0, 1)]], float), np.array([1.0, 0])
     for other, area in (
-        (square + right / 2 + right[::-1] / 4, 0.375), (square[:, ::-1] * 0.5 + 0.1, 0.25), (square + right, 0.0),
+        (square + right / 2 + right[::-1] / 4, 0.375),
+        (square[:, ::-1] * 0.5 + 0.1, 0.25),
+        (square + right, 0.0),
         (square + 3 * right, 0.0),
-        (np.array([[(0, 0), (2, 0), (0, 2), (0, 2)]], float) - 0.5, 0.5), (square * 3 - 1, 1.0),
-    ):  # fmt: skip
+        (np.array([[(0, 0), (2, 0), (0, 2), (0, 2)]], float) - 0.5, 0.5),
+        (square * 3 - 1, 1.0),
+    ):
         assert common(square, other)[1][0] == pytest.approx(area, abs=1e-15)
         assert overlapping(square, other, np.array([1e-6]))[0] == (area > 0)
 
 
 def plates(gap: float, size: float = 1.0) -> rd.Scene:
     below, above = quad((0, 0, 0), (size, 0, 0), (0, size, 0)), quad((0, 0, gap), (0, size, 0), (size, 0, 0))
-    return rd.Scene.from_arrays(np.concatenate([below, above]), np.arange(8).reshape(2, 4), 0.0, [1.0, 0.0],
-                                surface=[0, 1], names=["hot", "cold"])  # fmt: skip
+    return rd.Scene.from_arrays(
+        np.concatenate([below, above]), np.arange(8).reshape(2, 4), 0.0, [1.0, 0.0], surface=[0, 1], names=["hot", "cold"]
+    )
 
 
 @pytest.mark.parametrize("gap", [1e-7, 2e-7, 4e-7])
@@ -320,9 +351,13 @@ def lamp_on_floor(emission: float) -> rd.Scene:
     floor, mat = quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0.2, 0.2, 0), (0.6, 0, 0), (0, 0.6, 0))
     ceiling = quad((0, 0, 1), (0, 1, 0), (1, 0, 0))
     return rd.Scene.from_arrays(
-        np.concatenate([floor, mat, ceiling]), np.arange(12).reshape(3, 4), 0.0, [0.0, emission, 1.0],
-        surface=[0, 1, 2], names=["floor", "mat", "ceiling"],
-    )  # fmt: skip
+        np.concatenate([floor, mat, ceiling]),
+        np.arange(12).reshape(3, 4),
+        0.0,
+        [0.0, emission, 1.0],
+        surface=[0, 1, 2],
+        names=["floor", "mat", "ceiling"],
+    )
 
 
 def test_a_mat_in_the_floor_is_reported_and_a_lamp_there_is_told_of():
@@ -354,9 +389,15 @@ def test_a_doubled_lamp_that_shines_from_its_back_is_told_of():
         quad((0.2, 0.2, 0), (0, 0.6, 0), (0.6, 0, 0)),
     )  # the lamp's front is below
     scene = rd.Scene.from_arrays(
-        np.concatenate([floor, lamp]), np.arange(8).reshape(2, 4), 0.0, 0.0, back=[A, R], back_emission=[0.0, 1.0],
-        surface=[0, 1], names=["floor", "lamp"],
-    )  # fmt: skip
+        np.concatenate([floor, lamp]),
+        np.arange(8).reshape(2, 4),
+        0.0,
+        0.0,
+        back=[A, R],
+        back_emission=[0.0, 1.0],
+        surface=[0, 1],
+        names=["floor", "lamp"],
+    )
     with pytest.warns(rd.RadiosityWarning, match="1 faces .first: face 1. lie on another face .*'floor', 'lamp'"):
         rd.solve(rd.subdivide(scene, cells=1), rays=2000)
 
@@ -368,9 +409,12 @@ def test_faces_are_unseen_where_light_goes_from_one_side_to_another_that_stops_i
     gap = 6 * 2.0**-23 * 0.5
     first, second = (quad((0, 0, z), (1, 0, 0), (0, 1, 0)) for z in (0, gap))
     scene = rd.Scene.from_arrays(
-        np.concatenate([first if below else first[::-1], second if above else second[::-1]]), np.arange(8).reshape(2, 4),
-        0.0, 1.0, back=backs,
-    )  # fmt: skip
+        np.concatenate([first if below else first[::-1], second if above else second[::-1]]),
+        np.arange(8).reshape(2, 4),
+        0.0,
+        1.0,
+        back=backs,
+    )
     found = contacts(scene)
     assert found.coplanar.tolist() == [False]
     one, two = R if below else backs[0], backs[1] if above else R  # of the sides that look into the gap

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine.caster import first_hits
 from radiosity.patches import cells
+from radiosity.tracing.caster import first_hits
 
 
 def cast_form_factors(patches, lines: int, random) -> np.ndarray:
@@ -61,7 +61,7 @@ def test_dense_solve_on_the_same_patches(random):
 
 def path_traced(patches, paths: int, batches: int = 8) -> tuple[np.ndarray, np.ndarray]:
     """Mean radiosity of patches, and its standard error, by Mitsuba's path integrator: rays straight onto the patch."""
-    from radiosity.engine.device import choose, entered, upload
+    from radiosity.device.backend import choose, entered, upload
 
     device = choose("cpu")
     scene, types = patches.scene, device.types
@@ -139,8 +139,10 @@ def test_difference_from_the_path_tracer_falls_with_the_patch_size():
         )
         differences.append(rms(total / coarse.area[:, None] - reference))
     floor = rms(noise)
-    print(f"\ncells, RMS difference from the path tracer (its noise {floor:.3%}): "
-          + ", ".join(f"{k}: {d:.3%}" for k, d in zip((2, 4, 8, 16), differences, strict=True)))  # fmt: skip
+    print(
+        f"\ncells, RMS difference from the path tracer (its noise {floor:.3%}): "
+        + ", ".join(f"{k}: {d:.3%}" for k, d in zip((2, 4, 8, 16), differences, strict=True))
+    )
     excess = np.sqrt(np.maximum(np.square(differences) - floor**2, 0))
     assert (excess[1:] < 0.75 * excess[:-1]).all()
     assert excess[-1] < excess[0] / 4

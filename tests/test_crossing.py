@@ -33,11 +33,14 @@ def texts(path, content):
     return scene, [str(w.message).split(": ", 1)[1] for w in caught]
 
 
-@pytest.mark.parametrize(("name", "content", "told"), [
-    ("x.obj", obj(SQUARE, [[0, 1, 2, 3], BOW]), "(first: face 2; surfaces 'bad/m')"),
-    ("x.ply", ply_text(faces=[[0, 1, 2, 3], BOW]), "(first: face 1; surfaces 'x')"),
-    ("x.mgf", mgf(SQUARE, [[0, 1, 2, 3], BOW]), "(first: face 1; surfaces 'bad/wall')"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "content", "told"),
+    [
+        ("x.obj", obj(SQUARE, [[0, 1, 2, 3], BOW]), "(first: face 2; surfaces 'bad/m')"),
+        ("x.ply", ply_text(faces=[[0, 1, 2, 3], BOW]), "(first: face 1; surfaces 'x')"),
+        ("x.mgf", mgf(SQUARE, [[0, 1, 2, 3], BOW]), "(first: face 1; surfaces 'bad/wall')"),
+    ],
+)
 def test_quadrilaterals(tmp_path, name, content, told):
     scene, texts_of = texts(tmp_path / name, content)
     found = [text for text in texts_of if "crosses itself" in text]

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity import llvm
-from radiosity.engine import blocks
-from radiosity.engine.device import PACKET, choose, upload
+from radiosity.device import launches as blocks
+from radiosity.device import llvm
+from radiosity.device.backend import PACKET, choose, upload
 
 
 def python(code: str, **environment) -> subprocess.CompletedProcess:
@@ -54,9 +54,8 @@ def test_the_users_own_library_wins():
 def test_the_users_setting_is_told_from_our_own(tmp_path):
     """The package sets the variable itself as it is imported, and a child process inherits that."""
     inherited = {llvm.VARIABLE: llvm.POINTED} if llvm.POINTED else {}
-    told = (
-        "import radiosity\nfrom radiosity import llvm\nprint(llvm.prepare().origin)\nimport drjit\nprint(llvm.prepare().origin)"
-    )
+    origin = "print(llvm.prepare().origin)\n"
+    told = f"import radiosity\nfrom radiosity.device import llvm\n{origin}import drjit\n{origin}"
     origins = set(python(told, **inherited).stdout.split())
     assert len(origins) == 1
     assert origins == ({llvm.find().origin} if llvm.POINTED else {llvm.VARIABLE})
@@ -91,7 +90,7 @@ def test_a_users_variant_is_left_as_it_was():
         "mi.set_variant('scalar_rgb')\n"
         "scene = rd.load_scene('room')\n"
         "solution = rd.solve(rd.subdivide(scene, cells=2), rays=10**5)\n"
-        "from radiosity.engine.caster import first_hits\n"
+        "from radiosity.tracing.caster import first_hits\n"
         "first_hits(scene, [[3, 2, 1]], [[0, 0, 1]])\n"
         "print(mi.variant(), solution.status)"
     )
@@ -206,7 +205,7 @@ def test_exr_files_are_written_and_read_with_one_thread(tmp_path):
     code = (
         "import numpy as np, radiosity as rd\n"
         "from pathlib import Path\n"
-        "from radiosity.engine.device import choose\n"
+        "from radiosity.device.backend import choose\n"
         "choose('cpu')\n"
         "import drjit as dr\n"
         "dr.set_thread_count(1)\n"

@@ -90,8 +90,12 @@ def test_every_link_leads_somewhere():
 def test_every_page_is_in_the_contents():
     """A page that no table of contents names is not found on the site."""
     index = (DOCS / "index.md").read_text(encoding="utf-8")
-    listed = {line.strip() for block in re.findall(r"^```\{toctree\}\n(.*?)^```$", index, re.MULTILINE | re.DOTALL)
-              for line in block.splitlines() if line.strip() and not line.startswith(":")}  # fmt: skip
+    listed = {
+        line.strip()
+        for block in re.findall(r"^```\{toctree\}\n(.*?)^```$", index, re.MULTILINE | re.DOTALL)
+        for line in block.splitlines()
+        if line.strip() and not line.startswith(":")
+    }
     pages = {page.relative_to(DOCS).with_suffix("").as_posix() for page in PAGES if page.is_relative_to(DOCS)} - {"index"}
     assert listed == pages
 

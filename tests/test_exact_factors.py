@@ -5,13 +5,13 @@ import pytest
 from enclosures import cube
 
 import radiosity as rd
-from radiosity.deterministic.factors import exchange
-from radiosity.deterministic.factors.matrix import exact
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.matrix.balance import restored
-from radiosity.engine.matrix.missed import missed
+from radiosity.device.backend import choose
+from radiosity.factors.balance import restored
+from radiosity.factors.missed import missed
+from radiosity.factors.polygons import exchange
+from radiosity.factors.polygons.matrix import exact
 from radiosity.scene.shapes import quad
+from radiosity.tracing.geometry import Geometry
 from validation.closed_forms.rectangles import parallel
 
 

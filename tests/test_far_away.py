@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine.caster import first_hits
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
+from radiosity.device.backend import choose
+from radiosity.diagnostics.check import check
 from radiosity.image import render
-from radiosity.scene.check import check
 from radiosity.scene.degenerate import without_area
 from radiosity.scene.shapes import quad
+from radiosity.tracing.caster import first_hits
+from radiosity.tracing.geometry import Geometry
 
 KILOMETRE = 1e3
 
@@ -27,11 +27,16 @@ def with_quads(scene: rd.Scene, name: str, quads) -> rd.Scene:
         for field, value in (("reflectance", 0.5), ("emission", 0.0), ("back_reflectance", 0.5), ("back_emission", 0.0))
     }
     return rd.Scene.from_arrays(
-        np.concatenate([scene.vertices, *quads]), np.concatenate([scene.faces, corners]), columns["reflectance"],
-        columns["emission"], back=np.concatenate([scene.back, np.zeros(count, np.uint8)]),
-        back_reflectance=columns["back_reflectance"], back_emission=columns["back_emission"],
-        surface=np.concatenate([scene.surface, np.full(count, len(scene.names))]), names=(*scene.names, name),
-    )  # fmt: skip
+        np.concatenate([scene.vertices, *quads]),
+        np.concatenate([scene.faces, corners]),
+        columns["reflectance"],
+        columns["emission"],
+        back=np.concatenate([scene.back, np.zeros(count, np.uint8)]),
+        back_reflectance=columns["back_reflectance"],
+        back_emission=columns["back_emission"],
+        surface=np.concatenate([scene.surface, np.full(count, len(scene.names))]),
+        names=(*scene.names, name),
+    )
 
 
 def stray(scene: rd.Scene, distance: float, size: float = 6.0) -> rd.Scene:

@@ -46,9 +46,19 @@ def drawn(patches: rd.Patches, mean: np.ndarray, rng, replicates: int = 8) -> rd
     power = np.stack([counts * quantum, 0 * counts])[..., None]
     emitted = float(patches.emission[:, 0] @ patches.area)
     return rd.Solution(
-        patches, values.mean(axis=0)[:, None], error, arrivals, 10**6, 1.0, round(emitted / quantum), replicates, (), "complete",
-        {"choices": {}, "method": "drawn", "seed": 0}, surface_power=power,
-    )  # fmt: skip
+        patches,
+        values.mean(axis=0)[:, None],
+        error,
+        arrivals,
+        10**6,
+        1.0,
+        round(emitted / quantum),
+        replicates,
+        (),
+        "complete",
+        {"choices": {}, "method": "drawn", "seed": 0},
+        surface_power=power,
+    )
 
 
 @pytest.mark.parametrize("mean", [0.3, 1.0, 3.0, 10.0, 25.0, 60.0])
@@ -114,8 +124,11 @@ def test_where_no_own_line_met_light_one_of_all_replicates_is_known(method):
     patches = squares(10.0, 10.0, size=0.5)
     solution = rd.solve(patches, method, quanta=4000, replicates=4)
     state = solution.state
-    fired = state["fired"].sum(axis=0) if "fired" in state else np.bincount(
-        state["keys"].astype(np.int64) >> 32, state["counts"], 4 * len(patches)).reshape(4, -1).sum(axis=0)  # fmt: skip
+    fired = (
+        state["fired"].sum(axis=0)
+        if "fired" in state
+        else np.bincount(state["keys"].astype(np.int64) >> 32, state["counts"], 4 * len(patches)).reshape(4, -1).sum(axis=0)
+    )
     assert fired[0] > 2000
     assert solution.irradiance[0, 0] == 0  # nothing shines upon the lamp
     assert solution.irradiance_standard_error[0, 0] == pytest.approx(1 / fired[0])
@@ -198,8 +211,9 @@ def test_rare_lines_of_another_colour_have_their_own_power(replicates):
             faces.append(tuple(range(len(vertices), len(vertices) + 4)))
             vertices += corners[::-1] if turned else corners
     emission = np.array([[0.01, 0.0], [0, 0], [0, 1.0], [0, 0]])  # a dim red lamp far below a plate, a blue one close to its own
-    scene = rd.Scene.from_arrays(vertices, faces, np.full((4, 2), 0.0), emission, surface=np.arange(4), names=list("abcd"),
-                                 bands=("red", "blue"))  # fmt: skip
+    scene = rd.Scene.from_arrays(
+        vertices, faces, np.full((4, 2), 0.0), emission, surface=np.arange(4), names=list("abcd"), bands=("red", "blue")
+    )
     solution = rd.solve(rd.subdivide(scene, cells=1), quanta=40, replicates=replicates)
     assert solution.arrivals[3] > intervals.FEW
     quantum = 1.01 / 40 / replicates
@@ -225,9 +239,14 @@ METHODS = {
 }
 
 
-ESCAPES = [rd.Method(), rd.Method(absorption="drawn"), rd.Method(absorption="fractional"), rd.Method(equation="continuous"),
-           *(rd.Method(estimator=name) for name in ("absorption", "survival", "gathering")),
-           *(rd.Method(order=name) for name in ("incremental", "regular", "matrix"))]  # fmt: skip
+ESCAPES = [
+    rd.Method(),
+    rd.Method(absorption="drawn"),
+    rd.Method(absorption="fractional"),
+    rd.Method(equation="continuous"),
+    *(rd.Method(estimator=name) for name in ("absorption", "survival", "gathering")),
+    *(rd.Method(order=name) for name in ("incremental", "regular", "matrix")),
+]
 
 
 @pytest.mark.parametrize("method", ESCAPES, ids=str)
@@ -303,8 +322,12 @@ def held(closed, quanta: int, runs: int) -> np.ndarray:
     (patches, truth), found = closed, []
     for seed in range(runs):
         solution = rd.solve(patches, quanta=quanta, seed=seed)
-        found.append([low[-1, 0] <= truth <= high[-1, 0] for low, high in (
-            solution.interval(0.95, "irradiance"), solution.surface_interval())])  # fmt: skip
+        found.append(
+            [
+                low[-1, 0] <= truth <= high[-1, 0]
+                for low, high in (solution.interval(0.95, "irradiance"), solution.surface_interval())
+            ]
+        )
     return np.mean(found, axis=0)
 
 

@@ -15,8 +15,8 @@ from PIL import Image
 
 import radiosity as rd
 from radiosity.cli.app import run
-from radiosity.engine.target import Target
 from radiosity.image import check_writable, false_color
+from radiosity.run.target import Target
 
 ROOT = Path(__file__).resolve().parent.parent
 SUFFIXES = (".npz", ".glb", ".ply", ".vtp", ".csv", ".png", ".exr")
@@ -84,16 +84,21 @@ def test_extras_have_one_name(monkeypatch, tmp_path):
     monkeypatch.setattr(frames, "find_spec", lambda module: None)
     solution = SimpleNamespace()
     for attempt in (
-        lambda: output.require("matplotlib", "the legend"), lambda: frames.to_xarray(solution),
-        lambda: frames.to_dataframe(solution), lambda: make.make([4], None, tmp_path / "new", "", None),
-    ):  # fmt: skip
+        lambda: output.require("matplotlib", "the legend"),
+        lambda: frames.to_xarray(solution),
+        lambda: frames.to_dataframe(solution),
+        lambda: make.make([4], None, tmp_path / "new", "", None),
+    ):
         with pytest.raises(rd.OutputError, match=r"pip install 'radiosity\[all\]'") as caught:
             attempt()
         assert errors.INSTALL in str(caught.value)
     assert not list(tmp_path.iterdir())  # the study says so before it begins
-    others = [line for path in [*ROOT.glob("src/**/*.py"), *ROOT.glob("docs/*.md"), ROOT / "README.md"]
-              for line in path.read_text(encoding="utf-8").splitlines()
-              if re.search(r"install.*radiosity\[(?!all\])", line)]  # fmt: skip
+    others = [
+        line
+        for path in [*ROOT.glob("src/**/*.py"), *ROOT.glob("docs/*.md"), ROOT / "README.md"]
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if re.search(r"install.*radiosity\[(?!all\])", line)
+    ]
     assert not others
 
 

@@ -66,15 +66,18 @@ def test_mirroring_joints_leave_the_front_in_front(tmp_path):
     assert skinned(tmp_path, scale=(-0.01, 0.01, 0.01)).normal[0].tolist() == [0, 0, 1]
 
 
-@pytest.mark.parametrize(("change", "what"), [
-    ({"weights": ((0, 0, 0, 0),) * 4}, "weights of vertex 0 of 'door' sum to 0"),
-    ({"numbers": ((2, 0, 0, 0),) * 4}, "joint 2; its skin has 2"),
-    ({"weights": ((1, 0, 0),) * 4}, r"WEIGHTS_0 of 'door' has shape \(4, 3\)"),
-    ({"bind": (UNIT,)}, r"inverseBindMatrices of skin 0 have shape \(1, 16\)"),
-    ({"inverseBindMatrices": 0}, "inverseBindMatrices of skin 0"),
-    ({"joints": []}, "no joints"),
-    ({"joints": [9]}, "nodes 9"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ({"weights": ((0, 0, 0, 0),) * 4}, "weights of vertex 0 of 'door' sum to 0"),
+        ({"numbers": ((2, 0, 0, 0),) * 4}, "joint 2; its skin has 2"),
+        ({"weights": ((1, 0, 0),) * 4}, r"WEIGHTS_0 of 'door' has shape \(4, 3\)"),
+        ({"bind": (UNIT,)}, r"inverseBindMatrices of skin 0 have shape \(1, 16\)"),
+        ({"inverseBindMatrices": 0}, "inverseBindMatrices of skin 0"),
+        ({"joints": []}, "no joints"),
+        ({"joints": [9]}, "nodes 9"),
+    ],
+)
 def test_damaged_skins(tmp_path, change, what):
     with pytest.raises(SceneError, match=what):
         skinned(tmp_path, **change)
@@ -153,11 +156,14 @@ def test_instances_that_do_not_fit_or_are_too_many(tmp_path):
         rd.load_scene(gltf.write(tmp_path / "i.glb"))
 
 
-@pytest.mark.parametrize("material", [
-    {"name": "paint"},  # as Blender writes a Diffuse BSDF
-    {"name": "paint", "emissiveFactor": [1, 1, 1]},
-    {"name": "paint", "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1}},
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "material",
+    [
+        {"name": "paint"},  # as Blender writes a Diffuse BSDF
+        {"name": "paint", "emissiveFactor": [1, 1, 1]},
+        {"name": "paint", "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1}},
+    ],
+)
 def test_a_material_without_a_base_colour_is_told(tmp_path, material):
     scene, (text,) = told(tmp_path, material)
     assert "materials without a base colour" in text
@@ -173,24 +179,34 @@ def test_vertex_colours_are_a_base_colour(tmp_path):
     np.testing.assert_allclose(rd.subdivide(scene, cells=1).reflectance[0], [0.1, 0.2, 0.3], rtol=1e-6)
 
 
-@pytest.mark.parametrize("extension", [
-    {"KHR_materials_transmission": {"transmissionFactor": 0.5}},
-    {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5}},
-    {"KHR_materials_clearcoat": {"clearcoatFactor": 1}},
-    {"KHR_materials_sheen": {"sheenColorFactor": [0, 1, 0]}},
-    {"KHR_materials_iridescence": {"iridescenceFactor": 1}},
-    {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.5, 0.5, 0.5, 1], "glossinessFactor": 0.9}},
-], ids=lambda value: next(iter(value)))  # fmt: skip
+@pytest.mark.parametrize(
+    "extension",
+    [
+        {"KHR_materials_transmission": {"transmissionFactor": 0.5}},
+        {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5}},
+        {"KHR_materials_clearcoat": {"clearcoatFactor": 1}},
+        {"KHR_materials_sheen": {"sheenColorFactor": [0, 1, 0]}},
+        {"KHR_materials_iridescence": {"iridescenceFactor": 1}},
+        {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.5, 0.5, 0.5, 1], "glossinessFactor": 0.9}},
+    ],
+    ids=lambda value: next(iter(value)),
+)
 def test_what_is_not_diffuse_is_named(tmp_path, extension):
     scene, (text,) = told(tmp_path, {**GREY, "extensions": extension})
     assert "not diffuse" in text
     assert scene.reflectance.tolist() == [[0.5]]
 
 
-@pytest.mark.parametrize("extension", [
-    {"KHR_materials_transmission": {}}, {"KHR_materials_clearcoat": {"clearcoatFactor": 0}}, {"KHR_materials_ior": {"ior": 1.4}},
-    {"KHR_materials_specular": {"specularFactor": 0.5}},
-], ids=lambda value: next(iter(value)))  # fmt: skip
+@pytest.mark.parametrize(
+    "extension",
+    [
+        {"KHR_materials_transmission": {}},
+        {"KHR_materials_clearcoat": {"clearcoatFactor": 0}},
+        {"KHR_materials_ior": {"ior": 1.4}},
+        {"KHR_materials_specular": {"specularFactor": 0.5}},
+    ],
+    ids=lambda value: next(iter(value)),
+)
 def test_what_adds_nothing_is_not(tmp_path, extension):
     assert one(tmp_path, {**GREY, "extensions": extension}).reflectance.tolist() == [[0.5]]
 

@@ -233,13 +233,16 @@ ROWS, FACE = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n", "4 0 1 2 3\n"
 PLY = "ply\nformat ascii 1.0\n{}end_header\n{}"
 
 
-@pytest.mark.parametrize("content", [
-    PLY.format(FACES + VERTICES, FACE + ROWS),
-    PLY.format("comment data follow end_header\nobj_info end_header soon\n" + VERTICES + FACES, ROWS + FACE),
-    PLY.format(VERTICES + "property list uchar float weights\n" + FACES, ROWS.replace("0\n", "0 2 9 9\n") + FACE),
-    PLY.format(VERTICES + FACES.replace("uchar int", "int uint"), ROWS + FACE),
-    PLY.format(VERTICES + FACES + "property list int float texcoord\nproperty uchar flags\n", ROWS + "4 0 1 2 3 0 7\n"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "content",
+    [
+        PLY.format(FACES + VERTICES, FACE + ROWS),
+        PLY.format("comment data follow end_header\nobj_info end_header soon\n" + VERTICES + FACES, ROWS + FACE),
+        PLY.format(VERTICES + "property list uchar float weights\n" + FACES, ROWS.replace("0\n", "0 2 9 9\n") + FACE),
+        PLY.format(VERTICES + FACES.replace("uchar int", "int uint"), ROWS + FACE),
+        PLY.format(VERTICES + FACES + "property list int float texcoord\nproperty uchar flags\n", ROWS + "4 0 1 2 3 0 7\n"),
+    ],
+)
 def test_ply_headers_of_other_orders_and_types(tmp_path, content):
     for ends in ("\n", "\r\n", "\r"):
         scene = load(tmp_path / "tile.ply", content.replace("\n", ends))

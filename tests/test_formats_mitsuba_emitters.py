@@ -5,8 +5,8 @@ import pytest
 from mitsuba_rays import scalar_mitsuba
 
 import radiosity as rd
+from radiosity.diagnostics.check import check
 from radiosity.image import picture
-from radiosity.scene.check import check
 
 HEAD, TAIL = '<scene version="3.0.0">', "</scene>"
 WHITE = '<bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf>'
@@ -14,10 +14,13 @@ NULL = '<bsdf type="null"/>'
 LIGHT = '<emitter type="area"><rgb name="radiance" value="2"/></emitter>'
 DOWN = '<scale value="0.5"/><rotate x="1" angle="180"/><translate z="{}"/>'
 ROOM = {
-    "floor": '<translate z="-1"/>', "ceiling": '<rotate x="1" angle="180"/><translate z="1"/>',
-    "west": '<rotate y="1" angle="90"/><translate x="-1"/>', "east": '<rotate y="1" angle="-90"/><translate x="1"/>',
-    "south": '<rotate x="1" angle="-90"/><translate y="-1"/>', "north": '<rotate x="1" angle="90"/><translate y="1"/>',
-}  # fmt: skip
+    "floor": '<translate z="-1"/>',
+    "ceiling": '<rotate x="1" angle="180"/><translate z="1"/>',
+    "west": '<rotate y="1" angle="90"/><translate x="-1"/>',
+    "east": '<rotate y="1" angle="-90"/><translate x="1"/>',
+    "south": '<rotate x="1" angle="-90"/><translate y="-1"/>',
+    "north": '<rotate x="1" angle="90"/><translate y="1"/>',
+}
 
 
 @pytest.fixture
@@ -60,12 +63,15 @@ def test_a_lamp_without_bsdf_is_black_as_in_mitsuba(load, tmp_path):
     np.testing.assert_allclose(scene.emission, 2 * np.pi)
 
 
-@pytest.mark.parametrize("bsdf", [
-    NULL,
-    f'<bsdf type="mask"><float name="opacity" value="0"/>{WHITE}</bsdf>',
-    f'<bsdf type="mask"><float name="opacity" value="0.5"/>{NULL}</bsdf>',
-    f'<bsdf type="blendbsdf"><float name="weight" value="0"/>{NULL}{WHITE}</bsdf>',
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "bsdf",
+    [
+        NULL,
+        f'<bsdf type="mask"><float name="opacity" value="0"/>{WHITE}</bsdf>',
+        f'<bsdf type="mask"><float name="opacity" value="0.5"/>{NULL}</bsdf>',
+        f'<bsdf type="blendbsdf"><float name="weight" value="0"/>{NULL}{WHITE}</bsdf>',
+    ],
+)
 def test_a_lamp_that_is_not_there_shines_all_the_same(load, bsdf):
     scene = load(lamp(bsdf=bsdf))
     assert scene.back.tolist() == [rd.Back.OPEN]
@@ -108,10 +114,19 @@ def test_a_wall_behind_an_open_lamp_is_lit_through_it(load):
     assert bright["hidden"] < 0.5 * bright["behind"]
 
 
-@pytest.mark.parametrize("method", [
-    "stochastic-ray", "stochastic-jacobi-control-variate", "transillumination", "global-multipath", "global-form-factors",
-    "full-matrix", "progressive-refinement", "hierarchical",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "method",
+    [
+        "stochastic-ray",
+        "stochastic-jacobi-control-variate",
+        "transillumination",
+        "global-multipath",
+        "global-form-factors",
+        "full-matrix",
+        "progressive-refinement",
+        "hierarchical",
+    ],
+)
 def test_methods_that_cannot_tell_a_lamp_from_what_is_behind_it_are_refused(load, method):
     with pytest.raises(rd.MethodError, match=r"'lamp' .*random-walk"):
         rd.solve(load(room() + lamp()), method, **({"rays": 1000} if "matrix" not in method else {}))
@@ -161,15 +176,18 @@ def test_a_whole_mask_is_the_material_itself_and_none_leaves_nothing(load):
     assert (scene.names, scene.back.tolist()) == (("net",), [rd.Back.RADIATES])
 
 
-@pytest.mark.parametrize(("inside", "what"), [
-    (WHITE + WHITE, "has 2 BSDFs"),
-    (LIGHT + LIGHT, "2 area emitters"),
-    ('<bsdf type="twosided"/>', "'twosided' BSDF of nothing"),
-    (f'<bsdf type="twosided">{3 * WHITE}</bsdf>', "'twosided' BSDF of 'diffuse', 'diffuse', 'diffuse'"),
-    (f'<bsdf type="twosided">{NULL}</bsdf>', "'twosided' BSDF of 'null'.*no light through"),
-    (f'<bsdf type="twosided"><bsdf type="mask">{WHITE}</bsdf></bsdf>', "put a mask around"),
-    ('<bsdf type="mask"/>', "a 'mask' holds 0 BSDFs"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("inside", "what"),
+    [
+        (WHITE + WHITE, "has 2 BSDFs"),
+        (LIGHT + LIGHT, "2 area emitters"),
+        ('<bsdf type="twosided"/>', "'twosided' BSDF of nothing"),
+        (f'<bsdf type="twosided">{3 * WHITE}</bsdf>', "'twosided' BSDF of 'diffuse', 'diffuse', 'diffuse'"),
+        (f'<bsdf type="twosided">{NULL}</bsdf>', "'twosided' BSDF of 'null'.*no light through"),
+        (f'<bsdf type="twosided"><bsdf type="mask">{WHITE}</bsdf></bsdf>', "put a mask around"),
+        ('<bsdf type="mask"/>', "a 'mask' holds 0 BSDFs"),
+    ],
+)
 def test_what_mitsuba_refuses_is_refused(load, tmp_path, inside, what):
     with pytest.raises(rd.SceneError, match=what):
         load(shape("thing", "", inside))
@@ -177,15 +195,18 @@ def test_what_mitsuba_refuses_is_refused(load, tmp_path, inside, what):
         mi.load_file(str(tmp_path / "scene.xml"))
 
 
-@pytest.mark.parametrize(("kind", "place", "good"), [
-    ("sphere", '<scale value="2"/>', True),
-    ("sphere", '<scale x="-1" y="1" z="1"/><rotate x="0.6" y="0.8" angle="30"/>', True),
-    ("sphere", '<scale x="2" y="1" z="1"/>', False),
-    ("cylinder", '<scale x="1" y="1" z="3"/>', True),
-    ("cylinder", '<scale x="2" y="1" z="1"/>', False),
-    ("cylinder", '<matrix value="1 0 0.5 0 0 1 0 0 0 0 1 0 0 0 0 1"/>', False),
-    ("disk", '<scale x="2" y="1" z="1"/>', True),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("kind", "place", "good"),
+    [
+        ("sphere", '<scale value="2"/>', True),
+        ("sphere", '<scale x="-1" y="1" z="1"/><rotate x="0.6" y="0.8" angle="30"/>', True),
+        ("sphere", '<scale x="2" y="1" z="1"/>', False),
+        ("cylinder", '<scale x="1" y="1" z="3"/>', True),
+        ("cylinder", '<scale x="2" y="1" z="1"/>', False),
+        ("cylinder", '<matrix value="1 0 0.5 0 0 1 0 0 0 0 1 0 0 0 0 1"/>', False),
+        ("disk", '<scale x="2" y="1" z="1"/>', True),
+    ],
+)
 def test_round_shapes_must_stay_round_as_in_mitsuba(load, tmp_path, kind, place, good):
     inside = shape("ball", place, WHITE, kind)
     if good:

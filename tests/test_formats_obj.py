@@ -79,9 +79,7 @@ def test_names_may_hold_blanks_and_hashes(load):
 
 
 def test_text_habits(load):
-    scene = load(
-        "\ufeff# a comment\r\n" + SQUARE.replace("\n", "\r\n") + KNOWN + "s off\nf 1//1 \\\n 2//1 3//1 4//1 # quad\n"
-    )
+    scene = load("\ufeff# a comment\r\n" + SQUARE.replace("\n", "\r\n") + KNOWN + "s off\nf 1//1 \\\n 2//1 3//1 4//1 # quad\n")
     assert scene.area.tolist() == [1]
 
 
@@ -124,9 +122,24 @@ def test_textures_are_scaled_and_then_moved(load, tmp_path, move, left, right):
 
 @pytest.mark.parametrize(
     "option",
-    ["-blendu on", "-blendv off", "-boost 2", "-mm 0 1", "-texres 64", "-clamp on", "-bm 1", "-imfchan l", "-type sphere",
-     "-cc off", "-colorspace sRGB", "-o 0", "-s 1 1", "-t 0 0 0", "-mm 0 1 -bm 1 -o 0 0"],
-)  # fmt: skip
+    [
+        "-blendu on",
+        "-blendv off",
+        "-boost 2",
+        "-mm 0 1",
+        "-texres 64",
+        "-clamp on",
+        "-bm 1",
+        "-imfchan l",
+        "-type sphere",
+        "-cc off",
+        "-colorspace sRGB",
+        "-o 0",
+        "-s 1 1",
+        "-t 0 0 0",
+        "-mm 0 1 -bm 1 -o 0 0",
+    ],
+)
 def test_values_of_options_are_no_part_of_a_file_s_name(load, tmp_path, option):
     (tmp_path / "t.png").write_bytes(png(np.full((4, 4, 3), 120)))
     text = SQUARE + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n" + KNOWN + "f 1/1 2/2 3/3 4/4\n"

@@ -73,11 +73,21 @@ def test_code_pages_of_comments_do_not_matter(load):
     assert load("# créé par X\n".encode("cp1252") + FACE.encode()).area.tolist() == [1]
 
 
-@pytest.mark.parametrize(("codec", "names"), [
-    ("gb18030", "书架 吊扇 烤箱"), ("gb18030", "毛巾 相框 电视"), ("cp950", "書架 吊扇 烤箱"), ("cp950", "圍欄 汽車 道路"),
-    ("cp932", "皿 植木鉢 柵"), ("cp932", "絨毯 引き出し 蛇口"), ("cp949", "책장 선풍기 오븐"), ("cp949", "접시 화분 울타리"),
-    ("cp1252", "piñón armário chão"), ("cp1251", "полка духовка зеркало"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("codec", "names"),
+    [
+        ("gb18030", "书架 吊扇 烤箱"),
+        ("gb18030", "毛巾 相框 电视"),
+        ("cp950", "書架 吊扇 烤箱"),
+        ("cp950", "圍欄 汽車 道路"),
+        ("cp932", "皿 植木鉢 柵"),
+        ("cp932", "絨毯 引き出し 蛇口"),
+        ("cp949", "책장 선풍기 오븐"),
+        ("cp949", "접시 화분 울타리"),
+        ("cp1252", "piñón armário chão"),
+        ("cp1251", "полка духовка зеркало"),
+    ],
+)
 def test_three_names_tell_the_code_page(codec, names):
     """Also names whose characters are none that the reader expects in rooms."""
     with pytest.warns(RadiosityWarning, match="not UTF-8"):

@@ -212,8 +212,10 @@ def test_names_that_are_patterns_too_are_warned_of_once(load, tmp_path, recwarn)
     for file in ("lamp[1]", "lamp1"):
         (tmp_path / f"{file}.ply").write_text(ply_text())
     with pytest.warns(RadiosityWarning, match="no surface is called 'x'") as told:
-        load('geometry = ["lamp[1].ply", "lamp1.ply"]\n[[surface]]\nname = "lamp[1]"\nreflectance = 0.1\n'
-             '[[surface]]\nname = "lamp1"\nreflectance = 0.2\n[[surface]]\nname = "x"\nreflectance = 0.1\n')  # fmt: skip
+        load(
+            'geometry = ["lamp[1].ply", "lamp1.ply"]\n[[surface]]\nname = "lamp[1]"\nreflectance = 0.1\n'
+            '[[surface]]\nname = "lamp1"\nreflectance = 0.2\n[[surface]]\nname = "x"\nreflectance = 0.1\n'
+        )
     assert len(told) == 1
 
 

@@ -1,7 +1,7 @@
 """Commands in fresh processes: what an earlier run of the same process has made on the device hides faults of the first one.
 
 An array that was made within a recorded loop ended the process where its length was 1, or the loop's number of lanes
-(`engine.recorded`). So lines, quanta and sizes here are such that some loop has as many lanes as a table has entries.
+(`device.recorded`). So lines, quanta and sizes here are such that some loop has as many lanes as a table has entries.
 """
 
 import os
@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import radiosity as rd
-from radiosity.method.numbers import NUMBERS
+from radiosity.sampling.numbers import NUMBERS
 
 FUZZ = Path(__file__).resolve().parent / "fuzz"
 sys.path.insert(0, str(FUZZ))
@@ -36,14 +36,21 @@ CASES = {
     "tables of four words": ("", [f"solve room {ONE_REPLICATE} --numbers sobol --quanta 1024"]),
     "tables of digits": ("", [f"solve room {ONE_REPLICATE} --numbers scrambled-halton --quanta 6875"]),
     "tables in base 5": ("", [f"solve room {ONE_REPLICATE} --numbers faure --order depth-first --quanta 75000"]),
-    "one pixel": ("one, passes", ["solve a.toml --rays 1k -o o.npz",
-                                  "render o.npz -o p.png --width 1 --height 1 --origin 0.5,0.5,3 --target 0.5,0.5,0"]),
-    "as many pixels as faces": ("cube", ["solve a.toml --cells 1 --quanta 64 -o o.npz",
-                                         "render o.npz -o p.png --width 3 --height 1 --origin 0.5,0.5,0.5 --target 0.5,0.9,0.4"]),
+    "one pixel": (
+        "one, passes",
+        ["solve a.toml --rays 1k -o o.npz", "render o.npz -o p.png --width 1 --height 1 --origin 0.5,0.5,3 --target 0.5,0.5,0"],
+    ),
+    "as many pixels as faces": (
+        "cube",
+        [
+            "solve a.toml --cells 1 --quanta 64 -o o.npz",
+            "render o.npz -o p.png --width 3 --height 1 --origin 0.5,0.5,0.5 --target 0.5,0.9,0.4",
+        ],
+    ),
     "crossings of spans": ("cube", [f"solve a.toml {ONE_REPLICATE} --method global-form-factors --lines spans --quanta 96"]),
     "crossings of chords": ("plates", [f"solve a.toml {ONE_REPLICATE} --method global-form-factors --quanta 58"]),
     "one face that lines pass": ("triangle", ["check a.toml"]),
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module")
@@ -71,8 +78,13 @@ def test_cases_that_ended_the_process(forks, tmp_path, case):
     assert set(run(forks, tmp_path, scene, commands)) <= {"done", "suspicious"}
 
 
-AMOUNTS = [f"--{kind} {2**power + more}" for power in (0, 3, 6, 10, 13) for kind in ("rays", "quanta") for more in (-1, 0, 1)
-           if 2**power + more > 0]  # fmt: skip
+AMOUNTS = [
+    f"--{kind} {2**power + more}"
+    for power in (0, 3, 6, 10, 13)
+    for kind in ("rays", "quanta")
+    for more in (-1, 0, 1)
+    if 2**power + more > 0
+]
 PICTURES = ("--width 1 --height 1", "--width 3 --height 2", "--width 16 --height 16 --false-color")
 
 

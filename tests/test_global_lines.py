@@ -10,15 +10,15 @@ from enclosures import cube
 from scipy import stats
 
 import radiosity as rd
-from radiosity.engine.device import choose, upload
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.global_lines.hull import nothing_beyond
-from radiosity.engine.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
-from radiosity.engine.tree import REACH
+from radiosity.device.backend import choose, upload
 from radiosity.errors import MethodError
-from radiosity.method.lines import global_lines
 from radiosity.patches import cells
+from radiosity.sampling import global_lines
 from radiosity.scene.shapes import box, quad
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.global_lines.hull import nothing_beyond
+from radiosity.tracing.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
+from radiosity.tracing.tree import REACH
 
 KINDS = ("global", "global-disc", "spans", "bundles")
 ALPHA, SIGMAS = 1e-4, 4.5
@@ -66,8 +66,11 @@ def p_values(kind, random):
     uv, cosine, lines, area = crossings_of_a_square(kind, random)
     share = area / (8 * RADIUS**2 if kind == "bundles" else 2 * np.pi * RADIUS**2)
     places = np.histogram2d(*uv.T, bins=6, range=[[0, 1], [0, 1]])[0].ravel()
-    return (stats.binomtest(len(uv), lines, share).pvalue, stats.chisquare(places).pvalue,
-            stats.kstest(cosine**2, "uniform").pvalue)  # fmt: skip
+    return (
+        stats.binomtest(len(uv), lines, share).pvalue,
+        stats.chisquare(places).pvalue,
+        stats.kstest(cosine**2, "uniform").pvalue,
+    )
 
 
 @pytest.mark.parametrize("kind", ["global", "global-disc", "bundles"])
@@ -124,8 +127,13 @@ def test_expected_ends_of_real_scenes(kind, name):
 def jumble(passing: bool) -> rd.Scene:
     """Two boxes seen from outside, a sheet of two triangles that radiates on both sides, and one whose back lets lines pass."""
     quads = [*box((-1, -1, -1), (-0.4, 0.2, 0.3), inward=False), *box((0.2, -0.3, 0.1), (1.0, 0.5, 0.9), inward=False)]
-    vertices = np.concatenate([*quads, quad((-0.9, 0.5, -0.8), (1.8, 0.1, 0.2), (0.3, 0.4, 1.5)),
-                               quad((-0.3, -0.9, -0.9), (0.1, 1.7, 0.2), (0.9, 0.1, 0.3))])  # fmt: skip
+    vertices = np.concatenate(
+        [
+            *quads,
+            quad((-0.9, 0.5, -0.8), (1.8, 0.1, 0.2), (0.3, 0.4, 1.5)),
+            quad((-0.3, -0.9, -0.9), (0.1, 1.7, 0.2), (0.9, 0.1, 0.3)),
+        ]
+    )
     faces = np.full((len(quads) + 3, 4), -1)
     faces[: len(quads)] = np.arange(4 * len(quads)).reshape(-1, 4)
     at = 4 * len(quads)
@@ -200,8 +208,10 @@ def test_spans_are_those_that_numpy_finds(kind, passing):
         wrong += sorted(found) != expected
         if not passing and sorted(found) == expected:  # in order of depth: what a span ends on has the next begin behind it
             places = {patch: at for at, side in enumerate(forward) for patch in side if not isinstance(patch, rd.Back)}
-            depth = [places[one] if one < ONE_WAY else places[other] - 1 for one, other in
-                     zip(pairs.one[rows].tolist(), pairs.other[rows].tolist(), strict=True)]  # fmt: skip
+            depth = [
+                places[one] if one < ONE_WAY else places[other] - 1
+                for one, other in zip(pairs.one[rows].tolist(), pairs.other[rows].tolist(), strict=True)
+            ]
             assert depth == sorted(depth)
     assert wrong <= 3  # lines within single precision of an edge
     assert len(pairs.line) > 1000
@@ -215,8 +225,9 @@ def test_place_and_size_do_not_matter(kind):
     for scale, move in ((1.0, 0.0), (1e4, -3e4), (1e-3, 2e-3)):
         moved = rd.Scene.from_arrays(scene.vertices * scale + move, scene.faces, 0.5, 1.0, back=scene.back)
         pairs = spans_of(rd.subdivide(moved, cells=2), kind, numbers="halton").draw(0, 0, 1 << 16)
-        counts.append((len(pairs.line), np.count_nonzero(pairs.other == LOST), np.count_nonzero(pairs.other == ESCAPED),
-                       pairs.line.max()))  # fmt: skip
+        counts.append(
+            (len(pairs.line), np.count_nonzero(pairs.other == LOST), np.count_nonzero(pairs.other == ESCAPED), pairs.line.max())
+        )
     counts = np.array(counts, float)
     assert np.abs(counts - counts[0]).max(axis=0) == pytest.approx(0, abs=6)
     assert counts[:, 2].max() <= 2  # closed, up to lines within single precision of an edge

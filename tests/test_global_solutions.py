@@ -11,30 +11,45 @@ from replicates import powers
 from test_lines import stack
 
 import radiosity as rd
-from radiosity.engine.device import choose, frozen, upload
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.global_lines import first_shot
-from radiosity.engine.global_lines.exchange import Exchange
-from radiosity.engine.global_lines.mixing import Mixed
-from radiosity.engine.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
-from radiosity.engine.problem import Problem
+from radiosity.algorithms.global_lines import first_shot
+from radiosity.algorithms.global_lines.exchange import Exchange
+from radiosity.algorithms.global_lines.mixing import Mixed
+from radiosity.device.backend import choose, frozen, upload
+from radiosity.problem.model import Problem
 from radiosity.scene.shapes import quad
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
 
 SIGMAS, LARGEST = 4.5, 6.5
 KINDS = ("global", "global-disc", "spans", "bundles")
-METHODS = [rd.Method(lines=lines, order=order, first_shot=shot) for lines in KINDS for order in ("multipath", "regular")
-           for shot in (0.0, 0.25) if (lines, order) != ("bundles", "multipath")]  # fmt: skip
+METHODS = [
+    rd.Method(lines=lines, order=order, first_shot=shot)
+    for lines in KINDS
+    for order in ("multipath", "regular")
+    for shot in (0.0, 0.25)
+    if (lines, order) != ("bundles", "multipath")
+]
 some = pytest.mark.parametrize("method", METHODS, ids=lambda method: str(method).removeprefix("discrete/"))
 
 
 def opening(back: rd.Back = rd.Back.RADIATES) -> rd.Scene:
     """Four squares in the open, two different bands."""
-    quads = [quad((0, 0, 0), (2, 0, 0), (0, 2, 0)), quad((0.3, 0.3, 1.0), (1, 0, 0), (0, 1, 0.5)),
-             quad((0, 0, 2), (0, 2, 0), (2, 0, 0)), quad((-1, 0, 0), (0, 0, 1.5), (0, 1, 0))]  # fmt: skip
+    quads = [
+        quad((0, 0, 0), (2, 0, 0), (0, 2, 0)),
+        quad((0.3, 0.3, 1.0), (1, 0, 0), (0, 1, 0.5)),
+        quad((0, 0, 2), (0, 2, 0), (2, 0, 0)),
+        quad((-1, 0, 0), (0, 0, 1.5), (0, 1, 0)),
+    ]
     return rd.Scene.from_arrays(
-        np.concatenate(quads), np.arange(16).reshape(4, 4), [[0.5, 0.2], [0.8, 0.8], [0.3, 0.6], [0.7, 0.7]],
-        [[1.0, 2.0], [0.0, 0.0], [0.2, 0.0], [0.0, 0.0]], back=[back] * 4, surface=range(4), names=list("abcd"), bands=["x", "y"],
-    )  # fmt: skip
+        np.concatenate(quads),
+        np.arange(16).reshape(4, 4),
+        [[0.5, 0.2], [0.8, 0.8], [0.3, 0.6], [0.7, 0.7]],
+        [[1.0, 2.0], [0.0, 0.0], [0.2, 0.0], [0.0, 0.0]],
+        back=[back] * 4,
+        surface=range(4),
+        names=list("abcd"),
+        bands=["x", "y"],
+    )
 
 
 def replicate_powers(solution, group=0):
@@ -125,8 +140,13 @@ def test_exchange_is_what_whole_numbers_say(random):
                     ledger[1, r] += kept
                 else:
                     ledger[2 if to == ESCAPED else 3, r] += power
-    exchange = Exchange(types, True, upload(types.UInt32, rho), upload(types.UInt64, source),
-                        *(upload(types.UInt64, np.zeros(2 * n, np.uint64)) for _ in range(2)))  # fmt: skip
+    exchange = Exchange(
+        types,
+        True,
+        upload(types.UInt32, rho),
+        upload(types.UInt64, source),
+        *(upload(types.UInt64, np.zeros(2 * n, np.uint64)) for _ in range(2)),
+    )
     both = (upload(types.UInt32, np.concatenate(ends)) for ends in (ones, others))
     sums = exchange.run(*both, np.array(lengths), n)
     assert frozen(exchange.unshot).reshape(2, n).tolist() == unshot.tolist()

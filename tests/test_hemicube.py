@@ -5,13 +5,13 @@ import pytest
 from enclosures import cube
 
 import radiosity as rd
-from radiosity.deterministic.factors import exchange, from_points
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.matrix.hemicube import Hemicube, deltas, directions
+from radiosity.device.backend import choose
 from radiosity.errors import MethodError
+from radiosity.factors.hemicube import Hemicube, deltas, directions
+from radiosity.factors.polygons import exchange, from_points
 from radiosity.patches import Patches
 from radiosity.scene.shapes import quad
+from radiosity.tracing.geometry import Geometry
 
 
 def geometry_of(patches: Patches) -> Geometry:

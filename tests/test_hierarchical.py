@@ -9,19 +9,22 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.deterministic.factors import from_points
-from radiosity.deterministic.hierarchical import REFINEMENTS, Hierarchical, roots, solve_hierarchical
-from radiosity.deterministic.hierarchical import refine as refining
-from radiosity.deterministic.hierarchical.exchange import Exchange
-from radiosity.deterministic.hierarchical.kernel import Shapes, unoccluded
-from radiosity.deterministic.hierarchical.levels import Levels
-from radiosity.deterministic.hierarchical.oracle import Radiosity
+from radiosity.algorithms.hierarchical import REFINEMENTS, Hierarchical, roots, solve_hierarchical
+from radiosity.algorithms.hierarchical import refine as refining
+from radiosity.algorithms.hierarchical.exchange import Exchange
+from radiosity.algorithms.hierarchical.kernel import Shapes, unoccluded
+from radiosity.algorithms.hierarchical.levels import Levels
+from radiosity.algorithms.hierarchical.oracle import Radiosity
+from radiosity.factors.polygons import from_points
 from radiosity.patches import Hierarchy, elements
 
 MIXED = rd.Scene.from_arrays(
-    [(0, 0, 0), (3, 0, 1), (4, 2, 1), (1, 2, 0), (0, 0, 9)], [(0, 1, 2, 3), (0, 1, 4, -1), (1, 2, 4, -1), (3, 2, 1, 0)],
-    0.5, 1.0, two_sided=[False, True, False, True],
-)  # fmt: skip
+    [(0, 0, 0), (3, 0, 1), (4, 2, 1), (1, 2, 0), (0, 0, 9)],
+    [(0, 1, 2, 3), (0, 1, 4, -1), (1, 2, 4, -1), (3, 2, 1, 0)],
+    0.5,
+    1.0,
+    two_sided=[False, True, False, True],
+)
 
 
 def cut(scene, cells=8):

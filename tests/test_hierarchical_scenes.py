@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.deterministic.hierarchical import REFINEMENTS, Hierarchical, solve_hierarchical
+from radiosity.algorithms.hierarchical import REFINEMENTS, Hierarchical, solve_hierarchical
 from radiosity.scene.model import Back
 from radiosity.scene.shapes import box, quad
 
@@ -63,10 +63,16 @@ def screens() -> rd.Scene:
     emission = np.zeros((9, 1))
     emission[3], emission[6] = 2.0, 1.0
     return rd.Scene.from_arrays(
-        corners, faces, [0.5] * 6 + [0.7, 0.3, 0.6], emission, surface=range(9),
+        corners,
+        faces,
+        [0.5] * 6 + [0.7, 0.3, 0.6],
+        emission,
+        surface=range(9),
         back=[Back.ABSORBS] * 6 + [Back.RADIATES, Back.PASSES, Back.ABSORBS],
-        back_reflectance=[0.5] * 6 + [0.2, 0.0, 0.0], back_emission=np.zeros((9, 1)), names=[f"surface {i}" for i in range(9)],
-    )  # fmt: skip
+        back_reflectance=[0.5] * 6 + [0.2, 0.0, 0.0],
+        back_emission=np.zeros((9, 1)),
+        names=[f"surface {i}" for i in range(9)],
+    )
 
 
 def test_backs_that_radiate_pass_and_absorb(geometry_of):

@@ -11,7 +11,7 @@ from radiosity.patches import Hierarchy, cells, elements
 VERTICES = [(0, 0, 0), (3, 0, 1), (4, 2, 1), (1, 2, 0), (0, 0, 9)]
 SCENE = rd.Scene.from_arrays(
     VERTICES, [(0, 1, 2, 3), (0, 1, 4, -1), (1, 2, 4, -1), (3, 2, 1, 0)], 0.5, 1.0, two_sided=[False, True, False, True]
-)  # fmt: skip
+)
 
 power = st.integers(0, 5).map(lambda k: 2**k)
 cuts = st.tuples(*[power] * 6)

@@ -13,7 +13,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli import main
-from radiosity.scene.check import check
+from radiosity.diagnostics.check import check
 from radiosity.scene.shapes import box, join
 
 SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
@@ -38,9 +38,12 @@ def with_more(vertices, faces, reflectance=0.0, emission=0.0, scene=None, **more
     return rd.Scene.from_arrays(
         np.concatenate([scene.vertices, vertices]),
         np.concatenate([scene.faces, np.where(faces >= 0, faces + len(scene.vertices), -1)]),
-        np.concatenate([0.5 * own, np.full(n, reflectance)]), np.concatenate([own, np.full(n, emission)]),
-        surface=np.concatenate([scene.surface, np.full(n, 6)]), names=[*scene.names, "other"], **more,
-    )  # fmt: skip
+        np.concatenate([0.5 * own, np.full(n, reflectance)]),
+        np.concatenate([own, np.full(n, emission)]),
+        surface=np.concatenate([scene.surface, np.full(n, 6)]),
+        names=[*scene.names, "other"],
+        **more,
+    )
 
 
 def solved(scene, cells=2, rays=40_000, **choices) -> rd.Solution:
@@ -115,10 +118,12 @@ LONELY = {
     "one triangle": lambda: rd.Scene.from_arrays(SQUARE[:3], [[0, 1, 2]], 0.5, 1.0),
     "a plane": lambda: rd.Scene.from_arrays(
         (SQUARE + np.arange(100)[:, None, None] // (1, 10, 100) % (10, 10, 1) * [1.0, 1, 0]).reshape(-1, 3),
-        np.arange(400).reshape(100, 4), 0.5, 1.0,
+        np.arange(400).reshape(100, 4),
+        0.5,
+        1.0,
     ),
     "inside out": lambda: furnace(inward=False),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", LONELY)
@@ -166,10 +171,13 @@ def test_very_many_surfaces(n):
     walls = furnace(scale=10.0)
     scene = rd.Scene.from_arrays(
         np.concatenate([walls.vertices, (place + 0.001 * SQUARE).reshape(-1, 3)]),
-        np.concatenate([walls.faces, len(walls.vertices) + np.arange(4 * n).reshape(n, 4)]), 0.5, 1.0,
-        surface=np.concatenate([walls.surface, 6 + np.arange(n)]), names=[*walls.names, *(f"s{i}" for i in range(n))],
+        np.concatenate([walls.faces, len(walls.vertices) + np.arange(4 * n).reshape(n, 4)]),
+        0.5,
+        1.0,
+        surface=np.concatenate([walls.surface, 6 + np.arange(n)]),
+        names=[*walls.names, *(f"s{i}" for i in range(n))],
         two_sided=np.arange(n + 6) >= 6,
-    )  # fmt: skip
+    )
     solution = solved(scene, cells=1, rays=400_000)
     holds(solution, 2, slice(0, 6))
     unseen = solution.arrivals == 0
@@ -212,9 +220,11 @@ def test_reflectance_of_0_999999_can_be_interrupted():
     folder = os.path.dirname(__file__)
     process = subprocess.Popen(
         [sys.executable, "-c", SOLVING, folder, os.path.dirname(os.path.dirname(rd.__file__))],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )  # fmt: skip
+    )
     assert process.stdout is not None
     assert process.stdout.readline() == "ready\n"
     time.sleep(2)

@@ -79,8 +79,15 @@ def test_lamps_set_no_range(log):
     """A wall beside a lamp that is 25 times as bright has the top of the map, as the lamp has."""
     vertices = [[0, 0, 0], [1, 0, 0], [1, 2, 0], [0, 2, 0], [2, 0, 0], [2, 2, 0]]
     scene = rd.Scene.from_arrays(vertices, [[0, 1, 2, 3], [1, 4, 5, 2]], 0.5, [50.0, 0.0])
-    result = render(solution(rd.subdivide(scene, cells=1), [50.0, 2.0]), camera=ABOVE, hits=plain_hits, samples=1, smooth=False,
-                    false_color=True, log=log)  # fmt: skip
+    result = render(
+        solution(rd.subdivide(scene, cells=1), [50.0, 2.0]),
+        camera=ABOVE,
+        hits=plain_hits,
+        samples=1,
+        smooth=False,
+        false_color=True,
+        log=log,
+    )
     np.testing.assert_allclose(result[[150, 150], [160, 240]], shades([1.0, 1.0]), atol=0.51)
 
 

@@ -120,9 +120,14 @@ def test_what_is_wrong_is_found(wrong):
 
 @settings(max_examples=10)
 @given(
-    st.integers(0, 2**32 - 1), st.sampled_from(SAMPLERS), st.booleans(), st.floats(0, 3), st.floats(0, 360), st.floats(-1, 1),
+    st.integers(0, 2**32 - 1),
+    st.sampled_from(SAMPLERS),
+    st.booleans(),
+    st.floats(0, 3),
+    st.floats(0, 360),
+    st.floats(-1, 1),
     st.tuples(st.integers(1, 9), st.integers(1, 9)),
-)  # fmt: skip
+)
 def test_a_million_random_points(seed, sampler, triangles, tiling, angle, shear, shape):
     """At tilings from 1 to 1000, of any rotation, shear, wrap and filter: 6 standard errors, of some 20 means."""
     random = generator(seed)

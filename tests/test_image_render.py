@@ -5,7 +5,7 @@ import pytest
 from image_samples import plain_hits, quad_scene, solution
 
 import radiosity as rd
-from radiosity.engine import device
+from radiosity.device import backend as device
 from radiosity.image import render
 from radiosity.image.tone import srgb
 

@@ -26,8 +26,12 @@ def imports(path: Path):
     """(dotted module, at module level?) for each import; our own are relative to the package: ``scene.model``."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     here = list(path.relative_to(ROOT).parent.parts)
-    lazy = {id(node) for function in ast.walk(tree) if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-            for node in ast.walk(function)}  # fmt: skip
+    lazy = {
+        id(node)
+        for function in ast.walk(tree)
+        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+        for node in ast.walk(function)
+    }
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             found = [alias.name for alias in node.names]
@@ -102,11 +106,11 @@ def called(path: Path) -> set[str]:
 
 
 def test_loops_are_recorded_in_one_place():
-    """`engine.recorded`, where uploads within them are an error and not the end of the process."""
+    """`device.recorded`, where uploads within them are an error and not the end of the process."""
     recording = {"while_loop", "syntax", "if_stmt", "switch", "dispatch", "freeze"}
 
     def rule(name, path):
-        return set() if name == "engine/recorded.py" else called(path) & recording
+        return set() if name == "device/recorded.py" else called(path) & recording
 
     assert offenders(rule) == {}
     assert called(ROOT / "engine" / "recorded.py") >= {"while_loop"}
@@ -116,11 +120,11 @@ def test_kernels_take_numbers_whose_tables_are_on_the_device():
     """`ready`, not `make`."""
 
     def rule(name, path):
-        found = {imported for imported, _ in imports(path)} & {"radiosity.method.numbers.make"}
+        found = {imported for imported, _ in imports(path)} & {"radiosity.sampling.numbers.make"}
         return found if name.startswith(("engine/", "deterministic/")) else set()
 
     assert offenders(rule) == {}
-    assert "radiosity.method.numbers.ready" in {imported for imported, _ in imports(ROOT / "engine" / "firing.py")}
+    assert "radiosity.sampling.numbers.ready" in {imported for imported, _ in imports(ROOT / "engine" / "firing.py")}
 
 
 def loaded_by(statement: str) -> set[str]:

@@ -44,8 +44,10 @@ def test_many_files(tmp_path, monkeypatch, name, reader):
     """All differences are explained, and all explanations are needed: one that no file needs any more is out of date."""
     monkeypatch.setattr(by_mitsuba, "POINTS", 5000)
     outcome = compared(tmp_path, name, reader, LONG)
-    print(f"{name}, {reader}: {outcome.files} files, {outcome.alike} alike, "
-          + ", ".join(f"{why.feature} {count}" for why, count in outcome.used.items()))  # fmt: skip
+    print(
+        f"{name}, {reader}: {outcome.files} files, {outcome.alike} alike, "
+        + ", ".join(f"{why.feature} {count}" for why, count in outcome.used.items())
+    )
     assert not outcome.faults, "\n".join(outcome.faults)
     known = {why for why in EXPLAINED if (why.format, why.reader) == (name, reader) and why.feature in outcome.features}
     assert not known - set(outcome.used), "explained, but seen in no file"

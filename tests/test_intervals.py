@@ -230,7 +230,7 @@ def test_a_surface_reaches_its_error():
     ],
 )
 def test_a_target_means_the_surface_of_that_name_or_else_a_pattern(asked, found):
-    from radiosity.engine.target import rows_of
+    from radiosity.run.target import rows_of
 
     names = ["lamp[1]", "lamp1", "lamp2", "lamp[1]x", "*", "a", "LAMP1"]
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
@@ -262,8 +262,8 @@ def test_coloured_runs_that_stopped_between_two_rungs_replay():
 
 
 def test_the_time_left_follows_the_run_s_own_slope():
-    from radiosity.engine.budget import Budget
-    from radiosity.engine.progress import SLOPE, Teller
+    from radiosity.run.budget import Budget
+    from radiosity.run.progress import SLOPE, Teller
 
     teller = Teller(Budget(error=1e-3), None)
     assert teller.slope == SLOPE

@@ -11,8 +11,8 @@ from iterations import VARIANTS, open_room
 from replicates import difference, powers
 
 import radiosity as rd
-from radiosity.engine import budget
-from radiosity.engine.iteration.control import SHARE, median, source_constant
+from radiosity.algorithms.iterations.control import SHARE, median, source_constant
+from radiosity.run import budget
 
 SIGMAS = 6.0
 COLORS = [[0.8, 0.5, 0.1], [0.2, 0.5, 0.7], [0.6, 0.3, 0.3], [0.1, 0.7, 0.2], [0.5, 0.5, 0.6], [0.3, 0.3, 0.75]]

@@ -18,8 +18,8 @@ from replicates import powers
 from scipy.stats import t as student
 
 import radiosity as rd
-from radiosity.engine.iteration.exchange import LINE, Exchange
-from radiosity.engine.iteration.shooter import Ends, Shooter
+from radiosity.algorithms.iterations.exchange import LINE, Exchange
+from radiosity.algorithms.iterations.shooter import Ends, Shooter
 
 RUNS, LONG_RUNS, SHORT_RUNS, ALPHA = 4096, 512, 768, 1e-3
 UNBIASED = ("incremental", "incremental, both ends", "incremental, control variate", "regular, warm-up")
@@ -118,7 +118,7 @@ def test_swapped_weights_are_rejected(lit, monkeypatch):
 
 def test_a_start_at_the_light_that_is_kept_is_rejected(room, monkeypatch):
     """Without start-up the first iterations are too dark, and the mean remembers them."""
-    from radiosity.engine.iteration import plan
+    from radiosity.algorithms.iterations import plan
 
     monkeypatch.setattr(plan, "DARK", 0.999)
     largest, bound = statistic(room, "regular", 10_000, LONG_RUNS)
@@ -150,7 +150,7 @@ def test_low_discrepancy_numbers_bring_no_bias_where_both_ends_score(name):
 
 def test_steps_that_know_their_points_are_rejected(monkeypatch):
     """One sequence for all steps."""
-    from radiosity.engine.iteration import exchange
+    from radiosity.algorithms.iterations import exchange
 
     monkeypatch.setattr(exchange, "TURNS", 1)
     excess, error, bound = mean_of_the_box(EVERYTHING, SHORT_RUNS)

@@ -101,7 +101,7 @@ def test_noise_is_no_discretisation_error(monkeypatch):
     def delta(scene, fine, coarse, parent, radiosity, random):
         return 0.5 + 0.3 * random.normal(size=len(fine))
 
-    monkeypatch.setattr("radiosity.engine.solve.solve", solve)
+    monkeypatch.setattr("radiosity.run.solve.solve", solve)
     monkeypatch.setattr(discretisation, "delta", delta)
     found = discretisation.discretisation(3, 1.0, 2)
     fine, coarse = truth["patches"], rd.subdivide(rd.load_scene("room"), cells=3)

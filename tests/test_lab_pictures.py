@@ -6,12 +6,12 @@ import pytest
 pytest.importorskip("matplotlib")
 
 import radiosity as rd
-from radiosity.engine.caster import first_hits
 from radiosity.lab import pictures
 from radiosity.lab.sample_lines import breadth_first, chords, crossings, depth_first, local_lines, nearest, spans, walks
 from radiosity.lab.study import Protocol
 from radiosity.scene import load_scene
 from radiosity.scene.model import Back
+from radiosity.tracing.caster import first_hits
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine import landings
-from radiosity.engine.device import choose, frozen, upload
+from radiosity.device.backend import choose, frozen, upload
+from radiosity.tally import landings
 
 SLOTS = 37
 
@@ -20,9 +20,11 @@ def tally(groups: int):
         SimpleNamespace(n=groups, received=upload(types.UInt64, np.arange(SLOTS * groups, dtype=np.uint64))) if groups else None
     )
     return SimpleNamespace(
-        types=types, bands=bands, arrivals=upload(types.UInt32, np.arange(SLOTS, dtype=np.uint32)),
+        types=types,
+        bands=bands,
+        arrivals=upload(types.UInt32, np.arange(SLOTS, dtype=np.uint32)),
         touched=dr.opaque(types.Bool, False, SLOTS),
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("kind", [landings.Atomic, landings.Copied])
@@ -65,7 +67,7 @@ def test_copies_end_in_equal_integers(name, monkeypatch):
             return of(*arguments, **more)
 
         with monkeypatch.context() as patched:
-            patched.setattr("radiosity.engine.firing.landings", remembered)
+            patched.setattr("radiosity.algorithms.firing.counters.landings", remembered)
             took.append((kinds, rd.solve(patches, quanta=40_000, replicates=2).state))
     (all_copied, one), (none, two), (full, three), (some, four) = took
     assert set(all_copied) == {landings.Copied}

@@ -5,11 +5,11 @@ import pytest
 from scipy import stats
 
 import radiosity as rd
-from radiosity.engine.caster import first_hits
-from radiosity.engine.device import choose, upload
-from radiosity.engine.geometry import OFFSET, Geometry
-from radiosity.engine.lines import land, local_line, patch_of
+from radiosity.device.backend import choose, upload
 from radiosity.patches import cells
+from radiosity.tracing.caster import first_hits
+from radiosity.tracing.geometry import OFFSET, Geometry
+from radiosity.tracing.lines import land, local_line, patch_of
 
 ALPHA = 1e-4
 
@@ -94,9 +94,14 @@ def stack(back: rd.Back) -> rd.Scene:
 
     quads = [quad((0, 0, z), (1, 0, 0), (0, 1, 0)) for z in (0.0, 0.5)] + [quad((-9, -9, 1.0), (0, 20, 0), (20, 0, 0))]
     return rd.Scene.from_arrays(
-        np.concatenate(quads), np.arange(12).reshape(3, 4), [0.0, 0.0 if back is rd.Back.OPEN else 0.5, 0.0], [1.0, 0.0, 0.0],
-        back=[rd.Back.ABSORBS, back, rd.Back.ABSORBS], surface=[0, 1, 2], names=["emitter", "sheet", "receiver"],
-    )  # fmt: skip
+        np.concatenate(quads),
+        np.arange(12).reshape(3, 4),
+        [0.0, 0.0 if back is rd.Back.OPEN else 0.5, 0.0],
+        [1.0, 0.0, 0.0],
+        back=[rd.Back.ABSORBS, back, rd.Back.ABSORBS],
+        surface=[0, 1, 2],
+        names=["emitter", "sheet", "receiver"],
+    )
 
 
 @pytest.mark.parametrize("order", ["breadth-first", "depth-first"])
@@ -123,9 +128,16 @@ def test_place_and_size_do_not_matter():
     for scale, move in ((1.0, 0.0), (1e-4, 3.0e-4), (1e6, -5e5)):
         scene = rd.load_scene("room")
         moved = rd.Scene.from_arrays(
-            scene.vertices * scale + move, scene.faces, scene.reflectance, scene.emission, back=scene.back,
-            back_reflectance=scene.back_reflectance, back_emission=scene.back_emission, surface=scene.surface, names=scene.names,
-        )  # fmt: skip
+            scene.vertices * scale + move,
+            scene.faces,
+            scene.reflectance,
+            scene.emission,
+            back=scene.back,
+            back_reflectance=scene.back_reflectance,
+            back_emission=scene.back_emission,
+            surface=scene.surface,
+            names=scene.names,
+        )
         patches[scale] = rd.solve(rd.subdivide(moved, cells=3), rays=500_000)
     for solution in patches.values():
         assert solution.escaped[0] == 0

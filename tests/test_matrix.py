@@ -11,9 +11,9 @@ from iterations import open_room
 from replicates import difference, powers
 
 import radiosity as rd
-from radiosity.engine.matrix.counts import PairCounts, split
-from radiosity.engine.matrix.tally import MatrixTally, form_factors
-from radiosity.engine.problem import Problem
+from radiosity.algorithms.matrix.tally import MatrixTally, form_factors
+from radiosity.factors.counts import PairCounts, split
+from radiosity.problem.model import Problem
 
 LINES = ("local", "global", "global-disc", "spans", "bundles")
 GLOBAL = LINES[1:]
@@ -133,7 +133,7 @@ def test_counts_are_those_of_a_dictionary(random):
 
 
 def test_too_many_pairs_are_refused_or_end_the_run(monkeypatch):
-    from radiosity.engine.matrix import process as matrix
+    from radiosity.algorithms.matrix import process as matrix
 
     patches = rd.subdivide(rd.load_scene("room"), cells=6)
     monkeypatch.setattr(matrix, "LIMIT", 1000)
@@ -163,9 +163,14 @@ def test_light_goes_through_backs_that_pass_although_it_does_not_come_back(lines
     below, exact = parallel_squares()
     screen = [(-5, -5, 0.5), (6, -5, 0.5), (6, 6, 0.5), (-5, 6, 0.5)]
     scene = rd.Scene.from_arrays(
-        np.concatenate([below.vertices, screen]), np.concatenate([below.faces, [[8, 9, 10, 11]]]), 0.0, [1.0, 0.0, 0.0],
-        back=[rd.Back.ABSORBS, rd.Back.ABSORBS, rd.Back.PASSES], surface=range(3), names=["lamp", "square", "screen"],
-    )  # fmt: skip
+        np.concatenate([below.vertices, screen]),
+        np.concatenate([below.faces, [[8, 9, 10, 11]]]),
+        0.0,
+        [1.0, 0.0, 0.0],
+        back=[rd.Back.ABSORBS, rd.Back.ABSORBS, rd.Back.PASSES],
+        surface=range(3),
+        names=["lamp", "square", "screen"],
+    )
     solution = rd.solve(rd.subdivide(scene, cells=1), rd.Method(order="matrix", lines=lines), rays=1_000_000, replicates=16)
     power = powers(solution, key=np.arange(3))
     error = power[:, 1].std(ddof=1) / 4

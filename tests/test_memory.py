@@ -7,9 +7,10 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli import main
-from radiosity.engine import demand, memory
-from radiosity.engine.problem import Problem
+from radiosity.device import memory
 from radiosity.lab.footprint import Footprint, footprints, scene_of
+from radiosity.problem.model import Problem
+from radiosity.run import demand
 
 GIB = 2**30
 needs_proc = pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="peaks are measured by Linux's /proc")

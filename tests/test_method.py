@@ -6,7 +6,7 @@ import itertools
 import pytest
 
 import radiosity as rd
-from radiosity.engine.process import PROCESSES
+from radiosity.algorithms.table import PROCESSES
 from radiosity.method.model import AXES
 from radiosity.method.presets.citations import CITATIONS
 

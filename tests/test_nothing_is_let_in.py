@@ -57,8 +57,10 @@ def gltf(folder, uri: str) -> None:
     (folder / "s.gltf").write_text(json.dumps(builder.tree))
 
 
-PICTURE = '<shape type="rectangle"><bsdf type="diffuse"><texture type="bitmap" name="reflectance">' \
-          '<string name="filename" value="%s"/></texture></bsdf></shape>'  # fmt: skip
+PICTURE = (
+    '<shape type="rectangle"><bsdf type="diffuse"><texture type="bitmap" name="reflectance">'
+    '<string name="filename" value="%s"/></texture></bsdf></shape>'
+)
 OUTSIDE = {
     "mgf include": lambda f, p: (f / "s.mgf").write_text(f"i {p('part.mgf')}\n"),
     "obj library": lambda f, p: obj(f, "Kd 1 1 1\n", p("wall.mtl")),
@@ -154,9 +156,12 @@ LAUGHS = "".join(f'<!ENTITY l{i} "{f"&l{i - 1};" * 10}">' for i in range(1, 12))
 
 @pytest.mark.parametrize(
     "head",
-    [f'<!DOCTYPE scene [<!ENTITY l0 "ha">{LAUGHS}]>', '<!DOCTYPE scene [<!ENTITY x SYSTEM "file:///etc/passwd">]>',
-     '<!DOCTYPE scene SYSTEM "http://127.0.0.1:9/a.dtd">'],
-)  # fmt: skip
+    [
+        f'<!DOCTYPE scene [<!ENTITY l0 "ha">{LAUGHS}]>',
+        '<!DOCTYPE scene [<!ENTITY x SYSTEM "file:///etc/passwd">]>',
+        '<!DOCTYPE scene SYSTEM "http://127.0.0.1:9/a.dtd">',
+    ],
+)
 def test_entities_are_not_expanded(tmp_path, head):
     (tmp_path / "s.xml").write_text(f'<?xml version="1.0"?>{head}<scene version="3.0.0"><shape type="rectangle"/></scene>')
     with pytest.raises(rd.SceneError, match="document type"):
@@ -246,9 +251,11 @@ def test_names_of_files_and_surfaces(tmp_path, name, capsys):
     surface = name.replace("\n", " ")
     stem = name.replace("/", "")
     (folder / f"{stem}.obj").write_text(
-        f"mtllib {stem}.mtl\no {surface}\nusemtl m\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n" if "\n" not in name else
-        f"o {surface}\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", encoding="utf-8",
-    )  # fmt: skip
+        f"mtllib {stem}.mtl\no {surface}\nusemtl m\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
+        if "\n" not in name
+        else f"o {surface}\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+        encoding="utf-8",
+    )
     if "\n" not in name:
         (folder / f"{stem}.mtl").write_text("newmtl m\nKd .5 .5 .5\nKe 1 1 1\n")
         outputs = [str(folder / f"{stem}.{kind}") for kind in ("npz", "glb", "ply", "vtp", "csv", "png")]
@@ -272,9 +279,12 @@ def test_scenes_in_a_folder_that_begins_with_a_dash(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("does", "says"),
-    [("import time; time.sleep(0.5); bytearray(3 << 30)", "mgfilt cannot read"), ("while True: pass", "did not finish|signal"),
-     ("import os; print(sorted(os.environ))", "mgfilt|no face")],
-)  # fmt: skip
+    [
+        ("import time; time.sleep(0.5); bytearray(3 << 30)", "mgfilt cannot read"),
+        ("while True: pass", "did not finish|signal"),
+        ("import os; print(sorted(os.environ))", "mgfilt|no face"),
+    ],
+)
 def test_the_program_that_reduces_mgf_is_bounded(monkeypatch, tmp_path, does, says):
     """In memory, in time; and it sees nothing of the environment."""
     from radiosity.scene.formats.mgf import filter as mgf

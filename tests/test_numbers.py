@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from radiosity.engine.departure import place_number
-from radiosity.engine.device import choose, upload
-from radiosity.engine.geometry import COLUMN_BITS
-from radiosity.engine.quanta import stream
+from radiosity.device.backend import choose, upload
 from radiosity.errors import MethodError
-from radiosity.method.numbers import DIMENSIONS, NUMBERS, WORDS, make
+from radiosity.sampling.numbers import DIMENSIONS, NUMBERS, WORDS, make
+from radiosity.sampling.streams import Purpose, stream
+from radiosity.tracing.departure import place_number
+from radiosity.tracing.geometry import COLUMN_BITS
 
 ALPHA = 1e-4  # of each test, divided by the number of its comparisons
 
@@ -20,7 +20,7 @@ def points(name, index, *, patch=0, seed=0, bits=32, zero=False, turns=None, of_
 
     types = choose("cpu").types
     numbers = make(name)
-    drawn = np.zeros(WORDS, np.uint32) if zero else numbers.randomisation(stream(seed, 0, 1))
+    drawn = np.zeros(WORDS, np.uint32) if zero else numbers.randomisation(stream(seed, 0, Purpose.NUMBERS))
     randomisation = [dr.opaque(types.UInt32, int(word)) for word in drawn]  # no literals: one kernel
     index = np.asarray(index, np.uint32)
     patches = upload(types.UInt32, np.broadcast_to(np.asarray(patch, np.uint32), index.shape))
@@ -81,7 +81,7 @@ class TestContract:
 
     def test_seeds_and_replicates_differ(self, name):
         assert not np.array_equal(points(name, np.arange(1, 50), seed=1), points(name, np.arange(1, 50), seed=2))
-        drawn = [make(name).randomisation(stream(0, replicate, 1)) for replicate in range(50)]
+        drawn = [make(name).randomisation(stream(0, replicate, Purpose.NUMBERS)) for replicate in range(50)]
         assert len({tuple(d) for d in drawn}) == 50
         assert all(d.shape == (WORDS,) and d.dtype == np.uint32 for d in drawn)
 
@@ -173,7 +173,7 @@ def test_a_line_of_all_patches_of_a_face_fills_the_square(name, cells):
 
 def test_random_is_philox():
     """Known answers of the authors' Random123 (kat_vectors, philox4x32 with 10 rounds)."""
-    from radiosity.method.numbers.random import philox
+    from radiosity.sampling.numbers.random import philox
 
     types = choose("cpu").types
     cases = [

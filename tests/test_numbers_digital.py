@@ -8,11 +8,11 @@ from nets import BASE, T, is_net, top_digits
 from scipy import stats
 from test_numbers import points
 
-from radiosity.engine.device import choose, upload
-from radiosity.engine.quanta import stream
-from radiosity.method.numbers import DIMENSIONS, NUMBERS, faure, make, niederreiter, sobol
-from radiosity.method.numbers.binary import Binary
-from radiosity.method.numbers.quinary import Quinary, packed
+from radiosity.device.backend import choose, upload
+from radiosity.sampling.numbers import DIMENSIONS, NUMBERS, faure, make, niederreiter, sobol
+from radiosity.sampling.numbers.binary import Binary
+from radiosity.sampling.numbers.quinary import Quinary, packed
+from radiosity.sampling.streams import Purpose, stream
 
 DIGITS = {2: 16, 5: 8}
 INDEX = np.r_[1:4000, np.random.default_rng(8).integers(1, 2**32, 2000), 2**31, 2**32 - 1]
@@ -36,7 +36,7 @@ def test_there_is_a_test_for_every_sequence():
 @pytest.mark.parametrize("shifted", [False, True])
 def test_blocks_are_nets(name, s, shifted):
     base = BASE[name]
-    drawn = make(name).randomisation(stream(3, 1, 1)) if shifted else None
+    drawn = make(name).randomisation(stream(3, 1, Purpose.NUMBERS)) if shifted else None
     for m in range(1, 13 if base == 2 else 6):
         for block in (0, 7, (2**32 - 1) // base**m - 1):
             x = top_digits(name, block * base**m + 1 + np.arange(base**m), DIGITS[base], drawn)
@@ -45,10 +45,10 @@ def test_blocks_are_nets(name, s, shifted):
 
 @pytest.mark.parametrize("name", T)
 def test_the_floats_hold_these_digits(name):
-    drawn = make(name).randomisation(stream(4, 0, 1))
+    drawn = make(name).randomisation(stream(4, 0, Purpose.NUMBERS))
     base, most = BASE[name], {2: 24, 5: 8}[BASE[name]]
     x = points(name, INDEX, seed=4).astype(np.float64)
-    assert np.array_equal(drawn, make(name).randomisation(stream(4, 0, 1)))
+    assert np.array_equal(drawn, make(name).randomisation(stream(4, 0, Purpose.NUMBERS)))
     lower = top_digits(name, INDEX, most, drawn) / base**most
     assert (x - lower).min() > -1.2e-7
     assert (x - lower).max() < (1.2e-7 + 5.0**-8 if base == 5 else 1e-12)

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 from test_numbers import points
 
-from radiosity.method.numbers import DIMENSIONS
+from radiosity.sampling.numbers import DIMENSIONS
 
 
 def test_halton_is_scipys():

@@ -4,7 +4,7 @@ from math import comb
 
 import numpy as np
 
-from radiosity.method.numbers import niederreiter, sobol
+from radiosity.sampling.numbers import niederreiter, sobol
 
 
 def times(a: int, b: int) -> int:

@@ -5,10 +5,10 @@ import pytest
 from nets import T, is_net, top_digits
 from scipy import stats
 
-from radiosity.engine.device import choose, upload
-from radiosity.engine.quanta import stream
-from radiosity.method.numbers import DIMENSIONS, NUMBERS, make
-from radiosity.method.numbers.shuffle import SHUFFLE_BITS, key, shuffled
+from radiosity.device.backend import choose, upload
+from radiosity.sampling.numbers import DIMENSIONS, NUMBERS, make
+from radiosity.sampling.numbers.shuffle import SHUFFLE_BITS, key, shuffled
+from radiosity.sampling.streams import Purpose, stream
 
 ALPHA = 1e-4  # of each test, divided by the number of its comparisons
 KEYS = 40_000
@@ -16,7 +16,7 @@ KEYS = 40_000
 
 def words(seed=0):
     types = choose("cpu").types
-    return [types.UInt32(int(word)) for word in make("sobol").randomisation(stream(seed, 0, 1))]
+    return [types.UInt32(int(word)) for word in make("sobol").randomisation(stream(seed, 0, Purpose.NUMBERS))]
 
 
 def keys(count=KEYS, seed=0):
@@ -120,7 +120,7 @@ def test_copies_of_a_net_are_nets():
 def test_legs_are_uncorrelated(name):
     """Coordinates of lines drawn at random on legs 0 and 1, and on 1 and 2: all pairs are uniform in the square."""
     types = choose("cpu").types
-    numbers, drawn = make(name), make(name).randomisation(stream(5, 0, 1))
+    numbers, drawn = make(name), make(name).randomisation(stream(5, 0, Purpose.NUMBERS))
     randomisation = [types.UInt32(int(word)) for word in drawn]
     index = upload(types.UInt32, np.random.default_rng(7).integers(1, 2**SHUFFLE_BITS + 1, 20_000).astype(np.uint32))
     legs = []

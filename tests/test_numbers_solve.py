@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.method.numbers import NUMBERS
+from radiosity.sampling.numbers import NUMBERS
 
 
 @pytest.fixture(scope="module")

@@ -35,8 +35,9 @@ def painted(faces, image, uv, sampler=DEFAULT_SAMPLER, color=None, limit=np.inf,
     colors = np.ones((n, 4, bands), np.float32) if color is None else np.asarray(color, np.float32).reshape(4, -1)[corner]
     images = () if image is None else (np.broadcast_to(image, (*image.shape[:2], bands)).astype(np.float32),)
     which = np.full(n, -1 if image is None else 0, np.int32)
-    return scene, Paint(images, which, np.asarray(uv, np.float32)[corner], np.broadcast_to(colors, (n, 4, bands)), limit,
-                        (sampler,) * len(images))  # fmt: skip
+    return scene, Paint(
+        images, which, np.asarray(uv, np.float32)[corner], np.broadcast_to(colors, (n, 4, bands)), limit, (sampler,) * len(images)
+    )
 
 
 def mean_of(scene, quantity="reflectance", **cut):
@@ -89,8 +90,9 @@ def test_colours_times_an_image_is_the_mean_of_the_product():
 
 def test_limits_do_not_depend_on_the_patch_size():
     image = np.array([[[0.2, 0.2], [1.0, 0.5]]])  # in one band one of the texels is too bright
-    scene, paint = painted([(0, 1, 2, 3)], image, CORNERS, Sampler(filter="nearest"), limit=0.6, reflectance=[0.8, 0.8],
-                           emission=[1, 1])  # fmt: skip
+    scene, paint = painted(
+        [(0, 1, 2, 3)], image, CORNERS, Sampler(filter="nearest"), limit=0.6, reflectance=[0.8, 0.8], emission=[1, 1]
+    )
     color = np.array([0.0, 1.0, 1.0, 0.0])
     ramps = [painted(faces, None, CORNERS, color=color, limit=0.6, reflectance=0.9) for faces in ([(0, 1, 2, 3)], HALVES)]
     for cells in (1, 2, 3, 16):
@@ -100,8 +102,9 @@ def test_limits_do_not_depend_on_the_patch_size():
             found = mean_of(replace(ramp, reflectance_paint=colors), cells=cells)
             np.testing.assert_allclose(found, 0.9 * 0.5 - 0.9 * (1 / 3) ** 2 / 2, rtol=1e-7)
     for bright in (1, 2):
-        both, paint = painted([(0, 1, 2, 3)], image[:, :, :1], CORNERS, Sampler(filter="nearest"), bright * color, 0.6,
-                              reflectance=0.8 / bright)  # fmt: skip
+        both, paint = painted(
+            [(0, 1, 2, 3)], image[:, :, :1], CORNERS, Sampler(filter="nearest"), bright * color, 0.6, reflectance=0.8 / bright
+        )
         for cells in (1, 4, 32):  # texels of 0.16 and 0.6 where the colour is brightest
             found = rd.subdivide(replace(both, reflectance_paint=paint), cells=cells).reflectance
             np.testing.assert_allclose(found.mean(), 0.16 / 8 + 0.6 * 3 / 8, rtol=1e-3)
@@ -125,8 +128,15 @@ def test_white_faces_are_limited(base, limit):
 
 def test_bands_of_large_images_one_after_another(monkeypatch):
     image = generator(2).random((9, 7, 3))
-    scene, paint = painted(HALVES, image, CORNERS * 3.3, color=generator(3).random((4, 3)), limit=0.4,
-                           reflectance=[0.5, 0.9, 0.2], emission=[1, 1, 1])  # fmt: skip
+    scene, paint = painted(
+        HALVES,
+        image,
+        CORNERS * 3.3,
+        color=generator(3).random((4, 3)),
+        limit=0.4,
+        reflectance=[0.5, 0.9, 0.2],
+        emission=[1, 1, 1],
+    )
     scene = replace(scene, reflectance_paint=paint)
     together = rd.subdivide(scene, cells=4).reflectance
     monkeypatch.setattr(image_means, "AT_ONCE", 1)
@@ -175,8 +185,15 @@ def test_texture_coordinates_that_are_not_linear_over_a_parallelogram():
     """A file's quadrilateral is cut in two, as other programs do; one that is not is taken as it is, by small parts."""
     ramp = np.linspace(0.1, 0.9, 64)[None, :, None]
     uv = np.array([(0.1, 0), (0.3, 0), (0.9, 1), (0.1, 1)])
-    part = Part("s", np.array(SQUARE, float), np.array([(0, 1, 2, 3)]), Material((0.5,)), uv, texture=ramp,
-                sampler=Sampler(("clamp", "clamp")))  # fmt: skip
+    part = Part(
+        "s",
+        np.array(SQUARE, float),
+        np.array([(0, 1, 2, 3)]),
+        Material((0.5,)),
+        uv,
+        texture=ramp,
+        sampler=Sampler(("clamp", "clamp")),
+    )
     scene = assemble([part], "test", ReadOptions())
     assert scene.is_quad.tolist() == [False, False]
     assert {tuple(face) for face in scene.faces[:, :3].tolist()} == {(0, 1, 2), (0, 2, 3)}
@@ -214,8 +231,15 @@ def test_coordinates_far_away_are_moved_near():
     image = np.array([[[0.1], [0.9]]])
     for shift in (0.0, 1e6, -3e6):
         uv = CORNERS * 0.1 + (0.3 + shift, shift)
-        part = Part("s", np.array(SQUARE, float), np.array([(0, 1, 2, 3)]), Material((0.9,)), uv, texture=image,
-                    sampler=Sampler(("repeat", "mirror"), "nearest"))  # fmt: skip
+        part = Part(
+            "s",
+            np.array(SQUARE, float),
+            np.array([(0, 1, 2, 3)]),
+            Material((0.9,)),
+            uv,
+            texture=image,
+            sampler=Sampler(("repeat", "mirror"), "nearest"),
+        )
         scene = assemble([part], "test", ReadOptions())
         assert mean_of(scene, cells=1) == pytest.approx([0.09], rel=1e-5)
 
@@ -226,8 +250,14 @@ def test_old_files_repeat_and_are_linear(tmp_path):
     light = rd.Scene.from_arrays(
         [*SQUARE, *((x, y, 1) for x, y, _ in SQUARE)], [(0, 1, 2, 3), (4, 7, 6, 5)], np.full((2, 1), 0.5), [[0.0], [1.0]]
     )
-    both = Paint(paint.images, np.array([0, -1], np.int32), np.repeat(paint.uv, 2, axis=0), np.ones((2, 4, 1), np.float32), 0.95,
-                 paint.samplers)  # fmt: skip
+    both = Paint(
+        paint.images,
+        np.array([0, -1], np.int32),
+        np.repeat(paint.uv, 2, axis=0),
+        np.ones((2, 4, 1), np.float32),
+        0.95,
+        paint.samplers,
+    )
     solution = rd.solve(rd.subdivide(replace(light, reflectance_paint=both), cells=2), quanta=1000)
     solution.save(tmp_path / "new.npz")
     with np.load(tmp_path / "new.npz") as file:
@@ -239,8 +269,12 @@ def test_old_files_repeat_and_are_linear(tmp_path):
     assert old.patches.scene.hash == solution.patches.scene.hash
     assert old.patches.scene.reflectance_paint.sampler(0) == Sampler()
     np.testing.assert_array_equal(old.patches.reflectance, solution.patches.reflectance)
-    for wrong in ([{"wrap": ["repeat", "around"], "filter": "linear"}], [{"wrap": ["clamp"], "filter": "linear"}], 3 * [{}],
-                  2 * [{"wrap": ["clamp", "clamp"], "filter": "linear"}]):  # fmt: skip
+    for wrong in (
+        [{"wrap": ["repeat", "around"], "filter": "linear"}],
+        [{"wrap": ["clamp"], "filter": "linear"}],
+        3 * [{}],
+        2 * [{"wrap": ["clamp", "clamp"], "filter": "linear"}],
+    ):
         meta["paints"]["reflectance_paint"]["samplers"] = wrong
         np.savez(tmp_path / "wrong.npz", **arrays | {"meta": np.array(json.dumps(meta))})
         with pytest.raises(rd.SceneError, match="or damaged"):

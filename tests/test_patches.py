@@ -17,10 +17,15 @@ TRIANGLE = rd.Scene.from_arrays([(0, 0, 0), (3, 0, 1), (1, 2, 0)], [(0, 1, 2)], 
 PARALLELOGRAM = rd.Scene.from_arrays([(0, 0, 0), (3, 0, 1), (4, 2, 1), (1, 2, 0)], [(0, 1, 2, 3)], 0.5, 1.0)
 MIXED = rd.Scene.from_arrays(
     [(0, 0, 0), (3, 0, 1), (4, 2, 1), (1, 2, 0), (0, 0, 9)],
-    [(0, 1, 2, 3), (0, 1, 4, -1), (1, 2, 4, -1), (3, 2, 1, 0)], [0.1, 0.2, 0.3, 0.4], [1, 2, 3, 4],
-    two_sided=[False, True, False, True], back_reflectance=[0.5, 0.6, 0.7, 0.8], back_emission=[5, 6, 7, 8],
-    surface=[0, 1, 1, 2], names=["a", "b", "c"],
-)  # fmt: skip
+    [(0, 1, 2, 3), (0, 1, 4, -1), (1, 2, 4, -1), (3, 2, 1, 0)],
+    [0.1, 0.2, 0.3, 0.4],
+    [1, 2, 3, 4],
+    two_sided=[False, True, False, True],
+    back_reflectance=[0.5, 0.6, 0.7, 0.8],
+    back_emission=[5, 6, 7, 8],
+    surface=[0, 1, 1, 2],
+    names=["a", "b", "c"],
+)
 
 
 def all_cells(columns: int, rows: int, quad: bool):
@@ -83,8 +88,11 @@ def test_points_over_the_rim_belong_to_a_cell_beside_it(quad):
     assert found[2] == (42 if quad else 48)
 
 
-@pytest.mark.parametrize("scene", [TRIANGLE, PARALLELOGRAM, MIXED, *map(rd.load_scene, ("room", "cornell-box"))],
-                         ids=["triangle", "parallelogram", "mixed", "room", "cornell-box"])  # fmt: skip
+@pytest.mark.parametrize(
+    "scene",
+    [TRIANGLE, PARALLELOGRAM, MIXED, *map(rd.load_scene, ("room", "cornell-box"))],
+    ids=["triangle", "parallelogram", "mixed", "room", "cornell-box"],
+)
 @pytest.mark.parametrize("cut", [{"cells": 1}, {"cells": 7}, {"size": 0.31}], ids=str)
 def test_patches_cover_their_faces(scene, cut):
     patches = rd.subdivide(scene, **cut)

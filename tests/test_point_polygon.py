@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.deterministic.factors import from_points
+from radiosity.factors.polygons import from_points
 from radiosity.scene.shapes import box, quad
 
 SQUARE = quad((0, 0, 1), (0, 1, 0), (1, 0, 0))  # looks down

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import radiosity as rd
-from radiosity.deterministic.factors import exchange, from_points
-from radiosity.deterministic.factors.contour import around
+from radiosity.factors.polygons import exchange, from_points
+from radiosity.factors.polygons.contour import around
 from radiosity.scene.shapes import quad
 from validation.closed_forms.rectangles import discs, inclined, parallel, perpendicular
 

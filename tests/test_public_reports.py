@@ -90,12 +90,20 @@ def test_an_image_of_emission_alone_shines(obj):
     [
         ({"emissiveTexture": {"index": 0}}, "emissiveFactor"),
         ({"extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}}, "emissiveFactor"),
-        ({"emissiveTexture": {"index": 0}, "emissiveFactor": [1, 1, 1],
-          "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 0}}}, "emissiveStrength"),
-        ({"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "baseColorTexture": {"index": 0}, "metallicFactor": 0}},
-         "baseColorFactor"),
+        (
+            {
+                "emissiveTexture": {"index": 0},
+                "emissiveFactor": [1, 1, 1],
+                "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 0}},
+            },
+            "emissiveStrength",
+        ),
+        (
+            {"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "baseColorTexture": {"index": 0}, "metallicFactor": 0}},
+            "baseColorFactor",
+        ),
     ],
-)  # fmt: skip
+)
 def test_factors_of_zero_are_told(tmp_path, change, word):
     _, power, _, (told,) = gltf(tmp_path, {**GREY, **change})
     assert not power.any()
@@ -240,9 +248,15 @@ def test_a_colour_in_the_header_of_an_stl_is_told(tmp_path):
 
 
 SAID = [
-    ("# File units = millimeters", "mm"), ("# Units: inches", "in"), ("# unit is cm", "cm"), ("# UNITS=Feet", "ft"),
-    ("# file units = meters", None), ("# unit normals in the end", None), ("# units unknown", None), ("# 12 unity", None),
-]  # fmt: skip
+    ("# File units = millimeters", "mm"),
+    ("# Units: inches", "in"),
+    ("# unit is cm", "cm"),
+    ("# UNITS=Feet", "ft"),
+    ("# file units = meters", None),
+    ("# unit normals in the end", None),
+    ("# units unknown", None),
+    ("# 12 unity", None),
+]
 
 
 @pytest.mark.parametrize(("comment", "unit"), SAID)

@@ -1,19 +1,19 @@
-"""Nothing is made on the device while Dr.Jit records a loop: there it ends the process at some lengths (`engine.recorded`)."""
+"""Nothing is made on the device while Dr.Jit records a loop: there it ends the process at some lengths (`device.recorded`)."""
 
 import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine.device import choose, frozen, upload
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.global_lines.crossing import Crossings
-from radiosity.engine.global_lines.spans import Spans
-from radiosity.engine.lines import land
-from radiosity.engine.quanta import stream
-from radiosity.engine.recorded import RecordedError, loop
-from radiosity.method.numbers import NUMBERS, binary, make, quinary, ready, scrambled_halton
+from radiosity.device.backend import choose, frozen, upload
+from radiosity.device.recorded import RecordedError, loop
+from radiosity.sampling.numbers import NUMBERS, binary, make, quinary, ready, scrambled_halton
+from radiosity.sampling.streams import Purpose, stream
 from radiosity.scene.model import Back
 from radiosity.scene.shapes import box
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.global_lines.crossing import Crossings
+from radiosity.tracing.global_lines.spans import Spans
+from radiosity.tracing.lines import land
 
 LANES = 8
 
@@ -73,7 +73,7 @@ def test_points_of_numbers_that_are_ready_can_be_asked_for_in_a_loop(cold, name)
     import drjit as dr
 
     types = choose().types
-    words = [types.UInt32(int(word)) for word in make(name).randomisation(stream(2, 0, 1))]
+    words = [types.UInt32(int(word)) for word in make(name).randomisation(stream(2, 0, Purpose.NUMBERS))]
     numbers = ready(name, types)
     for bits in numbers.steps():
         found = in_a_loop(types, lambda turn, bits=bits: numbers.points(turn + 9, turn, words, bits)[3])
@@ -84,7 +84,7 @@ def test_points_of_numbers_that_are_ready_can_be_asked_for_in_a_loop(cold, name)
 @pytest.mark.parametrize("name", ["sobol", "niederreiter", "faure", "generalized-faure", "scrambled-halton"])
 def test_tables_of_numbers_that_are_not_ready_are_missed_in_a_loop(cold, name):
     types = choose().types
-    words = [types.UInt32(int(word)) for word in make(name).randomisation(stream(2, 0, 1))]
+    words = [types.UInt32(int(word)) for word in make(name).randomisation(stream(2, 0, Purpose.NUMBERS))]
     with pytest.raises(RecordedError):
         in_a_loop(types, lambda turn: make(name).points(turn + 9, turn, words, 32)[3])
 
@@ -111,7 +111,7 @@ def test_lines_that_pass_backs_find_their_records_made(passing):
 
 
 def test_rays_for_pictures_and_checks_find_their_records_made(passing):
-    from radiosity.engine.caster import first_hits
+    from radiosity.tracing.caster import first_hits
 
     hits = first_hits(passing, np.array([[0.5, 0.5, -1.0]]), np.array([[0.0, 0.0, 1.0]]))
     assert hits.front[0]

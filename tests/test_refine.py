@@ -7,8 +7,8 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli.app import run as command
-from radiosity.engine import run
 from radiosity.patches.nesting import halved, parents
+from radiosity.run import run
 from radiosity.solution.refinement import RefineCheck
 
 
@@ -125,8 +125,9 @@ def test_what_no_line_tells_is_a_question_mark(quanta, known):
     """Of a lamp, a plate far above it, and one beside it that no light reaches."""
     corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 9), (0, 1, 9), (1, 1, 9), (1, 0, 9)]
     corners += [(5, 0, 0), (6, 0, 0), (6, 1, 0), (5, 1, 0)]
-    scene = rd.Scene.from_arrays(corners, np.arange(12).reshape(3, 4), [0, 0.2, 0.5], [1.0, 0, 0], surface=range(3),
-                                 names=["lamp", "far", "never"])  # fmt: skip
+    scene = rd.Scene.from_arrays(
+        corners, np.arange(12).reshape(3, 4), [0, 0.2, 0.5], [1.0, 0, 0], surface=range(3), names=["lamp", "far", "never"]
+    )
     found = rd.refine_check(rd.subdivide(scene, cells=1), quanta=quanta, replicates=2)
     assert (found.coarse.arrivals[1] > 0) == known
     text, rows = found.report(), {row["surface"]: row for row in found.table()}

@@ -11,14 +11,15 @@ import pytest
 from enclosures import cube
 
 import radiosity as rd
-from radiosity.engine import firing_process, residue, residue_walks
-from radiosity.engine.bands import QUANTUM
-from radiosity.engine.device import choose, upload
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.problem import Problem
-from radiosity.engine.process import make
-from radiosity.engine.quanta import owed, phases
+from radiosity.algorithms.firing import process as firing_process
+from radiosity.algorithms.firing import residue, residue_walks
+from radiosity.algorithms.table import make
+from radiosity.device.backend import choose, upload
+from radiosity.problem.bands import QUANTUM
+from radiosity.problem.model import Problem
+from radiosity.problem.quanta import owed, phases
 from radiosity.scene.shapes import box
+from radiosity.tracing.geometry import Geometry
 
 ALPHA = 1e-4  # of each test of a mean, two-sided; seeds are fixed
 COLOURS = (0.9, 0.7, 0.5)
@@ -29,9 +30,14 @@ def cavity(reflectance=0.9, gap=0.01, cells=4) -> rd.Patches:
     """1 m x 1 m x gap; of one band or several."""
     quads, rho = box((0, 0, 0), (1, 1, gap), inward=True), np.tile(np.atleast_1d(reflectance), (6, 1))
     scene = rd.Scene.from_arrays(
-        np.concatenate(quads), np.arange(24).reshape(6, 4), rho, 1 - rho, surface=range(6), names=[f"wall {i}" for i in range(6)],
+        np.concatenate(quads),
+        np.arange(24).reshape(6, 4),
+        rho,
+        1 - rho,
+        surface=range(6),
+        names=[f"wall {i}" for i in range(6)],
         bands=[f"band {i}" for i in range(rho.shape[1])],
-    )  # fmt: skip
+    )
     return rd.subdivide(scene, cells=cells)
 
 

@@ -17,9 +17,13 @@ pytestmark = pytest.mark.slow
 def grey_box(reflectance, cells) -> rd.Patches:
     quads = box((0, 0, 0), (1, 1, 1), inward=True)
     scene = rd.Scene.from_arrays(
-        np.concatenate(quads), np.arange(24).reshape(6, 4), reflectance, 1 - reflectance, surface=range(6),
+        np.concatenate(quads),
+        np.arange(24).reshape(6, 4),
+        reflectance,
+        1 - reflectance,
+        surface=range(6),
         names=[f"wall {i}" for i in range(6)],
-    )  # fmt: skip
+    )
     return rd.subdivide(scene, cells=cells)
 
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine.caster import first_hits
-from radiosity.engine.device import choose, upload
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.lines import land, patch_of, place_of
+from radiosity.device.backend import choose, upload
 from radiosity.image.lookup import Lookup
 from radiosity.patches import cells
+from radiosity.tracing.caster import first_hits
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.lines import land, patch_of, place_of
 
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
 RAISED = [(x + 4, y, z) for x, y, z in SQUARE]

@@ -35,12 +35,20 @@ def everything() -> rd.Scene:
     back = np.where(np.arange(n) == 1, Back.OPEN, np.arange(n) % 3)
     reflectance = np.where(back[:, None] == Back.OPEN, 0.0, random.random((n, 2)) / 2)
     scene = rd.Scene.from_arrays(
-        vertices, [*room.faces.tolist(), triangle], reflectance, random.random((n, 2)),
-        surface=[*room.surface, 0], names=room.names,
-        back=back, back_reflectance=random.random((n, 2)) / 2, back_emission=random.random((n, 2)),
-        bands=("warm", "cold"), photometric=True, source="everything",
+        vertices,
+        [*room.faces.tolist(), triangle],
+        reflectance,
+        random.random((n, 2)),
+        surface=[*room.surface, 0],
+        names=room.names,
+        back=back,
+        back_reflectance=random.random((n, 2)) / 2,
+        back_emission=random.random((n, 2)),
+        bands=("warm", "cold"),
+        photometric=True,
+        source="everything",
         cameras=(Camera((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (0.0, 1.0, 0.0), 33.0, 640, 480), Camera((0, 0, 1), (1, 1, 1))),
-    )  # fmt: skip
+    )
     sizes = np.where(np.arange(len(room.names)) % 2, 0.5, np.nan)
     return replace(
         scene, patch_size=sizes, scale=0.01, reflectance_paint=paint(random, n, 0.9), emission_paint=paint(random, n, 7.0)
@@ -145,10 +153,11 @@ DAMAGE = {
     "arrivals below zero": spoilt("arrivals", lambda old, arrays: -1),
     "an infinite power": spoilt("surface_power", lambda old, arrays: np.inf),
     "an image after the last": spoilt("reflectance_paint_image", lambda old, arrays: 2),
-    "a texture that is placed nowhere": lambda arrays: arrays | {
-        "emission_paint_uv": np.where(np.arange(4)[:, None] == 3, np.nan, arrays["emission_paint_uv"]).astype(np.float32)
-    },
-}  # fmt: skip
+    "a texture that is placed nowhere": lambda arrays: (
+        arrays
+        | {"emission_paint_uv": np.where(np.arange(4)[:, None] == 3, np.nan, arrays["emission_paint_uv"]).astype(np.float32)}
+    ),
+}
 
 
 @pytest.mark.parametrize("damage", DAMAGE)

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.scene.check import check
-from radiosity.scene.report import Report
+from radiosity.diagnostics.check import check
+from radiosity.diagnostics.report import Report
 
 BUILT_IN = ("cornell-box", "room", "labyrinth-0.5")
 STRANGE = ("corridor.mgf", "office2/office2.mgf")  # of RenderPark
@@ -42,19 +42,24 @@ def load(strangers_or_none):
 def rotation(seed: int) -> np.ndarray:
     """(3, 3) uniformly drawn."""
     w, x, y, z = (q := np.random.Generator(np.random.Philox(seed)).normal(size=4)) / np.linalg.norm(q)
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ])  # fmt: skip
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
 
 
 def placed(scene: rd.Scene, scale: float, turn: np.ndarray | None = None, move=(0.0, 0.0, 0.0)) -> rd.Scene:
     """Scaled, turned, and then moved by so many times its extent."""
     vertices = scale * scene.vertices @ (np.eye(3) if turn is None else turn).T
     vertices = vertices + scale * np.ptp(scene.bounds, axis=0).max() * np.asarray(move)
-    return replace(scene, vertices=vertices if turn is not None or np.any(move) else scale * scene.vertices,
-                   patch_size=scale * scene.patch_size)  # fmt: skip
+    return replace(
+        scene,
+        vertices=vertices if turn is not None or np.any(move) else scale * scene.vertices,
+        patch_size=scale * scene.patch_size,
+    )
 
 
 def said(report: Report) -> list[tuple[str, str, list[str], list[float]]]:

@@ -78,7 +78,7 @@ BAD = {
     "backs for other faces": ({"back": [0, 1, 2]}, "back must hold"),
     "reflectance of one behind": ({"two_sided": True, "back_reflectance": 1.0}, "back reflectance of face 0"),
     "negative emission behind": ({"two_sided": True, "back_emission": -1.0}, "back emission of face 0"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("changes", "message"), BAD.values(), ids=BAD)
@@ -166,9 +166,13 @@ def test_hash_tells_scenes_apart():
 
 number = st.one_of(st.floats(-2, 2), st.sampled_from([0.0, 1.0, 0.5, np.nan, np.inf, -np.inf, 1e300, 1e-300, 1e17]))
 anything = st.one_of(
-    st.none(), st.text(max_size=3), number, st.integers(-(2**70), 2**70), st.booleans(),
+    st.none(),
+    st.text(max_size=3),
+    number,
+    st.integers(-(2**70), 2**70),
+    st.booleans(),
     st.lists(st.one_of(number, st.text(max_size=2), st.none(), st.lists(number, max_size=3)), max_size=4),
-)  # fmt: skip
+)
 
 
 def matrix(values, rows, columns):
@@ -186,12 +190,28 @@ plausible = st.fixed_dictionaries(
     optional={
         "surface": st.lists(st.integers(-1, 3), max_size=5),
         "two_sided": st.one_of(st.booleans(), st.lists(st.booleans(), max_size=5)),
-        "back": st.lists(st.integers(-1, 3), max_size=5), "names": st.lists(st.text(max_size=3), max_size=4),
-        "back_reflectance": number, "back_emission": number, "bands": st.lists(st.text(max_size=3), max_size=4),
+        "back": st.lists(st.integers(-1, 3), max_size=5),
+        "names": st.lists(st.text(max_size=3), max_size=4),
+        "back_reflectance": number,
+        "back_emission": number,
+        "bands": st.lists(st.text(max_size=3), max_size=4),
     },
-)  # fmt: skip
-ARGUMENTS = ("vertices", "faces", "reflectance", "emission", "surface", "two_sided", "back", "names", "bands", "back_reflectance",
-             "back_emission", "cameras", "photometric")  # fmt: skip
+)
+ARGUMENTS = (
+    "vertices",
+    "faces",
+    "reflectance",
+    "emission",
+    "surface",
+    "two_sided",
+    "back",
+    "names",
+    "bands",
+    "back_reflectance",
+    "back_emission",
+    "cameras",
+    "photometric",
+)
 # one or two arguments of a good call are replaced, so that a bad one is not hidden by an earlier one
 wild = st.dictionaries(st.sampled_from(ARGUMENTS), anything, min_size=1, max_size=2)
 

@@ -7,12 +7,18 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli.app import run
-from radiosity.scene.check import check
+from radiosity.diagnostics.check import check
 from radiosity.scene.dark_parts import dark_parts
 from radiosity.scene.reached import Lit
 
-WALLS = {"floor": (1, 2, 3, 4), "ceiling": (5, 8, 7, 6), "south": (1, 5, 6, 2), "north": (4, 3, 7, 8), "west": (1, 4, 8, 5),
-         "east": (2, 6, 7, 3)}  # fmt: skip
+WALLS = {
+    "floor": (1, 2, 3, 4),
+    "ceiling": (5, 8, 7, 6),
+    "south": (1, 5, 6, 2),
+    "north": (4, 3, 7, 8),
+    "west": (1, 4, 8, 5),
+    "east": (2, 6, 7, 3),
+}
 AREAS = {"floor": 20, "ceiling": 20, "south": 15, "north": 15, "west": 12, "east": 12}
 
 
@@ -96,9 +102,14 @@ def test_a_sheet_lit_from_both_sides_has_two_rows(room, tmp_path):
     scene = patches.scene
     sheet = [(1, 1, 0.8), (2, 1, 0.8), (2, 2, 0.8), (1, 2, 0.8)]
     both = rd.Scene.from_arrays(
-        [*scene.vertices, *sheet], [*scene.faces, np.arange(4) + len(scene.vertices)], [*scene.reflectance[:, 0], 0.5],
-        [*scene.emission[:, 0], 0], surface=[*scene.surface, 7], names=[*scene.names, "top"], back=[*scene.back, 1],
-    )  # fmt: skip
+        [*scene.vertices, *sheet],
+        [*scene.faces, np.arange(4) + len(scene.vertices)],
+        [*scene.reflectance[:, 0], 0.5],
+        [*scene.emission[:, 0], 0],
+        surface=[*scene.surface, 7],
+        names=[*scene.names, "top"],
+        back=[*scene.back, 1],
+    )
     solution = rd.solve(rd.subdivide(both, cells=2), rays=100_000)
     top, under = (row for row in solution.surface_table() if row["surface"] == "top")
     assert (top["side"], under["side"]) == ("front", "back")
@@ -123,10 +134,14 @@ def with_sheet(room, cells, corners, faces, **options) -> rd.Patches:
     paint = scene.names.index("room/paint")
     faces, n = np.array(faces) + len(scene.vertices), len(faces)
     every = rd.Scene.from_arrays(
-        [*scene.vertices, *corners], [*scene.faces, *faces], [*scene.reflectance[:, 0], *[0.6] * n],
+        [*scene.vertices, *corners],
+        [*scene.faces, *faces],
+        [*scene.reflectance[:, 0], *[0.6] * n],
         [*scene.emission[:, 0], *[0] * n],
-        surface=[*scene.surface, *[paint] * n], names=scene.names, back=[*scene.back, *[1] * n],
-    )  # fmt: skip
+        surface=[*scene.surface, *[paint] * n],
+        names=scene.names,
+        back=[*scene.back, *[1] * n],
+    )
     return rd.subdivide(every, cells=cells)
 
 
@@ -223,8 +238,10 @@ def test_net_power_covers_the_truth(room):
     """The intervals of 20 runs hold the value of a long one: 17 or fewer of 20 have a probability of 8 %, twice that is rare."""
     patches = room(ONE_SIDED, cells=1)
     truth = rows_of(rd.solve(patches, rays=4_000_000, seed=99))["floor"]["net"]
-    held = [row["net low"] < truth < row["net high"]
-            for row in (rows_of(rd.solve(patches, rays=5_000, seed=seed))["floor"] for seed in range(20))]  # fmt: skip
+    held = [
+        row["net low"] < truth < row["net high"]
+        for row in (rows_of(rd.solve(patches, rays=5_000, seed=seed))["floor"] for seed in range(20))
+    ]
     assert sum(held) >= 17
 
 
@@ -235,7 +252,9 @@ def test_tables_on_disk_and_the_methods_that_count_no_lines(room, tmp_path):
     with (tmp_path / "a.surfaces.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [(row["surface"], row["side"], float(row["area [m²]"])) for row in rows[:2]] == [
-        ("floor/paint", "front", 20), ("ceiling/paint", "front", 20)]  # fmt: skip
+        ("floor/paint", "front", 20),
+        ("ceiling/paint", "front", 20),
+    ]
     assert {"dark [m²]", "net [W]", "net error [W]", "net low [W]", "net high [W]"} <= set(rows[0])
     lined = rd.solve(room(cells=1), rays=60_000)
     lined.export(tmp_path / "b.csv")

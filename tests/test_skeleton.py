@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine.problem import Problem
+from radiosity.problem.model import Problem
 
 LINES = 256  # a patch
 FILE = Path(__file__).parents[1] / "docs" / "skeletons" / "algorithm.py"

@@ -9,11 +9,11 @@ import pytest
 from enclosures import cube
 
 import radiosity as rd
-from radiosity.engine.bands import QUANTUM
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.problem import Problem
-from radiosity.engine.process import make
+from radiosity.algorithms.table import make
+from radiosity.device.backend import choose
+from radiosity.problem.bands import QUANTUM
+from radiosity.problem.model import Problem
+from radiosity.tracing.geometry import Geometry
 
 
 @pytest.fixture(scope="module")
@@ -272,8 +272,11 @@ def test_going_on_with_something_else_is_refused(patches, solution):
     with pytest.raises(rd.MethodError, match="takes a Solution"):
         rd.solve(patches, rays=4_000_000, resume="room.npz")
     with pytest.raises(rd.MethodError, match="scene"):
-        rd.solve(rd.subdivide(rd.load_scene("labyrinth"), cells=1), rays=10**6, resume=rd.solve(
-            rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=1), rays=10**6))  # fmt: skip
+        rd.solve(
+            rd.subdivide(rd.load_scene("labyrinth"), cells=1),
+            rays=10**6,
+            resume=rd.solve(rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=1), rays=10**6),
+        )
 
 
 def test_a_coloured_run_goes_on_from_a_rung_only():
@@ -301,7 +304,7 @@ def test_nothing_received_is_no_error_to_wait_for():
 
 
 def test_what_counters_cannot_hold_is_refused(patches, monkeypatch):
-    from radiosity.engine import budget, run
+    from radiosity.run import budget, run
 
     monkeypatch.setattr(run, "FULL", 1e5)
     monkeypatch.setattr(budget, "FULL", 1e5)

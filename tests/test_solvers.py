@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
 import radiosity as rd
-from radiosity.deterministic.solvers import SOLVERS, System, solve, southwell
+from radiosity.factors.solvers import SOLVERS, System, solve, southwell
 
 
 def system(seed: int, n: int, bands: int = 2, *, largest: float = 0.9, closed: bool = True) -> System:

@@ -9,8 +9,8 @@ from members import PLAIN, accepted
 from states import coloured, grey
 
 import radiosity as rd
-from radiosity.engine import budget
-from radiosity.engine.process import PROCESSES
+from radiosity.algorithms.table import PROCESSES
+from radiosity.run import budget
 
 pytestmark = pytest.mark.filterwarnings("ignore::radiosity.errors.RadiosityWarning")  # of few lines
 

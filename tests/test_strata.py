@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from radiosity.method.numbers import strata
+from radiosity.sampling.numbers import strata
 
 
 def radical_inverse(index: np.ndarray, base: int) -> np.ndarray:

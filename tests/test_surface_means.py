@@ -11,8 +11,8 @@ from enclosures import cube, cube_irradiance
 from scipy import stats
 
 import radiosity as rd
-from radiosity.engine import firing
-from radiosity.method.numbers import NUMBERS
+from radiosity.algorithms.firing import counters as firing
+from radiosity.sampling.numbers import NUMBERS
 
 RAYS, SEEDS = 200_000, 8
 HALF = 0.44  # of what random numbers have

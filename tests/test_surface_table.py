@@ -28,9 +28,20 @@ def made_up() -> rd.Solution:
     power *= np.array([0.99, 1.01])[:, None, None]  # the two replicates lie a hundredth about their mean
     book = {"emitted": 1.0, "rounding": 0.0, "absorbed": 1.0, "escaped": 0.0, "lost": 0.0, "closes": True}
     return rd.Solution(
-        patches, irradiance, error, np.array([0, 1, 29, 30]), 60, 1.0, 100, 2, (book, book), "complete",
-        {"method": "made up", "seed": 0}, {}, np.stack([power, power / 2]),
-    )  # fmt: skip
+        patches,
+        irradiance,
+        error,
+        np.array([0, 1, 29, 30]),
+        60,
+        1.0,
+        100,
+        2,
+        (book, book),
+        "complete",
+        {"method": "made up", "seed": 0},
+        {},
+        np.stack([power, power / 2]),
+    )
 
 
 def test_every_column():
@@ -46,10 +57,15 @@ def test_every_column():
             reflected = (area * irradiance[:, band] * REFLECTANCE[:, band])[here].sum()
             emitted = (area * EMISSION[:, band])[here].sum()
             expected = {
-                "emitted": emitted, "received": received, "reflected": reflected, "absorbed": received - reflected,
-                "left": emitted + reflected, "net": emitted + reflected - received,
-                "radiosity": (emitted + reflected) / max(area[here].sum(), 1), "irradiance": received / max(area[here].sum(), 1),
-            }  # fmt: skip
+                "emitted": emitted,
+                "received": received,
+                "reflected": reflected,
+                "absorbed": received - reflected,
+                "left": emitted + reflected,
+                "net": emitted + reflected - received,
+                "radiosity": (emitted + reflected) / max(area[here].sum(), 1),
+                "irradiance": received / max(area[here].sum(), 1),
+            }
             assert {key: row[key + tail] for key in expected} == pytest.approx(expected, rel=1e-12)
     assert [rows[name]["arrivals"] for name in NAMES] == [0, 1, 0, 59]
     assert [rows[name]["few"] for name in NAMES] == [1, 1, 0, 1]
@@ -76,9 +92,13 @@ def test_a_report_of_many_surfaces_is_cut_off():
     corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
     count = MOST_ROWS + 5
     scene = rd.Scene.from_arrays(
-        np.concatenate([corners + np.array([3 * i, 0, 0]) for i in range(count)]), np.arange(4 * count).reshape(-1, 4), 0.5,
-        np.arange(1.0, count + 1), surface=range(count), names=[f"s{i}" for i in range(count)],
-    )  # fmt: skip
+        np.concatenate([corners + np.array([3 * i, 0, 0]) for i in range(count)]),
+        np.arange(4 * count).reshape(-1, 4),
+        0.5,
+        np.arange(1.0, count + 1),
+        surface=range(count),
+        names=[f"s{i}" for i in range(count)],
+    )
     lines = rd.solve(rd.subdivide(scene, cells=1), quanta=100, replicates=2).report().splitlines()
     end = lines.index("... and 5 more surfaces (export a .csv for all)")
     assert [line.split()[0] for line in lines[end - MOST_ROWS : end]] == [f"s{i}" for i in reversed(range(5, count))]

@@ -11,10 +11,10 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli import main
-from radiosity.engine import budget, run
-from radiosity.engine.problem import Problem
-from radiosity.engine.snapshot import Snapshot
-from radiosity.engine.target import nothing_before_lights
+from radiosity.problem.model import Problem
+from radiosity.run import budget, run
+from radiosity.run.snapshot import Snapshot
+from radiosity.run.target import nothing_before_lights
 from radiosity.solution.errors import margin, relative_error
 from radiosity.solution.intervals import FEW
 
@@ -26,8 +26,9 @@ def sensor(side=SIDE, height=HEIGHT, reflectance=0.2) -> tuple[rd.Patches, float
     """A lamp of a square metre, a small sensor far above it, and the sensor's irradiance."""
     a, c, h = 0.5 - side / 2, 0.5 + side / 2, height
     corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (a, a, h), (a, c, h), (c, c, h), (c, a, h)]
-    scene = rd.Scene.from_arrays(corners, [(0, 1, 2, 3), (4, 5, 6, 7)], [0.0, reflectance], [1.0, 0.0], surface=[0, 1],
-                                 names=["lamp", "sensor"])  # fmt: skip
+    scene = rd.Scene.from_arrays(
+        corners, [(0, 1, 2, 3), (4, 5, 6, 7)], [0.0, reflectance], [1.0, 0.0], surface=[0, 1], names=["lamp", "sensor"]
+    )
     x, y = np.meshgrid(*2 * [(np.arange(200) + 0.5) / 200 - 0.5])
     return rd.subdivide(scene, cells=1), float((h * h / (math.pi * (x * x + y * y + h * h) ** 2)).mean())
 
@@ -59,8 +60,9 @@ def plates(widths, reflectance=0.5, bands=1) -> rd.Patches:
     n = len(widths)
     rho = np.broadcast_to(np.asarray(reflectance, float).reshape(-1, 1), (n, bands)) * np.linspace(1, 0.8, bands)
     emission = np.ones((n, bands))
-    scene = rd.Scene.from_arrays(corners.reshape(-1, 3), np.arange(4 * n).reshape(-1, 4), rho, emission,
-                                 bands=tuple(f"band {b}" for b in range(bands)))  # fmt: skip
+    scene = rd.Scene.from_arrays(
+        corners.reshape(-1, 3), np.arange(4 * n).reshape(-1, 4), rho, emission, bands=tuple(f"band {b}" for b in range(bands))
+    )
     return rd.subdivide(scene, cells=1)
 
 
@@ -188,8 +190,9 @@ def test_a_target_that_no_line_tells_of_goes_on():
 def test_targets_of_few_lines_are_reached_in_95_percent(numbers, target):
     """200 runs; at 95 % fewer than 182 have a probability of 1 %."""
     patches, truth = sensor()
-    errors = [off(rd.solve(patches, error=target, error_of="surface:sensor", seed=seed, numbers=numbers), truth)
-              for seed in range(200)]  # fmt: skip
+    errors = [
+        off(rd.solve(patches, error=target, error_of="surface:sensor", seed=seed, numbers=numbers), truth) for seed in range(200)
+    ]
     assert (np.array(errors) <= target).sum() >= 182
 
 
@@ -241,9 +244,13 @@ def test_what_is_known_of_an_error_is_how_many_lines_landed_on_its_surface():
     alone, _ = sensor()
     scene = alone.scene
     screen = rd.Scene.from_arrays(
-        [*scene.vertices, (1, 0, 1), (1, 1, 1), (2, 1, 1), (2, 0, 1)], [(0, 1, 2, 3), (4, 5, 6, 7), (8, 9, 10, 11)],
-        [0.0, 0.2, 0.0], [1.0, 0.0, 0.0], surface=[0, 1, 2], names=["lamp", "sensor", "screen"],
-    )  # fmt: skip
+        [*scene.vertices, (1, 0, 1), (1, 1, 1), (2, 1, 1), (2, 0, 1)],
+        [(0, 1, 2, 3), (4, 5, 6, 7), (8, 9, 10, 11)],
+        [0.0, 0.2, 0.0],
+        [1.0, 0.0, 0.0],
+        surface=[0, 1, 2],
+        names=["lamp", "sensor", "screen"],
+    )
     patches = rd.subdivide(screen, cells=1)
     with pytest.warns(rd.RadiosityWarning, match="surface:sensor was not reached") as told:
         solution = rd.solve(patches, error=0.01, error_of="surface:sensor", rays=QUICK)
@@ -365,7 +372,7 @@ def test_a_smallest_stage_of_more_lines_is_told(name):
 
 
 def test_progress_of_an_error_with_a_limit():
-    from radiosity.engine.progress import Teller
+    from radiosity.run.progress import Teller
 
     seen = []
     teller = Teller(budget.Budget(error=0.01, rays=1000), seen.append)

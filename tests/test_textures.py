@@ -8,7 +8,7 @@ from mitsuba_rays import mitsuba_hits, our_hits
 from samples import CORNERS, Gltf, png
 
 import radiosity as rd
-from radiosity.engine import device
+from radiosity.device import backend as device
 from radiosity.errors import RadiosityWarning, SceneError
 from radiosity.scene import texture_memory
 from radiosity.scene.sampler import Sampler

@@ -1,4 +1,4 @@
-"""Threads of one process take turns with Dr.Jit (`engine.turn`)."""
+"""Threads of one process take turns with Dr.Jit (`device.turn`)."""
 
 import os
 import signal
@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine import device
-from radiosity.engine import turn as turns
-from radiosity.engine.caster import first_hits
-from radiosity.engine.device import choose
-from radiosity.engine.firing import Engine
-from radiosity.engine.geometry import Geometry
-from radiosity.engine.global_lines.spans import Spans
-from radiosity.engine.matrix.missed import missed
-from radiosity.engine.run import Run
-from radiosity.engine.turn import aside, turn
-from radiosity.engine.visibility import Polygons, visible_share
+from radiosity.algorithms.firing.counters import Engine
+from radiosity.device import backend as device
+from radiosity.device import turn as turns
+from radiosity.device.backend import choose
+from radiosity.device.turn import aside, turn
+from radiosity.diagnostics.leaks import follow
+from radiosity.factors.missed import missed
 from radiosity.image import render
-from radiosity.scene.leaks import follow
+from radiosity.run.run import Run
+from radiosity.tracing.caster import first_hits
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.global_lines.spans import Spans
+from radiosity.tracing.visibility import Polygons, visible_share
 
 LONG = 60  # seconds: nothing waits so long, unless it waits for ever
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.engine import unmet
-from radiosity.engine.global_lines import pooled, pooling
+from radiosity.algorithms.global_lines import pooled, pooling
+from radiosity.tally import unmet
 
 MEANS = {
     "transillumination": rd.Method(lines="bundles", order="regular"),

@@ -5,11 +5,11 @@ import pytest
 from enclosures import cube, sphere
 
 import radiosity as rd
-from radiosity.engine.device import choose
-from radiosity.engine.geometry import INSET, OFFSET, Geometry
-from radiosity.engine.visibility import Polygons, _records, visible_share
+from radiosity.device.backend import choose
 from radiosity.errors import MethodError
 from radiosity.scene.shapes import quad
+from radiosity.tracing.geometry import INSET, OFFSET, Geometry
+from radiosity.tracing.visibility import Polygons, _records, visible_share
 from validation.closed_forms.rectangles import parallel
 
 

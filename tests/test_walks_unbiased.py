@@ -10,7 +10,7 @@ from methods import critical
 from replicates import powers
 
 import radiosity as rd
-from radiosity.engine.walks.flock import Legs
+from radiosity.algorithms.walks.flock import Legs
 
 RUNS, WALKS = 300, 150
 

@@ -33,7 +33,7 @@ TEXTS = {
     "interpolation or cut (see `validation/rtrace.py` for the options). Lamps are black, as Radiance's are. In the "
     "furnace, whose faces both emit and reflect, they are mixtures of plastic and glow. Its random numbers differ from run to "
     "run, so the figures of this table do too.",
-}  # fmt: skip
+}
 
 
 def main(arguments: list[str]) -> int:

@@ -101,8 +101,15 @@ class Patchwise:
         return self.p > ALPHA and (self.discrete or self.worst[1] > ALPHA)
 
 
-def patchwise(name: str, runs: Runs, theirs: np.ndarray, *, discretisation: np.ndarray | None = None,
-              rows: np.ndarray | None = None, seed: int = 1) -> Patchwise:  # fmt: skip
+def patchwise(
+    name: str,
+    runs: Runs,
+    theirs: np.ndarray,
+    *,
+    discretisation: np.ndarray | None = None,
+    rows: np.ndarray | None = None,
+    seed: int = 1,
+) -> Patchwise:
     """Compare irradiance of patches.
 
     Args:

@@ -73,19 +73,38 @@ def flat() -> list[Configuration]:
     spans = ((0, 1), (0, 1), (0.6, 2.0), (0.5, 1.3))
     apart = ((0.2, 1.0), (0, 1), (0.1, 0.9), (0.3, 1.6))
     return [
-        _flat("opposed rectangles 2 x 1 at 0.7 (C-11)", 0.49 * rectangles.parallel(2 / 0.7, 1 / 0.7),
-              quad((0, 0, 0), (2, 0, 0), (0, 1, 0)), quad((0, 0, 0.7), (0, 1, 0), (2, 0, 0))),
-        _flat("opposed squares of a cube (C-11)", rectangles.parallel(1, 1), quad((0, 0, 0), (1, 0, 0), (0, 1, 0)),
-              quad((0, 0, 1), (0, 1, 0), (1, 0, 0))),
-        _flat("rectangles square on each other, common edge (C-14)", rectangles.perpendicular(0.8, 1.5),
-              *_hinged(np.pi / 2, 0.8, 1.5)),
+        _flat(
+            "opposed rectangles 2 x 1 at 0.7 (C-11)",
+            0.49 * rectangles.parallel(2 / 0.7, 1 / 0.7),
+            quad((0, 0, 0), (2, 0, 0), (0, 1, 0)),
+            quad((0, 0, 0.7), (0, 1, 0), (2, 0, 0)),
+        ),
+        _flat(
+            "opposed squares of a cube (C-11)",
+            rectangles.parallel(1, 1),
+            quad((0, 0, 0), (1, 0, 0), (0, 1, 0)),
+            quad((0, 0, 1), (0, 1, 0), (1, 0, 0)),
+        ),
+        _flat(
+            "rectangles square on each other, common edge (C-14)",
+            rectangles.perpendicular(0.8, 1.5),
+            *_hinged(np.pi / 2, 0.8, 1.5),
+        ),
         _flat("rectangles at 60°, common edge (C-16)", rectangles.inclined(1.0, 0.8, np.pi / 3), *hinge_60),
         _flat("rectangles at 135°, common edge (C-16)", rectangles.inclined(0.7, 1.2, 3 * np.pi / 4), *hinge_135),
-        _flat("parallel rectangles, offset", offset_rectangles.parallel(*spans, 0.8), quad((0, 0, 0), (1, 0, 0), (0, 1, 0)),
-              quad((0.6, 0.5, 0.8), (0, 0.8, 0), (1.4, 0, 0))),
-        _flat("rectangles square on each other, apart and offset", offset_rectangles.perpendicular(*apart),
-              quad((0.2, 0, 0), (0.8, 0, 0), (0, 1, 0)), quad((0, 0.3, 0.1), (0, 1.3, 0), (0, 0, 0.8))),
-    ]  # fmt: skip
+        _flat(
+            "parallel rectangles, offset",
+            offset_rectangles.parallel(*spans, 0.8),
+            quad((0, 0, 0), (1, 0, 0), (0, 1, 0)),
+            quad((0.6, 0.5, 0.8), (0, 0.8, 0), (1.4, 0, 0)),
+        ),
+        _flat(
+            "rectangles square on each other, apart and offset",
+            offset_rectangles.perpendicular(*apart),
+            quad((0.2, 0, 0), (0.8, 0, 0), (0, 1, 0)),
+            quad((0, 0.3, 0.1), (0, 1.3, 0), (0, 0, 0.8)),
+        ),
+    ]
 
 
 def convex() -> list[Configuration]:
@@ -95,29 +114,41 @@ def convex() -> list[Configuration]:
     inward = [f if np.linalg.det(f) < 0 else f[::-1] for f in faces]
     inner, outer = ball(1.0, 3), turned(ball(2.0, 3))
     cone = [(f + np.array([(0, 0, 1.5), (0, 0, 0), (0, 0, 0)]))[::-1] for f in disc(1.0, 0.0, 24)]
-    box = [quad((-2, -2, -2), (4, 0, 0), (0, 4, 0)), quad((-2, -2, 2), (0, 4, 0), (4, 0, 0)),
-           quad((-2, -2, -2), (0, 0, 4), (4, 0, 0)), quad((-2, 2, -2), (4, 0, 0), (0, 0, 4)),
-           quad((-2, -2, -2), (0, 4, 0), (0, 0, 4)), quad((2, -2, -2), (0, 0, 4), (0, 4, 0))]  # fmt: skip
+    box = [
+        quad((-2, -2, -2), (4, 0, 0), (0, 4, 0)),
+        quad((-2, -2, 2), (0, 4, 0), (4, 0, 0)),
+        quad((-2, -2, -2), (0, 0, 4), (4, 0, 0)),
+        quad((-2, 2, -2), (4, 0, 0), (0, 0, 4)),
+        quad((-2, -2, -2), (0, 4, 0), (0, 0, 4)),
+        quad((2, -2, -2), (0, 0, 4), (0, 4, 0)),
+    ]
 
     def ratio(one: Facets, other: Facets) -> float:
         return _area(one) / _area(other)
 
     return [
-        Configuration("regular tetrahedron, a side to another", 1 / 3,
-                      lambda _: scene(("emitter", 0.0, 1.0, inward[:1]), ("receiver", 0.0, 0.0, inward[1:2]),
-                                      ("rest", 0.0, 0.0, inward[2:])), flat=True),
+        Configuration(
+            "regular tetrahedron, a side to another",
+            1 / 3,
+            lambda _: scene(
+                ("emitter", 0.0, 1.0, inward[:1]), ("receiver", 0.0, 0.0, inward[1:2]), ("rest", 0.0, 0.0, inward[2:])
+            ),
+            flat=True,
+        ),
         Configuration("concentric spheres, inner to outer", 1.0, lambda _: _facing(inner, outer)),
         Configuration("concentric spheres, outer to inner", ratio(inner, outer), lambda _: _facing(outer, inner)),
-        Configuration("concentric spheres, outer to itself", 1 - ratio(inner, outer), lambda _: _facing(outer, inner),
-                      receiver=0),
+        Configuration(
+            "concentric spheres, outer to itself", 1 - ratio(inner, outer), lambda _: _facing(outer, inner), receiver=0
+        ),
         Configuration("cube to a sphere in it", ratio(inner, box), lambda _: _facing(box, inner)),
         Configuration("cone's inside to its base", ratio(disc(1.0, 0.0, 24), cone), lambda _: _facing(cone, disc(1.0, 0.0, 24))),
-    ]  # fmt: skip
+    ]
 
 
 def _area(facets: Facets) -> float:
-    return float(sum(np.linalg.norm(sum(np.cross(a, b) for a, b in zip(f, np.roll(f, -1, axis=0), strict=True))) / 2
-                     for f in facets))  # fmt: skip
+    return float(
+        sum(np.linalg.norm(sum(np.cross(a, b) for a, b in zip(f, np.roll(f, -1, axis=0), strict=True))) / 2 for f in facets)
+    )
 
 
 def long() -> list[Configuration]:
@@ -125,13 +156,28 @@ def long() -> list[Configuration]:
     a, b, c = (0.0, 0.0), (1.0, 0.0), (0.3, 0.9)
     sides = [float(np.hypot(p[0] - q[0], p[1] - q[1])) for p, q in ((a, b), (b, c), (c, a))]
     return [
-        Configuration("long triangular duct, a side to another", strings.triangle(*sides),
-                      lambda _: _long((a, b), (b, c), (c, a)), bound=_ends(1.0), flat=True),
-        Configuration("long opposed strips, offset", strings.crossed(((0, 0), (1, 0)), ((0.5, 0.8), (1.8, 0.8))),
-                      lambda _: _long(((0, 0), (1, 0)), ((1.8, 0.8), (0.5, 0.8))), bound=_ends(2.0), flat=True),
-        Configuration("long opposed strips past a plate between them", strings.past_a_plate(1.0, 1.0, 0.4),
-                      lambda _: _long(((0, 0), (1, 0)), ((1, 1), (0, 1)), ((0.7, 0.5), (0.3, 0.5))), bound=_ends(1.5), flat=True),
-    ]  # fmt: skip
+        Configuration(
+            "long triangular duct, a side to another",
+            strings.triangle(*sides),
+            lambda _: _long((a, b), (b, c), (c, a)),
+            bound=_ends(1.0),
+            flat=True,
+        ),
+        Configuration(
+            "long opposed strips, offset",
+            strings.crossed(((0, 0), (1, 0)), ((0.5, 0.8), (1.8, 0.8))),
+            lambda _: _long(((0, 0), (1, 0)), ((1.8, 0.8), (0.5, 0.8))),
+            bound=_ends(2.0),
+            flat=True,
+        ),
+        Configuration(
+            "long opposed strips past a plate between them",
+            strings.past_a_plate(1.0, 1.0, 0.4),
+            lambda _: _long(((0, 0), (1, 0)), ((1, 1), (0, 1)), ((0.7, 0.5), (0.3, 0.5))),
+            bound=_ends(1.5),
+            flat=True,
+        ),
+    ]
 
 
 def curved() -> list[Configuration]:
@@ -146,26 +192,65 @@ def curved() -> list[Configuration]:
         return _facing(one, other)
 
     return [
-        Configuration("coaxial discs (C-41)", round.disc_to_disc(1.0, 0.7, 0.9),
-                      lambda n: _facing(disc(1.0, 0.0, n), turned(disc(0.7, 0.9, n))), 48),
-        Configuration("disc to coaxial ring", round.disc_to_ring(0.8, 0.5, 1.2, 0.6),
-                      lambda n: _facing(disc(0.8, 0.0, n), turned(ring(0.5, 1.2, 0.6, n))), 48),
-        Configuration("ring to coaxial ring", round.ring_to_ring((0.4, 1.0), (0.6, 1.4), 0.5),
-                      lambda n: _facing(ring(0.4, 1.0, 0.0, n), turned(ring(0.6, 1.4, 0.5, n))), 48),
-        Configuration("cylinder, base to inside", round.base_to_wall(1.0, 1.5),
-                      lambda n: _facing(disc(1.0, 0.0, n), turned(tube(1.0, 0.0, 1.5, n))), 48),
-        Configuration("cylinder, inside to itself", round.wall_to_itself(1.0, 1.5),
-                      lambda n: _facing(turned(tube(1.0, 0.0, 1.5, n)), turned(disc(1.0, 1.5, n))), 48, receiver=0),
-        Configuration("coaxial cylinders, outer to inner", round.outer_to_inner(0.5, 1.2, 2.0),
-                      lambda n: _facing(turned(tube(1.2, 0.0, 2.0, n)), tube(0.5, 0.0, 2.0, n)), 48),
+        Configuration(
+            "coaxial discs (C-41)",
+            round.disc_to_disc(1.0, 0.7, 0.9),
+            lambda n: _facing(disc(1.0, 0.0, n), turned(disc(0.7, 0.9, n))),
+            48,
+        ),
+        Configuration(
+            "disc to coaxial ring",
+            round.disc_to_ring(0.8, 0.5, 1.2, 0.6),
+            lambda n: _facing(disc(0.8, 0.0, n), turned(ring(0.5, 1.2, 0.6, n))),
+            48,
+        ),
+        Configuration(
+            "ring to coaxial ring",
+            round.ring_to_ring((0.4, 1.0), (0.6, 1.4), 0.5),
+            lambda n: _facing(ring(0.4, 1.0, 0.0, n), turned(ring(0.6, 1.4, 0.5, n))),
+            48,
+        ),
+        Configuration(
+            "cylinder, base to inside",
+            round.base_to_wall(1.0, 1.5),
+            lambda n: _facing(disc(1.0, 0.0, n), turned(tube(1.0, 0.0, 1.5, n))),
+            48,
+        ),
+        Configuration(
+            "cylinder, inside to itself",
+            round.wall_to_itself(1.0, 1.5),
+            lambda n: _facing(turned(tube(1.0, 0.0, 1.5, n)), turned(disc(1.0, 1.5, n))),
+            48,
+            receiver=0,
+        ),
+        Configuration(
+            "coaxial cylinders, outer to inner",
+            round.outer_to_inner(0.5, 1.2, 2.0),
+            lambda n: _facing(turned(tube(1.2, 0.0, 2.0, n)), tube(0.5, 0.0, 2.0, n)),
+            48,
+        ),
         Configuration("long parallel cylinders", round.cylinder_to_cylinder(1.0), pipes, 48, bound=_ends(3.0) / 4),
-        Configuration("long strip to a parallel cylinder", round.strip_to_cylinder(0.2, 1.7, 1.5, 0.5), strip, 48,
-                      bound=_ends(2.5), flat=True),
-        Configuration("sphere to coaxial disc", round.sphere_to_disc(1.2, 1.0),
-                      lambda n: _facing(ball(0.5, n, (0, 0, 1.0)), disc(1.2, 0.0, 96 * 2 ** (n - 3))), 3),
-        Configuration("sphere to rectangle below its centre at a corner", round.sphere_to_rectangle(2.0, 1.0, 0.8),
-                      lambda n: _facing(ball(0.5, n, (0, 0, 0.8)), [quad((0, 0, 0), (2, 0, 0), (0, 1, 0))]), 3),
-    ]  # fmt: skip
+        Configuration(
+            "long strip to a parallel cylinder",
+            round.strip_to_cylinder(0.2, 1.7, 1.5, 0.5),
+            strip,
+            48,
+            bound=_ends(2.5),
+            flat=True,
+        ),
+        Configuration(
+            "sphere to coaxial disc",
+            round.sphere_to_disc(1.2, 1.0),
+            lambda n: _facing(ball(0.5, n, (0, 0, 1.0)), disc(1.2, 0.0, 96 * 2 ** (n - 3))),
+            3,
+        ),
+        Configuration(
+            "sphere to rectangle below its centre at a corner",
+            round.sphere_to_rectangle(2.0, 1.0, 0.8),
+            lambda n: _facing(ball(0.5, n, (0, 0, 0.8)), [quad((0, 0, 0), (2, 0, 0), (0, 1, 0))]),
+            3,
+        ),
+    ]
 
 
 def every() -> list[Configuration]:

@@ -23,8 +23,12 @@ def concentric_spheres(rays: float) -> Value:
     net = []
     for level in (2, 3):
         inner, outer = ball(1.0, level), turned(ball(1.8, level))
-        cut = rd.subdivide(scene(*(_grey(n, e, b, f) for n, e, b, f in zip(("inner", "outer"), EMISSIVITY, BLACKBODY,
-                                                                            (inner, outer), strict=True))), cells=1)  # fmt: skip
+        cut = rd.subdivide(
+            scene(
+                *(_grey(n, e, b, f) for n, e, b, f in zip(("inner", "outer"), EMISSIVITY, BLACKBODY, (inner, outer), strict=True))
+            ),
+            cells=1,
+        )
         net.append(solved(cut, rays, method=RANDOM, first=100 * level).net(0))
     value = exact.two_spheres(1.0, 1.8, EMISSIVITY, BLACKBODY)
     note = f"facets: {(net[1].mean() - net[0].mean()) / 3 / value:+.2%} at the finer mesh, extrapolated"
@@ -37,8 +41,10 @@ def sphere_with_a_hot_cap(rays: float) -> Value:
     for level in (2, 3):
         wall = turned(ball(1.0, level))
         hot = [f[:, 2].mean() > 0.5 for f in wall]
-        parts = [("hot", 0.7, 3.0, [f for f, h in zip(wall, hot, strict=True) if h]),
-                 ("cold", 0.7, 0.0, [f for f, h in zip(wall, hot, strict=True) if not h])]  # fmt: skip
+        parts = [
+            ("hot", 0.7, 3.0, [f for f, h in zip(wall, hot, strict=True) if h]),
+            ("cold", 0.7, 0.0, [f for f, h in zip(wall, hot, strict=True) if not h]),
+        ]
         patches = rd.subdivide(scene(*parts), cells=1)
         share = patches.area[patches.surface == 0].sum() / patches.area.sum()
         exactly = 3.0 * share / (1 - 0.7)
@@ -64,9 +70,14 @@ def spherical_cavity(rays: float) -> Value:
 def box(rays: float) -> list[Value]:
     """A box of 2 x 1 x 0.7 m, six grey walls, one patch each: the equation of the patches has the exact matrix."""
     x, y, z = sides = (2.0, 1.0, 0.7)
-    walls = [quad((0, 0, 0), (0, y, 0), (0, 0, z)), quad((x, 0, 0), (0, 0, z), (0, y, 0)),
-             quad((0, 0, 0), (0, 0, z), (x, 0, 0)), quad((0, y, 0), (x, 0, 0), (0, 0, z)),
-             quad((0, 0, 0), (x, 0, 0), (0, y, 0)), quad((0, 0, z), (0, y, 0), (x, 0, 0))]  # fmt: skip
+    walls = [
+        quad((0, 0, 0), (0, y, 0), (0, 0, z)),
+        quad((x, 0, 0), (0, 0, z), (0, y, 0)),
+        quad((0, 0, 0), (0, 0, z), (x, 0, 0)),
+        quad((0, y, 0), (x, 0, 0), (0, 0, z)),
+        quad((0, 0, 0), (x, 0, 0), (0, y, 0)),
+        quad((0, 0, z), (0, y, 0), (x, 0, 0)),
+    ]
     emissivity, blackbody = (0.9, 0.5, 0.2, 0.7, 0.4, 0.8), (1.0, 6.0, 3.0, 0.0, 8.0, 2.0)
     names = ("x low", "x high", "y low", "y high", "z low", "z high")
     areas, factors = exact.box_factors(sides, rectangles.parallel, rectangles.perpendicular)
@@ -83,8 +94,13 @@ def duct(rays: float) -> list[Value]:
     emissivity, blackbody = (0.8, 0.3, 0.5, 1.0, 1.0), (9.0, 1.0, 4.0, 0.0, 0.0)
     wanted = exact.net(areas, factors, emissivity, blackbody)
     ends = np.array([(0, 0, 0), (a, 0, 0), (0, 0, b)])
-    facets = [quad((0, 0, 0), (a, 0, 0), (0, length, 0)), quad((0, 0, b), (0, 0, -b), (0, length, 0)),
-              quad((a, 0, 0), (-a, 0, b), (0, length, 0)), ends[::-1], ends + np.array([0, length, 0])]  # fmt: skip
+    facets = [
+        quad((0, 0, 0), (a, 0, 0), (0, length, 0)),
+        quad((0, 0, b), (0, 0, -b), (0, length, 0)),
+        quad((a, 0, 0), (-a, 0, b), (0, length, 0)),
+        ends[::-1],
+        ends + np.array([0, length, 0]),
+    ]
     names = ("side of 3", "side of 4", "side of 5", "near end", "far end")
     parts = [_grey(n, e, m, [f]) for n, e, m, f in zip(names, emissivity, blackbody, facets, strict=True)]
     runs = solved(rd.subdivide(scene(*parts), cells=1), rays)

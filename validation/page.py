@@ -53,9 +53,14 @@ def values(title: str, text: str, rows: Sequence[Value]) -> str:
 
 def patches(title: str, text: str, rows: Sequence[Patchwise]) -> str:
     """A table of scenes, patch by patch."""
-    lines = [f"## {title}", "", text, "",
-             "| scene, method | patches x bands | chi-square | expected | p | RMS (noise) | mean | allowed | |",
-             "|---|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        f"## {title}",
+        "",
+        text,
+        "",
+        "| scene, method | patches x bands | chi-square | expected | p | RMS (noise) | mean | allowed | |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
     for r in rows:
         verdict = "agrees" if r.agrees else "**disagrees**"
         lines.append(PATCHES.format(r.name, r.count, r.chi_square, r.expected, r.p, *r.rms, *r.mean, r.allowed, verdict))

@@ -20,7 +20,7 @@ APART = 4e-6  # likewise, between the sheets that stand for the two sides of a f
 
 def irradiance(patches: rd.Patches, paths: int, batches: int = SEEDS, seed: int = 99) -> np.ndarray:
     """(batches, n_patches, n_bands) independent estimates from ``paths`` points on each patch."""
-    from radiosity.engine.device import choose, entered, upload
+    from radiosity.device.backend import choose, entered, upload
 
     device = choose("cpu")
     patches = _wide(patches)
@@ -39,8 +39,9 @@ def irradiance(patches: rd.Patches, paths: int, batches: int = SEEDS, seed: int 
             found = np.zeros((len(point), 3))
             for at in range(0, len(point), CHUNK):
                 rows = slice(at, at + CHUNK)
-                origin, front = (types.Array3f(*(upload(types.Float, c.astype(np.float32)) for c in a[rows].T))
-                                 for a in (point, normal))  # fmt: skip
+                origin, front = (
+                    types.Array3f(*(upload(types.Float, c.astype(np.float32)) for c in a[rows].T)) for a in (point, normal)
+                )
                 sampler = mi.load_dict({"type": "independent"})
                 sampler.seed(seed * 1_000_003 + batch * 1009 + at // CHUNK, len(point[rows]))
                 value = _arriving(mi, dr, world, integrator, sampler, mi.Point3f(origin), mi.Normal3f(front))

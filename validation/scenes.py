@@ -16,12 +16,14 @@ def court() -> rd.Scene:
     top = np.array([1.0, 1.2, 1.1])
     base = np.array([(0.5, 0.6, 0), (1.6, 0.7, 0), (1.5, 1.8, 0), (0.4, 1.7, 0)])
     pyramid = [np.array([base[i], base[(i + 1) % 4], top, top]) for i in range(4)]
-    parts = [("floor", white, 0, [quad((0, 0, 0), (4, 0, 0), (0, 3, 0))]),
-             ("west wall", red, 0, [quad((0, 0, 0), (0, 3, 0), (0, 0, 2))]),
-             ("south wall", blue, 0, [quad((0, 0, 0), (0, 0, 2), (4, 0, 0))]),
-             ("pyramid", (0.5, 0.6, 0.4), 0, pyramid),
-             ("table", (0.6, 0.5, 0.3), 0, [quad((2.4, 1.2, 0.7), (1.0, 0.3, 0), (-0.2, 0.9, 0))]),
-             ("lamp", (0, 0, 0), (30, 28, 20), [quad((1.6, 1.0, 2.2), (0, 0.8, 0), (0.8, 0, 0))])]  # fmt: skip
+    parts = [
+        ("floor", white, 0, [quad((0, 0, 0), (4, 0, 0), (0, 3, 0))]),
+        ("west wall", red, 0, [quad((0, 0, 0), (0, 3, 0), (0, 0, 2))]),
+        ("south wall", blue, 0, [quad((0, 0, 0), (0, 0, 2), (4, 0, 0))]),
+        ("pyramid", (0.5, 0.6, 0.4), 0, pyramid),
+        ("table", (0.6, 0.5, 0.3), 0, [quad((2.4, 1.2, 0.7), (1.0, 0.3, 0), (-0.2, 0.9, 0))]),
+        ("lamp", (0, 0, 0), (30, 28, 20), [quad((1.6, 1.0, 2.2), (0, 0.8, 0), (0.8, 0, 0))]),
+    ]
     rows = [(i, *part[1:3], corners) for i, part in enumerate(parts) for corners in part[3]]
     faces = np.arange(4 * len(rows)).reshape(-1, 4)
     faces[[i == 3 for i, *_ in rows], 3] = -1
@@ -47,13 +49,20 @@ def with_black_lamps(scene: rd.Scene) -> rd.Scene:
 def parallel_scenes() -> list[tuple[str, rd.Patches]]:
     """Scenes for Mitsuba, in patches."""
     cut = {"room": 4, "cornell-box": 3, "labyrinth-0.9": 2}
-    return [*((name, rd.subdivide(rd.load_scene(name), cells=k)) for name, k in cut.items()),
-            ("court", rd.subdivide(court(), cells=4))]  # fmt: skip
+    return [
+        *((name, rd.subdivide(rd.load_scene(name), cells=k)) for name, k in cut.items()),
+        ("court", rd.subdivide(court(), cells=4)),
+    ]
 
 
 def radiance_scenes() -> list[tuple[str, rd.Patches]]:
     """Scenes for Radiance, in patches."""
-    found = [(f"{name}, black lamp", rd.subdivide(with_black_lamps(rd.load_scene(name)), cells=k))
-             for name, k in (("room", 4), ("cornell-box", 3))]  # fmt: skip
-    return [*found, ("labyrinth-0.9", rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=2)),
-            ("court", rd.subdivide(court(), cells=4))]  # fmt: skip
+    found = [
+        (f"{name}, black lamp", rd.subdivide(with_black_lamps(rd.load_scene(name)), cells=k))
+        for name, k in (("room", 4), ("cornell-box", 3))
+    ]
+    return [
+        *found,
+        ("labyrinth-0.9", rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=2)),
+        ("court", rd.subdivide(court(), cells=4)),
+    ]

@@ -3,16 +3,16 @@
 Say here what the algorithm is in one sentence, then its paper: author, title, where, year; equation and page of what you follow.
 This one is the series E + rho F E + (rho F)^2 E + ..., with form factors from counted lines; it is here to be read, not used.
 
-To make it yours: copy it to a folder of its own, rename the class, put a line into `PROCESSES` (`engine/process.py`), and let
+To make it yours: copy it to a folder of its own, rename the class, put a line into `PROCESSES` (`algorithms/table.py`), and let
 `method/combinations.py` or `method/baseline.py` say which choices it serves. `tests/test_skeleton.py` shows what to test first.
 """
 
 import numpy as np
 
-from radiosity.deterministic.rows import rows_for
-from radiosity.deterministic.tally import SolvedTally
-from radiosity.engine.process import AbstractProcess, State, Swept
+from radiosity.algorithms.baseline_tally import SolvedTally
+from radiosity.algorithms.process import AbstractProcess, State, Swept
 from radiosity.errors import MethodError
+from radiosity.factors.sources import rows_for
 
 LEFT = 1e-6  # of the emitted power: what is less than that is not sent on
 
@@ -66,10 +66,15 @@ class Reflections(AbstractProcess):
     def capture(self) -> State:
         """Copies: the run may go on while a checkpoint is written."""
         return {
-            "quanta": np.array(self.wanted), "steps": np.array(self.steps), "done": np.array(self._done),
-            "lines": np.array(self.lines), "received": self.received.copy(), "missed": self.missed.copy(),
-            "unsent": self.unsent.copy(), "seen": np.full(len(self.area), len(self.area) - 1),
-        }  # fmt: skip
+            "quanta": np.array(self.wanted),
+            "steps": np.array(self.steps),
+            "done": np.array(self._done),
+            "lines": np.array(self.lines),
+            "received": self.received.copy(),
+            "missed": self.missed.copy(),
+            "unsent": self.unsent.copy(),
+            "seen": np.full(len(self.area), len(self.area) - 1),
+        }
 
     def restore(self, state: State) -> None:
         if "unsent" not in state or state["unsent"].shape != self.unsent.shape:

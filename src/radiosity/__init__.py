@@ -11,16 +11,16 @@ solution.export("room.glb")
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from . import llvm
+from .device import llvm
 from .errors import DeviceError, MethodError, OutputError, RadiosityError, RadiosityWarning, SceneError
 
 if TYPE_CHECKING:
     __version__: str
 
-    from .engine.refine import refine_check
-    from .engine.solve import solve
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
+    from .run.refine import refine_check
+    from .run.solve import solve
     from .scene import Back, Camera, Scene, load_scene
     from .solution import RefineCheck, Solution, load_solution
 
@@ -28,8 +28,8 @@ llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
-    "engine.refine": ("refine_check",),
-    "engine.solve": ("solve",),
+    "run.refine": ("refine_check",),
+    "run.solve": ("solve",),
     "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
     "patches": ("Patches", "subdivide"),
     "scene": ("Back", "Camera", "Scene", "load_scene"),
@@ -68,7 +68,7 @@ def __getattr__(name: str):
         return value
     if name == "__version__":
         return import_module("importlib.metadata").version(__name__)
-    if name in ("engine", *_HOMES):
+    if name in _HOMES:
         return import_module(f".{name}", __name__)
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
 

@@ -85,9 +85,16 @@ def fresh(command: list[str], folder: Path, seconds: float = SECONDS) -> tuple[i
     """The status of a command in a process that was started for it, None if it did not end in time; and its output."""
     try:
         done = subprocess.run(
-            [sys.executable, "-m", "radiosity", *command], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, text=True, errors="replace", timeout=seconds, check=False,
-        )  # fmt: skip
+            [sys.executable, "-m", "radiosity", *command],
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            timeout=seconds,
+            check=False,
+        )
     except subprocess.TimeoutExpired:
         return None, ""
     return done.returncode, done.stdout

@@ -11,8 +11,19 @@ import sys
 import time
 from importlib import import_module
 
-SLOW = ("scipy.stats", "scipy.sparse.linalg", "scipy.spatial", "scipy.ndimage", "PIL.Image", "rich.console", "rich.table",
-        "rich.progress", "pydantic", "radiosity.cli.app", "radiosity.solution.report")  # fmt: skip
+SLOW = (
+    "scipy.stats",
+    "scipy.sparse.linalg",
+    "scipy.spatial",
+    "scipy.ndimage",
+    "PIL.Image",
+    "rich.console",
+    "rich.table",
+    "rich.progress",
+    "pydantic",
+    "radiosity.cli.app",
+    "radiosity.solution.report",
+)
 NEVER = ("drjit", "mitsuba")
 LOOK = 0.01  # seconds between two looks at a process
 

@@ -8,14 +8,28 @@ from radiosity.method.baseline import FACTORS, REFINEMENTS, SOLVERS
 from radiosity.method.model import CHOICES
 
 FACES = {
-    "low": "0 0 0, 1 0 0, 1 1 0, 0 1 0", "high": "0 0 1, 0 1 1, 1 1 1, 1 0 1", "south": "0 0 0, 0 0 1, 1 0 1, 1 0 0",
-    "north": "0 1 0, 1 1 0, 1 1 1, 0 1 1", "west": "0 0 0, 0 1 0, 0 1 1, 0 0 1", "east": "1 0 0, 1 0 1, 1 1 1, 1 1 0",
-    "half": "0 0 0, 1 0 0, 0 1 0", "sail": "0.2 0.3 0.2, 0.8 0.3 0.3, 0.5 0.7 0.8",
+    "low": "0 0 0, 1 0 0, 1 1 0, 0 1 0",
+    "high": "0 0 1, 0 1 1, 1 1 1, 1 0 1",
+    "south": "0 0 0, 0 0 1, 1 0 1, 1 0 0",
+    "north": "0 1 0, 1 1 0, 1 1 1, 0 1 1",
+    "west": "0 0 0, 0 1 0, 0 1 1, 0 0 1",
+    "east": "1 0 0, 1 0 1, 1 1 1, 1 1 0",
+    "half": "0 0 0, 1 0 0, 0 1 0",
+    "sail": "0.2 0.3 0.2, 0.8 0.3 0.3, 0.5 0.7 0.8",
     "table": "0.3 0.3 0.5, 0.7 0.3 0.5, 0.7 0.7 0.5, 0.3 0.7 0.5",
-}  # fmt: skip
+}
 CUBE = ("low", "high", "south", "north", "west", "east")
-SHAPES = (("half",), ("low",), ("low", "high"), ("half", "sail"), ("low", "high", "sail"), CUBE, CUBE, (*CUBE, "table"),
-          (*CUBE, "table", "sail"))  # fmt: skip
+SHAPES = (
+    ("half",),
+    ("low",),
+    ("low", "high"),
+    ("half", "sail"),
+    ("low", "high", "sail"),
+    CUBE,
+    CUBE,
+    (*CUBE, "table"),
+    (*CUBE, "table", "sail"),
+)
 BUILT_IN = ("room", "cornell-box", "labyrinth", "labyrinth-0.9")
 GREY, WHITE = "0.5 0.5 0.5", "3 3 3"
 BACKS = ("absorbs", "radiates", "passes")
@@ -109,9 +123,18 @@ def _method(random: Random) -> tuple[list[str], dict, bool]:
         name = random.choice([*rd.PRESETS, *rd.PRESETS, *rd.BASELINES])
         baseline, choices = name in rd.BASELINES, {}
         if baseline:
-            own = {"factors": list(FACTORS), "solver": list(SOLVERS), "refinement": list(REFINEMENTS), "reciprocal": [True],
-                   "resolution": [2, 4, 16], "rotated": [False], "samples": [1, 4, 15], "ambient": [True],
-                   "overshooting": [True], "epsilon": [1e-3, 0.1]}  # fmt: skip
+            own = {
+                "factors": list(FACTORS),
+                "solver": list(SOLVERS),
+                "refinement": list(REFINEMENTS),
+                "reciprocal": [True],
+                "resolution": [2, 4, 16],
+                "rotated": [False],
+                "samples": [1, 4, 15],
+                "ambient": [True],
+                "overshooting": [True],
+                "epsilon": [1e-3, 0.1],
+            }
             choices = {key: random.choice(values) for key, values in own.items() if random.random() < 0.2}
         else:
             choices = {axis: random.choice(values) for axis, values in CHOICES.items() if random.random() < 0.25}

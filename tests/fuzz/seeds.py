@@ -34,10 +34,14 @@ from samples import (
 )
 
 TEXTURED = OBJ.replace("usemtl white", "usemtl light").replace("f -4 -3 -2 -1", "f -4/1 -3/2 -2/3 -1/4")
-XML = XML_BEGIN + b"""<shape type="shapegroup" id="g"><shape type="disk"/></shape><shape type="instance"><ref id="g"/></shape>
+XML = (
+    XML_BEGIN
+    + b"""<shape type="shapegroup" id="g"><shape type="disk"/></shape><shape type="instance"><ref id="g"/></shape>
 <shape type="ply"><string name="filename" value="mesh.ply"/></shape>
 <shape type="rectangle"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="wall.png"/>
-</texture></bsdf></shape>""" + XML_END
+</texture></bsdf></shape>"""
+    + XML_END
+)
 PART = b"m wall =\n\tsides 1\n\trd .5\nv q =\n p 0 0 9\nv r =\n p 1 0 9\nv s =\n p 0 1 9\nf q r s\n"
 
 
@@ -108,12 +112,16 @@ def _glb_png(random: Random) -> dict[str, bytes]:
     kinds = ((5126, 4, "VEC3"), (5126, 4, "VEC2"), (5123, 6, "SCALAR"))
     accessors = [{"bufferView": i, "componentType": c, "count": n, "type": t} for i, (c, n, t) in enumerate(kinds)]
     tree = {
-        "asset": {"version": "2.0"}, "buffers": [{"byteLength": 92 + len(image)}], "bufferViews": views, "accessors": accessors,
-        "images": [{"bufferView": 3, "mimeType": "image/png"}], "textures": [{"source": 0}],
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": 92 + len(image)}],
+        "bufferViews": views,
+        "accessors": accessors,
+        "images": [{"bufferView": 3, "mimeType": "image/png"}],
+        "textures": [{"source": 0}],
         "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}]}],
         "nodes": [{"mesh": 0}],
-    }  # fmt: skip
+    }
     return {"scene.glb": _packed(json.dumps(tree).encode(), geometry + image)}
 
 

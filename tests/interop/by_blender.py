@@ -27,9 +27,13 @@ def read_all(paths: list[Path], folder: Path) -> dict[Path, dict]:
     script = Path(__file__).with_name("blender_script.py")
     environment = {key: text for key, text in os.environ.items() if key != "PYTHONPATH"}
     done = subprocess.run(
-        [str(python()), str(script), str(jobs), str(results)], capture_output=True, text=True, timeout=SECONDS, check=False,
+        [str(python()), str(script), str(jobs), str(results)],
+        capture_output=True,
+        text=True,
+        timeout=SECONDS,
+        check=False,
         env=environment,
-    )  # fmt: skip
+    )
     if not results.exists():
         raise RuntimeError(f"Blender failed: {done.stdout[-500:]} {done.stderr[-1500:]}")
     return dict(zip(paths, json.loads(results.read_text()), strict=True))

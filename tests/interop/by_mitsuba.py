@@ -3,7 +3,7 @@
 import numpy as np
 from mitsuba_rays import mitsuba_hits, our_hits, random_rays
 
-from radiosity.engine import device
+from radiosity.device import backend as device
 
 from .compare import Difference
 from .images import spots, square

@@ -58,13 +58,14 @@ class Buffer:
         index = self.accessor(base, "f4")
         stored = points.astype("<f4")
         self.tree["accessors"][index] |= {
-            "min": stored.min(axis=0).tolist(), "max": stored.max(axis=0).tolist(),
+            "min": stored.min(axis=0).tolist(),
+            "max": stored.max(axis=0).tolist(),
             "sparse": {
                 "count": len(moved),
                 "indices": {"bufferView": self.view(moved.astype("<u2").tobytes()), "componentType": KINDS["u2"]},
                 "values": {"bufferView": self.view(stored[moved].tobytes())},
             },
-        }  # fmt: skip
+        }
         return index
 
     def coordinates(self, uv: np.ndarray) -> int:

@@ -78,9 +78,7 @@ FORMATS = {
         {
             "trimesh": Reader(each(by_trimesh.obj), whole=True, missing=TRIMESH),
             "mitsuba": Reader(each(by_mitsuba.mesh), whole=True, missing=MITSUBA),
-            "blender": _blender(
-                lambda path: lambda thing, material: f"{thing}/{material}" if material else thing, called=_last
-            ),
+            "blender": _blender(lambda path: lambda thing, material: f"{thing}/{material}" if material else thing, called=_last),
         },
     ),
     "ply": Format(

@@ -111,10 +111,12 @@ def merged(reading: Reading, name: str = "all") -> Reading:
     return {
         name: Surface(
             area=float(areas.sum()),
-            bounds=np.stack([
-                np.min([s.bounds[0] for s in surfaces], axis=0),
-                np.max([s.bounds[1] for s in surfaces], axis=0),
-            ]),
+            bounds=np.stack(
+                [
+                    np.min([s.bounds[0] for s in surfaces], axis=0),
+                    np.max([s.bounds[1] for s in surfaces], axis=0),
+                ]
+            ),
             vector=total([s.vector for s in surfaces]),
             volume=None if volume is None else float(volume),
             sides=None if any(s.sides is None for s in surfaces) else max(s.sides or 0 for s in surfaces),
@@ -122,7 +124,7 @@ def merged(reading: Reading, name: str = "all") -> Reading:
             power=total([s.power for s in surfaces]),
             sampled=any(s.sampled for s in surfaces),
         )
-    }  # fmt: skip
+    }
 
 
 def _three(values) -> np.ndarray:

@@ -40,9 +40,7 @@ class Points:
             return np.zeros((1, 4))
         layer = layers[name] if name else layers[0]
         by_corner = layer.domain == "CORNER"
-        return self.spread([
-            [layer.data[i].color for i in (t.loops if by_corner else t.vertices)] for t in self._triangles
-        ])  # fmt: skip
+        return self.spread([[layer.data[i].color for i in (t.loops if by_corner else t.vertices)] for t in self._triangles])
 
 
 def value(node, name: str, points: Points) -> np.ndarray:
@@ -121,9 +119,14 @@ def _math(node, socket, points):
         least = value(node, node.inputs[2], points)
         return one - (two - least) * np.floor((one - least) / (two - least))
     table = {
-        "MULTIPLY": np.multiply, "ADD": np.add, "SUBTRACT": np.subtract, "MINIMUM": np.minimum, "MAXIMUM": np.maximum,
-        "DIVIDE": np.divide, "FRACT": lambda a, b: a - np.floor(a),
-    }  # fmt: skip
+        "MULTIPLY": np.multiply,
+        "ADD": np.add,
+        "SUBTRACT": np.subtract,
+        "MINIMUM": np.minimum,
+        "MAXIMUM": np.maximum,
+        "DIVIDE": np.divide,
+        "FRACT": lambda a, b: a - np.floor(a),
+    }
     result = table[node.operation](one, two)
     return np.clip(result, 0, 1) if node.use_clamp else result
 

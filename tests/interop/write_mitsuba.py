@@ -46,8 +46,10 @@ def write(folder: Path, seed: int) -> Sample:
     if "other emitters" in draw.features:
         lines.append('<emitter type="point"><point name="position" x="0" y="5" z="0"/></emitter>')
     if "sensors" in draw.features:
-        lines.append('<sensor type="perspective"><float name="fov" value="45"/><transform name="to_world">'
-                     '<lookat origin="0,0,9" target="0,0,0" up="0,1,0"/></transform></sensor>')  # fmt: skip
+        lines.append(
+            '<sensor type="perspective"><float name="fov" value="45"/><transform name="to_world">'
+            '<lookat origin="0,0,9" target="0,0,0" up="0,1,0"/></transform></sensor>'
+        )
     lines.append("</scene>")
     path = folder / f"{seed}.xml"
     path.write_text("\n".join(lines) + "\n")
@@ -80,8 +82,10 @@ def _shape(draw: Draw, folder: Path, seed: int, name: str, names: list[str], *, 
     elif "colours" in draw.features and kind == "ply" and draw.has("mesh attributes", 0.7):
         file = f"{seed}_{name}.ply"
         (folder / file).write_bytes(_painted(draw, (folder / file).read_bytes()))
-        inside.append('<bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance">'
-                      '<string name="name" value="vertex_color"/></texture></bsdf>')  # fmt: skip
+        inside.append(
+            '<bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance">'
+            '<string name="name" value="vertex_color"/></texture></bsdf>'
+        )
     elif draw.random() < 0.85:
         inside.append(bsdf(draw, folder, f"{seed}_{name}", "", textured=textured))
     elif shining:

@@ -7,8 +7,15 @@ from .draw import Draw, Sample, Shape, star
 from .images import save_png
 
 HABITS = {
-    "relative indices": 0.2, "line continuation": 0.1, "comments after a face": 0.1, "lines and points": 0.2, "smoothing": 0.3,
-    "fourth coordinate": 0.1, "normals": 0.4, "coordinates": 0.4, "materials within an object": 0.4,
+    "relative indices": 0.2,
+    "line continuation": 0.1,
+    "comments after a face": 0.1,
+    "lines and points": 0.2,
+    "smoothing": 0.3,
+    "fourth coordinate": 0.1,
+    "normals": 0.4,
+    "coordinates": 0.4,
+    "materials within an object": 0.4,
 }  # chance that a file has any of it
 
 
@@ -87,11 +94,14 @@ def _object(draw: Draw, text: Text, number: int, shape: Shape, materials: list[s
             point, uv = (point - text.points, uv - text.coordinates) if relative else (point + 1, uv + 1)
             normal = "-1" if relative else "1"
             corners.append(
-                f"{point}/{uv}/{normal}" if with_uv and with_normals
-                else f"{point}/{uv}" if with_uv
-                else f"{point}//{normal}" if with_normals
+                f"{point}/{uv}/{normal}"
+                if with_uv and with_normals
+                else f"{point}/{uv}"
+                if with_uv
+                else f"{point}//{normal}"
+                if with_normals
                 else f"{point}"
-            )  # fmt: skip
+            )
         line = "f " + " ".join(corners)
         if "line continuation" in draw.features and draw.random() < 0.5:
             head, tail = line.rsplit(" ", 1)

@@ -9,9 +9,14 @@ SMALL, LARGE = 0.05, 300.0  # metres: scenes beyond are more often in another un
 
 
 def check(
-    scene: str, /, *, max_reflectance: float = 0.95, strict: Flag = False, allow_outside: Flag = False,
+    scene: str,
+    /,
+    *,
+    max_reflectance: float = 0.95,
+    strict: Flag = False,
+    allow_outside: Flag = False,
     device: DeviceName = "auto",
-) -> int:  # fmt: skip
+) -> int:
     """Say what a scene holds and what in it is probably not meant.
 
     Parameters
@@ -27,11 +32,9 @@ def check(
     device
         auto, cpu or cuda: what the lines are traced on.
     """
-    from ..scene.check import check_file
+    from ..diagnostics.check import check_file
 
-    report = check_file(
-        scene, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside, device=device
-    )
+    report = check_file(scene, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside, device=device)
     _print(report)
     return 1 if report.serious else 0
 
@@ -89,8 +92,15 @@ def _table(report):
     rows = sorted(report.surfaces, key=lambda s: (not any(s.power), -s.area))  # emitters first, then by area
     for s in rows[:MOST_ROWS]:
         lit = any(s.power)
-        table.add_row(Text(printable(s.name)), str(s.faces), f"{s.area:.4g}", _bands(s.reflectance),
-                      _bands(s.emission) if lit else "-", _bands(s.power) if lit else "-", s.sides)  # fmt: skip
+        table.add_row(
+            Text(printable(s.name)),
+            str(s.faces),
+            f"{s.area:.4g}",
+            _bands(s.reflectance),
+            _bands(s.emission) if lit else "-",
+            _bands(s.power) if lit else "-",
+            s.sides,
+        )
     return table
 
 

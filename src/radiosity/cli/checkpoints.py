@@ -15,7 +15,7 @@ def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None):
     Raises:
         OutputError: the one that was named cannot be written, or is an output too. MethodError: nothing can go on from it.
     """
-    from ..engine.checkpoint import Checkpoint, resumable
+    from ..run.checkpoint import Checkpoint, resumable
 
     if path is not None:
         if off:

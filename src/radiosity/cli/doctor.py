@@ -18,7 +18,7 @@ def doctor() -> int:
     usable = True
     _line("ok", "Python", f"{platform.python_version()} ({sys.prefix})")
     try:
-        from ..engine import device
+        from ..device import backend as device
 
         facts = device.describe()
         _one_line_of_work()
@@ -62,8 +62,8 @@ def _one_line_of_work() -> None:
     """
     import numpy as np
 
-    from ..engine.caster import first_hits
     from ..scene import Scene
+    from ..tracing.caster import first_hits
 
     scene = Scene.from_arrays([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], 0.5, 1.0)
     hits = first_hits(scene, np.array([[0.25, 0.25, 1.0]]), np.array([[0.0, 0.0, -1.0]]))

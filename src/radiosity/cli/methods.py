@@ -74,9 +74,9 @@ def _plain(text: str) -> str:
 def _axis(axis: str) -> None:
     from ..method.equation import EQUATIONS
     from ..method.lines import LINES
-    from ..method.numbers import NUMBERS
     from ..method.order import ORDERS
     from ..method.randomisation import RANDOMISATIONS
+    from ..sampling.numbers import NUMBERS
 
     known = {"equation": EQUATIONS, "lines": LINES, "order": ORDERS, "randomisation": RANDOMISATIONS}
     texts = known.get(axis) or {name: _numbers(name) for name in NUMBERS}
@@ -88,9 +88,9 @@ def _axis(axis: str) -> None:
 def _numbers(name: str) -> str:
     from importlib import import_module
 
-    from ..method.numbers import NUMBERS
+    from ..sampling.numbers import NUMBERS
 
-    module = import_module(f"radiosity.method.numbers.{NUMBERS[name].split(':')[0]}")
+    module = import_module(f"radiosity.sampling.numbers.{NUMBERS[name].split(':')[0]}")
     return " ".join((module.__doc__ or "").split("\n\n")[0].split())
 
 

@@ -97,10 +97,21 @@ def render(
 
     def written(path: Path) -> None:
         draw(
-            loaded, path, camera=view, width=width, height=height, exposure=exposure, smooth=smooth, quantity=quantity,
-            band=band, false_color=false_color, range=interval, log=log, color_map=color_map or "viridis",
+            loaded,
+            path,
+            camera=view,
+            width=width,
+            height=height,
+            exposure=exposure,
+            smooth=smooth,
+            quantity=quantity,
+            band=band,
+            false_color=false_color,
+            range=interval,
+            log=log,
+            color_map=color_map or "viridis",
             samples=4 if samples is None else samples,
-        )  # fmt: skip
+        )
         tell(f"wrote {printable(path)}")
 
     failures = outputs.attempt((path, partial(written, path)) for path in output)

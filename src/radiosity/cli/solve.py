@@ -202,16 +202,33 @@ def solve(
 
     import radiosity as rd
 
-    from ..engine.baseline_budget import cut_for
+    from ..run.baseline_budget import cut_for
     from .progress import bar
 
     choices = {
-        "equation": equation, "lines": lines, "order": order, "numbers": numbers, "randomisation": randomisation,
-        "estimator": estimator, "absorption": absorption, "first_shot": first_shot, "control_variate": control_variate,
-        "warm_up": warm_up, "reconstruction": reconstruction, "coherent": coherent or None, "factors": factors, "solver": solver,
-        "reciprocal": reciprocal, "resolution": resolution, "rotated": rotated, "samples": samples, "ambient": ambient,
-        "overshooting": overshooting, "epsilon": epsilon, "refinement": refinement,
-    }  # fmt: skip
+        "equation": equation,
+        "lines": lines,
+        "order": order,
+        "numbers": numbers,
+        "randomisation": randomisation,
+        "estimator": estimator,
+        "absorption": absorption,
+        "first_shot": first_shot,
+        "control_variate": control_variate,
+        "warm_up": warm_up,
+        "reconstruction": reconstruction,
+        "coherent": coherent or None,
+        "factors": factors,
+        "solver": solver,
+        "reciprocal": reciprocal,
+        "resolution": resolution,
+        "rotated": rotated,
+        "samples": samples,
+        "ambient": ambient,
+        "overshooting": overshooting,
+        "epsilon": epsilon,
+        "refinement": refinement,
+    }
     chosen = rd.method.resolve(method, **choices)
     if not given and isinstance(chosen, rd.Method):
         asked["rays"] = DEFAULT_RAYS

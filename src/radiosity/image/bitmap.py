@@ -32,7 +32,7 @@ def write_exr(values: np.ndarray, path, facts: dict[str, str], bands: tuple[str,
     """
     import mitsuba as mi  # its Bitmap needs no variant, and none is set here
 
-    from ..engine.device import bitmaps
+    from ..device.backend import bitmaps
 
     names = [f"band.{re.sub(r'[^A-Za-z0-9]+', '_', band)}" for band in bands] if values.shape[2] not in (1, 3) else []
     image = mi.Bitmap(np.ascontiguousarray(values, np.float32), **({"channel_names": names} if names else {}))

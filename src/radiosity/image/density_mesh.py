@@ -57,9 +57,9 @@ def display(solution, quantity: str) -> tuple[DisplayMesh, np.ndarray, np.ndarra
 
 def _landed(solution) -> np.ndarray:
     """(n_patches, n_bands) irradiance as counted, before it was smoothed, mean over replicates."""
-    from ..engine.problem import Problem
-    from ..engine.snapshot import Snapshot
-    from ..engine.walks.tally import WalkTally
+    from ..algorithms.walks.tally import WalkTally
+    from ..problem.model import Problem
+    from ..run.snapshot import Snapshot
 
     collisions = solution.provenance["choices"]["estimator"] == "collision"
     counted = WalkTally(collisions, solution.provenance["choices"]["absorption"] == "fractional")

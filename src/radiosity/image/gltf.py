@@ -72,8 +72,13 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         indices = add(part.triangles.astype("<u4").ravel(), "SCALAR", UINT, ELEMENTS)
         move = {"translation": part.origin.tolist()} if part.origin.any() else {}
         nodes.append({"name": part.name, "mesh": len(meshes), **move})
-        meshes.append({"name": part.name, "primitives": [{"attributes": attributes, "indices": indices, "material": 0}],
-                       "extras": {"scale": mesh.scale, "unit": mesh.unit}})  # fmt: skip
+        meshes.append(
+            {
+                "name": part.name,
+                "primitives": [{"attributes": attributes, "indices": indices, "material": 0}],
+                "extras": {"scale": mesh.scale, "unit": mesh.unit},
+            }
+        )
     root = {"name": "scene", "children": list(range(1, len(meshes) + 1)), **({"rotation": TURN} if mesh.up == "z" else {})}
     tree = {
         "asset": {"version": "2.0", "generator": "radiosity", "extras": mesh.facts()},
@@ -82,12 +87,16 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         "scenes": [{"nodes": [0]}],
         "nodes": [root, *nodes],
         "meshes": meshes,
-        "materials": [{
-            "name": mesh.key, "doubleSided": False, "extensions": {"KHR_materials_unlit": {}},
-            "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": 1},
-        }],
+        "materials": [
+            {
+                "name": mesh.key,
+                "doubleSided": False,
+                "extensions": {"KHR_materials_unlit": {}},
+                "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": 1},
+            }
+        ],
         "accessors": accessors,
         "bufferViews": views,
         "buffers": [{"byteLength": length}],
-    }  # fmt: skip
+    }
     return tree, blocks

@@ -68,9 +68,14 @@ class ColouredMesh:
     def facts(self) -> dict:
         """What a reader needs to turn colours back into physical values."""
         return {
-            "quantity": self.key, "unit": self.unit, "bands": list(self.bands), "scale": self.scale,
-            "colour": "linear colour = value x scale, clipped to 1", "up": self.up, "smoothed": self.smooth,
-        }  # fmt: skip
+            "quantity": self.key,
+            "unit": self.unit,
+            "bands": list(self.bands),
+            "scale": self.scale,
+            "colour": "linear colour = value x scale, clipped to 1",
+            "up": self.up,
+            "smoothed": self.smooth,
+        }
 
     def by_surface(self) -> Iterator[SurfacePart]:
         """Its surfaces one by one; those without a radiating patch are left out."""
@@ -103,6 +108,16 @@ def coloured(solution, look: Look) -> ColouredMesh:
         values = shown.values[owner]
     triangles, patch = mesh.triangles()
     return ColouredMesh(
-        mesh.vertices, triangles, mesh.surface[patch], patches.scene.names, values, tone.colours(values) * scale,
-        look.quantity, shown.unit, shown.bands, scale, up_axis(patches.scene), look.smooth,
-    )  # fmt: skip
+        mesh.vertices,
+        triangles,
+        mesh.surface[patch],
+        patches.scene.names,
+        values,
+        tone.colours(values) * scale,
+        look.quantity,
+        shown.unit,
+        shown.bands,
+        scale,
+        up_axis(patches.scene),
+        look.smooth,
+    )

@@ -28,15 +28,21 @@ def write(solution, path, look: Look) -> None:
     surface = np.zeros(len(mesh.vertices), np.int32)
     surface[mesh.triangles] = mesh.surface[:, None]
     header = [
-        "ply", "format binary_little_endian 1.0", "comment made by radiosity; coordinates in metres",
+        "ply",
+        "format binary_little_endian 1.0",
+        "comment made by radiosity; coordinates in metres",
         f"comment quantity {mesh.key} unit {mesh.unit} scale {mesh.scale!r}",
         "comment colours are sRGB of value x scale, clipped to 1",
         *(f"comment surface {i} {_line(name)}" for i, name in enumerate(mesh.names)),
-        f"element vertex {len(mesh.vertices)}", *(f"property {'double' if far else 'float'} {axis}" for axis in "xyz"),
-        *(f"property uchar {colour}" for colour in ("red", "green", "blue")), *(f"property float {band}" for band in bands),
+        f"element vertex {len(mesh.vertices)}",
+        *(f"property {'double' if far else 'float'} {axis}" for axis in "xyz"),
+        *(f"property uchar {colour}" for colour in ("red", "green", "blue")),
+        *(f"property float {band}" for band in bands),
         "property int surface",
-        f"element face {len(mesh.triangles)}", "property list uchar int vertex_indices", "end_header",
-    ]  # fmt: skip
+        f"element face {len(mesh.triangles)}",
+        "property list uchar int vertex_indices",
+        "end_header",
+    ]
     with replacing(path) as temporary, temporary.open("wb") as file:
         file.write(("\n".join(header) + "\n").replace("²", "2").encode("ascii", "replace"))
         for begin in range(0, len(mesh.vertices), CHUNK):

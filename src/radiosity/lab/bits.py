@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.device import threads
-from ..engine.solve import solve
+from ..device.backend import threads
 from ..method import Method
+from ..run.solve import solve
 from .study import Case
 
 QUANTA = 200_000

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.device import choose
-from ..engine.geometry import Geometry
-from ..engine.problem import Problem
-from ..engine.process import make
+from ..algorithms.table import make
+from ..device.backend import choose
+from ..problem.model import Problem
 from ..solution.intervals import student
+from ..tracing.geometry import Geometry
 from .measure import radiosity
 from .study import Arm, Case
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from ..engine.device import choose
-from ..engine.geometry import Geometry
-from ..engine.problem import Problem
-from ..engine.process import make
+from ..algorithms.table import make
+from ..device.backend import choose
 from ..method import Method
 from ..patches import subdivide
+from ..problem.model import Problem
 from ..scene import Scene, load_scene
+from ..tracing.geometry import Geometry
 from .measure import radiosity
 from .study import Case, Protocol
 
@@ -40,9 +40,16 @@ def plates(cells: int = 4) -> Case:
     keep = np.isin(scene.surface, [scene.names.index(name) for name in ("floor", "west wall", "light")])
     lit = scene.take(keep)
     both = Scene.from_arrays(
-        lit.vertices, lit.faces, lit.reflectance, lit.emission, two_sided=True, back_reflectance=0.3,
-        back_emission=np.zeros((1, 1)), surface=lit.surface, names=lit.names,
-    )  # fmt: skip
+        lit.vertices,
+        lit.faces,
+        lit.reflectance,
+        lit.emission,
+        two_sided=True,
+        back_reflectance=0.3,
+        back_emission=np.zeros((1, 1)),
+        surface=lit.surface,
+        names=lit.names,
+    )
     return Case("plates", subdivide(both, cells=cells), None)
 
 

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.caster import first_hits
 from ..method import Method
 from ..patches import Patches, cells, subdivide
 from ..patches.nesting import parents
 from ..scene import Scene, load_scene
+from ..tracing.caster import first_hits
 
 FINER = 4
 LINES = 4_000_000  # in all, to evaluate delta
@@ -37,7 +37,7 @@ class Discretisation:
 
 def discretisation(count: int, lines: float, seed: int) -> Discretisation:
     """Of ``room`` with faces cut into count x count cells."""
-    from ..engine.solve import solve
+    from ..run.solve import solve
 
     scene = load_scene("room")
     coarse, fine = subdivide(scene, cells=count), subdivide(scene, cells=FINER * count)
@@ -70,8 +70,11 @@ def delta(scene: Scene, fine: Patches, coarse: Patches, parent: np.ndarray, radi
     tangent = first / np.linalg.norm(first, axis=1, keepdims=True)
     radius, turn = np.sqrt(random.random(len(face))), 2 * np.pi * random.random(len(face))
     height = np.sqrt(1 - radius**2)
-    direction = (tangent * (radius * np.cos(turn))[:, None] + np.cross(normal, tangent) * (radius * np.sin(turn))[:, None]
-                 + normal * height[:, None])  # fmt: skip
+    direction = (
+        tangent * (radius * np.cos(turn))[:, None]
+        + np.cross(normal, tangent) * (radius * np.sin(turn))[:, None]
+        + normal * height[:, None]
+    )
     point = origin + u[:, None] * first + v[:, None] * second + normal * 1e-5
     hits = first_hits(scene, point, direction)
     met = np.zeros(len(face))

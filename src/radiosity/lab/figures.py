@@ -13,8 +13,16 @@ from .study import Arm
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")  # told apart by the colour-blind too
 NARROW = 18  # letters of an arm's name, below which four stand beside each other in the legend
 MARKS = ("o", "s", "^", "D", "v", "P", "X")
-STYLE: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.25, "axes.spines.top": False, "axes.spines.right": False,
-              "svg.hashsalt": "radiosity", "svg.fonttype": "path", "legend.frameon": False}  # fmt: skip
+STYLE: Any = {
+    "font.size": 9,
+    "axes.grid": True,
+    "grid.alpha": 0.25,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "svg.hashsalt": "radiosity",
+    "svg.fonttype": "path",
+    "legend.frameon": False,
+}
 LINES = "lines of one replicate (a span counts two)"
 
 
@@ -34,8 +42,16 @@ def drawn(path: Path, size: tuple[float, float], title: str = "") -> Iterator[An
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
 
 
-def convergence(results: Results, arms: tuple[Arm, ...], scenes: tuple[str, ...], title: str, path: Path, *,
-                seconds: bool = False, picture: bool = False) -> None:  # fmt: skip
+def convergence(
+    results: Results,
+    arms: tuple[Arm, ...],
+    scenes: tuple[str, ...],
+    title: str,
+    path: Path,
+    *,
+    seconds: bool = False,
+    picture: bool = False,
+) -> None:
     """One panel a scene; random numbers dashed, low discrepancy solid; the band is one standard error over replicates.
 
     Args:
@@ -97,8 +113,14 @@ def _look(number: int, count: int) -> dict[str, Any]:
     """What tells curves apart that lie on each other: the first ones are thick and the later ones thin, with marks of their own
     at places of their own."""
     thin = number / max(count - 1, 1)
-    return {"linewidth": 3.4 - 2.4 * thin, "marker": MARKS[number % len(MARKS)], "markersize": 7 - 2 * thin,
-            "markevery": (number % 3, 3), "markeredgecolor": "white", "markeredgewidth": 0.6}  # fmt: skip
+    return {
+        "linewidth": 3.4 - 2.4 * thin,
+        "marker": MARKS[number % len(MARKS)],
+        "markersize": 7 - 2 * thin,
+        "markevery": (number % 3, 3),
+        "markeredgecolor": "white",
+        "markeredgewidth": 0.6,
+    }
 
 
 def _curve(panel, x, errors, look: dict[str, Any]) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..engine.device import give_back_memory
+from ..device.backend import give_back_memory
 from ..errors import MethodError, RadiosityError, RadiosityWarning
 from ..scene import load_scene
 from ..scene.model import Scene
@@ -69,8 +69,8 @@ def _measure(task: dict) -> None:
     """In the process of its own."""
     import warnings
 
-    from ..engine.solve import solve
     from ..patches import subdivide
+    from ..run.solve import solve
 
     warnings.simplefilter("ignore", RadiosityWarning)
     scene = scene_of(task["scene"])

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.device import choose
-from ..engine.geometry import Geometry
-from ..engine.problem import Problem
-from ..engine.process import AbstractProcess, make
+from ..algorithms.process import AbstractProcess
+from ..algorithms.table import make
+from ..device.backend import choose
+from ..problem.model import Problem
+from ..tracing.geometry import Geometry
 from .sight import Sight
 from .study import Arm, Case, Protocol
 

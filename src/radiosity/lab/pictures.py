@@ -28,8 +28,8 @@ def scenes(path: Path, protocol: Protocol = FULL) -> list[Path]:
     """Figure 3: the room, solved and rendered, and the maze from above with the reflectance of its patches."""
     import matplotlib
 
-    from ..engine.solve import solve
     from ..image import render
+    from ..run.solve import solve
 
     patches = subdivide(load_scene("room"), size=0.1)
     solution = solve(patches, rays=min(LINES, 64 << protocol.last), seed=protocol.seed, device="cpu")
@@ -146,9 +146,15 @@ def _numbered(panel, room: Scene, paths, order, title: str, group: str, which: i
         panel.annotate("", tip[1], tip[1] - 1e-2 * (tip[1] - tip[0]), arrowprops=arrow, zorder=5)
         badge = {"boxstyle": "circle,pad=0.18", "facecolor": "white", "edgecolor": colour, "linewidth": 1.1}
         panel.text(
-            *(0.5 * tip[0] + 0.5 * tip[1]), str(number), ha="center", va="center", color="black", bbox=badge,
-            fontsize=8.5, zorder=6,
-        )  # fmt: skip
+            *(0.5 * tip[0] + 0.5 * tip[1]),
+            str(number),
+            ha="center",
+            va="center",
+            color="black",
+            bbox=badge,
+            fontsize=8.5,
+            zorder=6,
+        )
     _dots(panel, np.array([points[0] for points in paths]), "black")
     groups = sorted({fired[which] for fired in order})
     _legend(panel, [(f"{group} {k + 1}", COLOURS[k % len(COLOURS)], 1.6) for k in groups], columns=4)

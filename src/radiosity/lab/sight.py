@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.caster import first_hits
 from ..image import tone
 from ..image.view import directions
 from ..patches import Patches, cells
+from ..tracing.caster import first_hits
 
 WIDTH = 160  # pixels; one line of sight each, patches flat
 

@@ -55,8 +55,12 @@ def write_netcdf(path: Path, results: Results, facts: dict[str, str]) -> None:
     curves, single = ("arm", "scene", "replicate", "rung"), ("arm", "scene", "rung")
     xarray.Dataset(
         {
-            "error_area_weighted": (curves, stack("area_weighted")), "error_plain": (curves, stack("plain")),
-            "error_picture": (curves, stack("picture")), "lines": (single, stack("lines")), "seconds": (single, stack("seconds")),
+            "error_area_weighted": (curves, stack("area_weighted")),
+            "error_plain": (curves, stack("plain")),
+            "error_picture": (curves, stack("picture")),
+            "lines": (single, stack("lines")),
+            "seconds": (single, stack("seconds")),
         },
-        coords={"arm": arms, "scene": scenes}, attrs=facts,
-    ).to_netcdf(path, engine="scipy")  # fmt: skip
+        coords={"arm": arms, "scene": scenes},
+        attrs=facts,
+    ).to_netcdf(path, engine="scipy")

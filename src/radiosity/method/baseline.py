@@ -19,7 +19,7 @@ REFINEMENTS = {
     "error-radiance": "a link is cut where its estimated error of radiosity is large (Bekaert and Willems 1996)",
     "error-power": "a link is cut where its estimated error of power is large (Bekaert and Willems 1996)",
 }
-SOLVERS = ("jacobi", "gauss-seidel", "southwell", "conjugate-gradients")  # of deterministic.solvers
+SOLVERS = ("jacobi", "gauss-seidel", "southwell", "conjugate-gradients")  # of factors.solvers
 MOST_RESOLUTION, MOST_SAMPLES = 2048, 65535
 OF_PAIR, OF_PATCH = 16, 4096  # samples by default
 
@@ -118,7 +118,7 @@ class Baseline:
 
     @property
     def machine(self) -> str:
-        """The process that runs it, a name of `engine.process.PROCESSES`."""
+        """The process that runs it, a name of `algorithms.table.PROCESSES`."""
         return self.scheme
 
     def __str__(self) -> str:

@@ -33,17 +33,25 @@ def _local(method) -> str:
     if fires:
         return "firing"
     if method.order not in WALK_ORDERS:
-        raise MethodError(f"order '{method.order}' belongs to patches that fire what they owe: equation discrete, estimator "
-                          f"collision, absorption rounded; walks of other kinds take {', '.join(WALK_ORDERS)}")  # fmt: skip
+        raise MethodError(
+            f"order '{method.order}' belongs to patches that fire what they owe: equation discrete, estimator "
+            f"collision, absorption rounded; walks of other kinds take {', '.join(WALK_ORDERS)}"
+        )
     if method.estimator == "bidirectional":
-        raise MethodError("estimator 'bidirectional' weighs the two ends of single lines: it needs an iteration "
-                          f"({', '.join(ITERATIONS)}), not walks")  # fmt: skip
+        raise MethodError(
+            "estimator 'bidirectional' weighs the two ends of single lines: it needs an iteration "
+            f"({', '.join(ITERATIONS)}), not walks"
+        )
     if method.absorption == "rounded":
-        raise MethodError(f"absorption 'rounded' is for counted landings (equation discrete, estimator collision), not for "
-                          f"equation {method.equation} with estimator {method.estimator}; take drawn or fractional")  # fmt: skip
+        raise MethodError(
+            f"absorption 'rounded' is for counted landings (equation discrete, estimator collision), not for "
+            f"equation {method.equation} with estimator {method.estimator}; take drawn or fractional"
+        )
     if method.absorption == "fractional" and method.estimator != "collision":
-        raise MethodError(f"absorption 'fractional' has no probability of its own at a landing, which estimator "
-                          f"'{method.estimator}' divides by; take collision")  # fmt: skip
+        raise MethodError(
+            f"absorption 'fractional' has no probability of its own at a landing, which estimator "
+            f"'{method.estimator}' divides by; take collision"
+        )
     if method.order == "depth-first" and method.absorption == "fractional":
         raise MethodError("absorption 'fractional' lets a share of all walks go on together; take --order breadth-first")
     if method.estimator == "gathering":
@@ -55,28 +63,38 @@ def _local(method) -> str:
 
 def _global(method) -> str:
     if method.equation != "discrete":
-        raise MethodError("a global line leaves each patch where it happens to cross it, which is a fresh uniform point: "
-                          "global lines solve the discrete equation only")  # fmt: skip
+        raise MethodError(
+            "a global line leaves each patch where it happens to cross it, which is a fresh uniform point: "
+            "global lines solve the discrete equation only"
+        )
     if method.order in (*WALK_ORDERS, "well-distributed", "incremental"):
-        raise MethodError(f"order '{method.order}' chooses the patch that fires next, but global lines cross patches as they "
-                          "come; take multipath, matrix or regular")  # fmt: skip
+        raise MethodError(
+            f"order '{method.order}' chooses the patch that fires next, but global lines cross patches as they "
+            "come; take multipath, matrix or regular"
+        )
     if method.order == "multipath":
         if method.lines == "bundles":
-            raise MethodError("the lines of a bundle are parallel: what one leaves on a patch cannot turn within the bundle; "
-                              "take --order regular or matrix with bundles")  # fmt: skip
+            raise MethodError(
+                "the lines of a bundle are parallel: what one leaves on a patch cannot turn within the bundle; "
+                "take --order regular or matrix with bundles"
+            )
         return "multipath"
     return "matrix" if method.order == "matrix" else "pooling"
 
 
 def _refuse_options(method, found: str) -> None:
     if method.estimator != "collision" and found not in ("walks", "gathering", "iteration"):
-        raise MethodError(f"estimator '{method.estimator}' is for walks and iterations of local lines, not for "
-                          f"{method.lines}/{method.order}; leave it out")  # fmt: skip
+        raise MethodError(
+            f"estimator '{method.estimator}' is for walks and iterations of local lines, not for "
+            f"{method.lines}/{method.order}; leave it out"
+        )
     if found == "iteration" and method.estimator not in ("collision", "bidirectional"):
         raise MethodError(f"estimator '{method.estimator}' is for walks; iterations take collision or bidirectional")
     if method.absorption != "auto" and found not in ("firing", "walks", "gathering"):
-        raise MethodError(f"absorption '{method.absorption}': nothing is absorbed on the way in {method.lines}/{method.order}, "
-                          "power is weighed instead; leave it out")  # fmt: skip
+        raise MethodError(
+            f"absorption '{method.absorption}': nothing is absorbed on the way in {method.lines}/{method.order}, "
+            "power is weighed instead; leave it out"
+        )
     if isinstance(method.first_shot, bool) or not isinstance(method.first_shot, int | float):
         raise MethodError(f"first_shot is {method.first_shot!r}; it is the share of all lines, a number at least 0 and below 1")
     if method.first_shot and found not in ("multipath", "pooling"):
@@ -91,9 +109,12 @@ def _refuse_options(method, found: str) -> None:
         raise MethodError("iterations by global lines have a warm-up of their own; leave warm_up out, or take --lines local")
     if method.reconstruction not in RECONSTRUCTIONS:
         raise MethodError(f"reconstruction '{method.reconstruction}' does not exist; known are {', '.join(RECONSTRUCTIONS)}")
-    if method.reconstruction == "local-linear" and (found != "walks" or method.equation != "continuous"
-                                                    or method.estimator == "gathering"):  # fmt: skip
+    if method.reconstruction == "local-linear" and (
+        found != "walks" or method.equation != "continuous" or method.estimator == "gathering"
+    ):
         raise MethodError("density estimation needs landing points of particles: equation continuous, local lines, shooting")
     if method.coherent and (found != "firing" or method.order != "breadth-first" or method.numbers != "halton"):
-        raise MethodError("coherent firing needs strata of the Halton sequence and whole sweeps: discrete/local/breadth-first/"
-                          f"halton, not {method.lines}/{method.order}/{method.numbers}; leave one out")  # fmt: skip
+        raise MethodError(
+            "coherent firing needs strata of the Halton sequence and whole sweeps: discrete/local/breadth-first/"
+            f"halton, not {method.lines}/{method.order}/{method.numbers}; leave one out"
+        )

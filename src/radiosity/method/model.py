@@ -3,18 +3,20 @@
 from dataclasses import dataclass
 
 from ..errors import MethodError
+from ..sampling.numbers import NUMBERS
 from .combinations import machine
 from .equation import EQUATIONS
 from .estimator import ABSORPTIONS, ESTIMATORS
 from .lines import LINES
-from .numbers import NUMBERS
 from .order import ORDERS
 from .randomisation import RANDOMISATIONS
 
 AXES = {"equation": tuple(EQUATIONS), "lines": tuple(LINES), "order": tuple(ORDERS), "numbers": tuple(NUMBERS)}
 CHOICES = AXES | {
-    "randomisation": tuple(RANDOMISATIONS), "estimator": tuple(ESTIMATORS), "absorption": ("auto", *ABSORPTIONS),
-}  # fmt: skip
+    "randomisation": tuple(RANDOMISATIONS),
+    "estimator": tuple(ESTIMATORS),
+    "absorption": ("auto", *ABSORPTIONS),
+}
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ class Method:
 
     @property
     def machine(self) -> str:
-        """The process that runs it, a name of `engine.process.PROCESSES`."""
+        """The process that runs it, a name of `algorithms.table.PROCESSES`."""
         return machine(self)
 
     def __str__(self) -> str:

@@ -19,9 +19,23 @@ def build(vertices, faces, reflectance, emission, *, source, **rest) -> Scene:
     return build_rows(vertices, faces, reflectance, emission, source=source, **rest)[0].without_degenerate_faces()
 
 
-def build_rows(vertices, faces, reflectance, emission, *, surface=None, names=None, two_sided=False, back=None,
-               back_reflectance=None, back_emission=None, bands=None, photometric=False, cameras=(),
-               source="arrays") -> tuple[Scene, np.ndarray]:  # fmt: skip
+def build_rows(
+    vertices,
+    faces,
+    reflectance,
+    emission,
+    *,
+    surface=None,
+    names=None,
+    two_sided=False,
+    back=None,
+    back_reflectance=None,
+    back_emission=None,
+    bands=None,
+    photometric=False,
+    cameras=(),
+    source="arrays",
+) -> tuple[Scene, np.ndarray]:
     """The scene with degenerate faces still in it, and the input row that each of its faces came from."""
     vertices = arguments.array(vertices, np.float64, "vertices", source)
     faces = arguments.indices(faces, source)
@@ -60,9 +74,21 @@ def build_rows(vertices, faces, reflectance, emission, *, surface=None, names=No
     faces, rows = _parallelograms(vertices, faces)
     reflectance, emission, back_reflectance, back_emission = (value[rows] for value in values)
     scene = Scene(
-        vertices, faces, reflectance, emission, back[rows], back_reflectance, back_emission, surface[rows], names, bands,
-        bool(photometric), np.full(len(names), np.nan), cameras=arguments.cameras_of(cameras, source), source=str(source),
-    )  # fmt: skip
+        vertices,
+        faces,
+        reflectance,
+        emission,
+        back[rows],
+        back_reflectance,
+        back_emission,
+        surface[rows],
+        names,
+        bands,
+        bool(photometric),
+        np.full(len(names), np.nan),
+        cameras=arguments.cameras_of(cameras, source),
+        source=str(source),
+    )
     return scene, rows
 
 
@@ -97,8 +123,14 @@ def _parallelograms(vertices, faces) -> tuple[np.ndarray, np.ndarray]:
     corners = faces[rows[first]]
     points = vertices[corners]
     # along the diagonal that keeps both halves on one side, also where the quadrilateral is concave
-    inside = np.einsum("ij,ij->i", np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]),
-                       np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 0])) > 0  # fmt: skip
+    inside = (
+        np.einsum(
+            "ij,ij->i",
+            np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]),
+            np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 0]),
+        )
+        > 0
+    )
     one = np.where(inside[:, None], corners[:, [0, 1, 2]], corners[:, [1, 2, 3]])
     two = np.where(inside[:, None], corners[:, [0, 2, 3]], corners[:, [1, 3, 0]])
     result[first] = np.column_stack([one, np.full(len(first), -1)])

@@ -17,8 +17,15 @@ from .texture_memory import SMALL
 __all__ = ["DEFAULT_REFLECTANCE", "Material", "Part", "ReadOptions", "assemble", "warn"]
 
 
-def assemble(parts: list[Part], source: str, options: ReadOptions, *, photometric: bool = False,
-             cameras: tuple[Camera, ...] = (), scale: float = 1.0) -> Scene:  # fmt: skip
+def assemble(
+    parts: list[Part],
+    source: str,
+    options: ReadOptions,
+    *,
+    photometric: bool = False,
+    cameras: tuple[Camera, ...] = (),
+    scale: float = 1.0,
+) -> Scene:
     """One scene from parts whose vertices are in metres already; ``scale`` is only recorded.
 
     Triangles that are the halves of a parallelogram become one face again; faces without area are left out;
@@ -51,21 +58,29 @@ def assemble(parts: list[Part], source: str, options: ReadOptions, *, photometri
         return np.broadcast_to(value, (len(bands),)) if len(value) == 1 else value
 
     scene, rows = build_rows(
-        np.concatenate([part.vertices for part in parts]), faces,
-        each([spread(m.reflectance) for m in material]), each([spread(m.emission) for m in material]),
-        surface=each([index[part.name] for part in parts], np.int64), names=names,
+        np.concatenate([part.vertices for part in parts]),
+        faces,
+        each([spread(m.reflectance) for m in material]),
+        each([spread(m.emission) for m in material]),
+        surface=each([index[part.name] for part in parts], np.int64),
+        names=names,
         back=each([m.back for m in material], np.int64),
         back_reflectance=each([spread(m.reflectance if m.back_reflectance is None else m.back_reflectance) for m in material]),
         back_emission=each([spread(m.emission if m.back_emission is None else m.back_emission) for m in material]),
-        bands=bands, photometric=photometric, cameras=cameras, source=source,
-    )  # fmt: skip
+        bands=bands,
+        photometric=photometric,
+        cameras=cameras,
+        source=source,
+    )
     # the rows of the paints must follow where quadrilaterals were split
     paints = (reflectance_paint(parts, len(bands), options.max_reflectance), emission_paint(parts, len(bands)))
     of_reflectance, of_emission = (paint and split_paint(paint, scene, rows, faces) for paint in paints)
     scene = replace(scene, reflectance_paint=of_reflectance, emission_paint=of_emission)
     if options.textures.averaged:
-        warn(f"{source}: images that are too large, alone or together, are averaged to {SMALL} pixels along an edge, and small "
-             f"parts of them run into each other; scale them down, or cut them: {shown(options.textures.averaged)}")  # fmt: skip
+        warn(
+            f"{source}: images that are too large, alone or together, are averaged to {SMALL} pixels along an edge, and small "
+            f"parts of them run into each other; scale them down, or cut them: {shown(options.textures.averaged)}"
+        )
         options.textures.averaged.clear()
     sizes_asked = np.full(len(names), np.nan)
     for part in parts:

@@ -18,7 +18,7 @@ from .overlap import common, overlapping
 from .precision import EPSILON
 
 ONE_PLANE = 4  # ulps: faces nearer than this where they overlap lie in one plane
-NEAR = 8  # ulps: so far in front of their face lines begin (engine/geometry.py), so that they miss what is nearer
+NEAR = 8  # ulps: so far in front of their face lines begin (tracing/geometry.py), so that they miss what is nearer
 WIDTH = 32  # ulps: what faces share is wider than that, and than SLIVER of the smaller one's longest edge
 SLIVER = 1e-5
 MOST = 1 << 24  # pairs
@@ -75,8 +75,10 @@ def _compared(scene: Scene, corners: np.ndarray, faces: np.ndarray) -> list[Cont
         if found > MOST:
             warnings.warn(
                 f"{scene.source}: more than {MOST} pairs of faces lie on each other; which of the others a line meets is left to "
-                "chance: remove copies of faces", RadiosityWarning, stacklevel=3,
-            )  # fmt: skip
+                "chance: remove copies of faces",
+                RadiosityWarning,
+                stacklevel=3,
+            )
             break
     return parts
 
@@ -113,8 +115,9 @@ def _measured(scene: Scene, corners: np.ndarray, least: np.ndarray, small: np.nd
     turn = small < large  # then the larger one is `two`, and its height over the smaller is told along that one's normal
     gap = np.where(turn, np.where(same, -most, most), most)
     share = area / np.minimum(scene.area[small], scene.area[large])
-    every = Contacts(np.minimum(small, large), np.maximum(small, large), gap, ulp, share,
-                     np.abs(told).max(axis=1) <= ONE_PLANE * ulp, same)  # fmt: skip
+    every = Contacts(
+        np.minimum(small, large), np.maximum(small, large), gap, ulp, share, np.abs(told).max(axis=1) <= ONE_PLANE * ulp, same
+    )
     return every.take(np.minimum(np.abs(exact), np.abs(told)).max(axis=1) <= NEAR * ulp)
 
 

@@ -40,8 +40,10 @@ def settle(parts: list[Part], source: str, options: ReadOptions) -> list[Part]:
     if missing:
         warn(f"{source}: no material for {shown(missing)}; reflectance {DEFAULT_REFLECTANCE} taken")
     for file, those in bright.items():
-        warn(f"{file}: reflectance above {options.max_reflectance:g} brought down to it (at most {max(those.values()):.4g}): "
-             f"{shown(those)}; --max-reflectance sets the bound, and what a .toml sets below 1 is taken as it is")  # fmt: skip
+        warn(
+            f"{file}: reflectance above {options.max_reflectance:g} brought down to it (at most {max(those.values()):.4g}): "
+            f"{shown(those)}; --max-reflectance sets the bound, and what a .toml sets below 1 is taken as it is"
+        )
     if glossy:
         warn(f"{source}: not diffuse, taken by the diffuse albedo: {shown(glossy)}")
     return result
@@ -123,8 +125,10 @@ def _check_arrays(part: Part, source: str) -> None:
             vertex = int(np.flatnonzero(used & ~good)[0])
             face = int(np.flatnonzero((faces == vertex).any(axis=1))[0])
             rule = "must be finite" + (" and not negative" if low == 0 else "") + (f", at most {high:g}" if high < np.inf else "")
-            raise SceneError(f"{source}: {what} of vertex {vertex} (face {face} of surface '{part.name}') "
-                             f"are {np.asarray(values)[vertex].tolist()}; they {rule}")  # fmt: skip
+            raise SceneError(
+                f"{source}: {what} of vertex {vertex} (face {face} of surface '{part.name}') "
+                f"are {np.asarray(values)[vertex].tolist()}; they {rule}"
+            )
     for image, what in ((part.texture, "texture"), (part.emission_texture, "emission texture")):
         if image is not None and not ((image >= 0) & (image <= LARGEST)).all():
             raise SceneError(f"{source}: the {what} of surface '{part.name}' holds values that are negative or not finite")

@@ -42,8 +42,15 @@ def maze_quads(mean_reflectance: float, cells: int) -> Scene:
     back[two_sided] = reflectance[len(quads) :]
     surfaces = ("walls", "floor", "ceiling")
     return Scene.from_arrays(
-        np.concatenate(quads), np.arange(4 * len(quads)).reshape(-1, 4), front, 1 - front, two_sided=two_sided,
-        back_reflectance=back, back_emission=np.where(two_sided, 1 - back, 0.0),
-        surface=[surfaces.index(name) for name in names], names=surfaces,
-        source=f"labyrinth-{mean_reflectance:g}", cameras=(Camera((0.5, 0.15, 0.5), (0.5, 2.0, 0.5), fov=70.0),),
-    )  # fmt: skip
+        np.concatenate(quads),
+        np.arange(4 * len(quads)).reshape(-1, 4),
+        front,
+        1 - front,
+        two_sided=two_sided,
+        back_reflectance=back,
+        back_emission=np.where(two_sided, 1 - back, 0.0),
+        surface=[surfaces.index(name) for name in names],
+        names=surfaces,
+        source=f"labyrinth-{mean_reflectance:g}",
+        cameras=(Camera((0.5, 0.15, 0.5), (0.5, 2.0, 0.5), fov=70.0),),
+    )

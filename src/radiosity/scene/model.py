@@ -117,10 +117,21 @@ class Scene:
         from .arrays import build
 
         return build(
-            vertices, faces, reflectance, emission, surface=surface, names=names, two_sided=two_sided, back=back,
-            back_reflectance=back_reflectance, back_emission=back_emission, bands=bands, photometric=photometric,
-            cameras=cameras, source=source,
-        )  # fmt: skip
+            vertices,
+            faces,
+            reflectance,
+            emission,
+            surface=surface,
+            names=names,
+            two_sided=two_sided,
+            back=back,
+            back_reflectance=back_reflectance,
+            back_emission=back_emission,
+            bands=bands,
+            photometric=photometric,
+            cameras=cameras,
+            source=source,
+        )
 
     @property
     def n_faces(self) -> int:
@@ -193,9 +204,15 @@ class Scene:
         """SHA-256 over everything that a solution depends on."""
         digest = hashlib.sha256()
         for array in (
-            self.vertices, self.faces, self.reflectance, self.emission, self.back, self.back_reflectance,
-            self.back_emission, self.surface,
-        ):  # fmt: skip
+            self.vertices,
+            self.faces,
+            self.reflectance,
+            self.emission,
+            self.back,
+            self.back_reflectance,
+            self.back_emission,
+            self.surface,
+        ):
             digest.update(str((array.dtype.str, array.shape)).encode())
             digest.update(np.ascontiguousarray(array).tobytes())
         for paint in (self.reflectance_paint, self.emission_paint):
@@ -210,12 +227,17 @@ class Scene:
         """The scene of a choice of faces (indices or mask)."""
         rows = np.flatnonzero(keep) if np.asarray(keep).dtype == bool else np.asarray(keep)
         return replace(
-            self, faces=self.faces[rows], reflectance=self.reflectance[rows], emission=self.emission[rows],
-            back=self.back[rows], back_reflectance=self.back_reflectance[rows], back_emission=self.back_emission[rows],
+            self,
+            faces=self.faces[rows],
+            reflectance=self.reflectance[rows],
+            emission=self.emission[rows],
+            back=self.back[rows],
+            back_reflectance=self.back_reflectance[rows],
+            back_emission=self.back_emission[rows],
             surface=self.surface[rows],
             reflectance_paint=self.reflectance_paint and self.reflectance_paint.take(rows),
             emission_paint=self.emission_paint and self.emission_paint.take(rows),
-        )  # fmt: skip
+        )
 
     def without_degenerate_faces(self) -> "Scene":
         """Leave out, with one warning, faces that single precision cannot tell from a line or a point where they lie.

@@ -19,8 +19,10 @@ def emission_paint(parts: list[Part], n_bands: int) -> Paint | None:
     if all(part.emission_texture is None and part.emission_color is None for part in parts):
         return None
     coordinates = [part.uv if part.emission_uv is None else part.emission_uv for part in parts]
-    rows = [(part.emission_texture, part.emission_sampler, uv, part.emission_color)
-            for part, uv in zip(parts, coordinates, strict=True)]  # fmt: skip
+    rows = [
+        (part.emission_texture, part.emission_sampler, uv, part.emission_color)
+        for part, uv in zip(parts, coordinates, strict=True)
+    ]
     return _paint(parts, rows, n_bands, np.inf)
 
 

@@ -34,11 +34,17 @@ def studio() -> Scene:
     rows = [(i, color, emission, corners) for i, (_, color, emission, quads) in enumerate(parts) for corners in quads]
     lamp = np.array([parts[i][0] == "lamp" for i, *_ in rows])
     scene = Scene.from_arrays(
-        np.concatenate([corners for *_, corners in rows]), np.arange(4 * len(rows)).reshape(-1, 4),
-        np.array([color for _, color, _, _ in rows]), np.array([emission for _, _, emission, _ in rows]),
-        surface=[i for i, *_ in rows], names=[name for name, *_ in parts], two_sided=lamp, back_emission=np.zeros((1, 3)),
-        cameras=(Camera((1.8, 0.05, 1.55), (2.05, 3.0, 1.12), (0, 0, 1), 68.0, 800, 600),), source="studio",
-    )  # fmt: skip
+        np.concatenate([corners for *_, corners in rows]),
+        np.arange(4 * len(rows)).reshape(-1, 4),
+        np.array([color for _, color, _, _ in rows]),
+        np.array([emission for _, _, emission, _ in rows]),
+        surface=[i for i, *_ in rows],
+        names=[name for name, *_ in parts],
+        two_sided=lamp,
+        back_emission=np.zeros((1, 3)),
+        cameras=(Camera((1.8, 0.05, 1.55), (2.05, 3.0, 1.12), (0, 0, 1), 68.0, 800, 600),),
+        source="studio",
+    )
     return replace(scene, patch_size=np.full(len(parts), GRID))
 
 

@@ -51,11 +51,16 @@ def to_xarray(solution):
     low, high = solution.interval(0.95, "irradiance")
     low_radiosity, high_radiosity = solution.interval(0.95, "radiosity")
     measured = {
-        "radiosity": solution.radiosity, "radiosity_standard_error": solution.standard_error,
-        "radiosity_low": low_radiosity, "radiosity_high": high_radiosity, "irradiance": solution.irradiance,
-        "irradiance_standard_error": solution.irradiance_standard_error, "irradiance_low": low, "irradiance_high": high,
+        "radiosity": solution.radiosity,
+        "radiosity_standard_error": solution.standard_error,
+        "radiosity_low": low_radiosity,
+        "radiosity_high": high_radiosity,
+        "irradiance": solution.irradiance,
+        "irradiance_standard_error": solution.irradiance_standard_error,
+        "irradiance_low": low,
+        "irradiance_high": high,
         "emission": patches.emission,
-    }  # fmt: skip
+    }
     variables = {name: (both, values, {"units": unit}) for name, values in measured.items()}
     variables |= {
         "reflectance": (both, patches.reflectance, {"units": "1"}),
@@ -66,11 +71,19 @@ def to_xarray(solution):
     }
     names = np.array(patches.scene.names, object)[patches.surface].astype(str)
     coordinates = {
-        "patch": np.arange(len(patches)), "band": list(solution.bands), "axis": list("xyz"), "surface": ("patch", names),
+        "patch": np.arange(len(patches)),
+        "band": list(solution.bands),
+        "axis": list("xyz"),
+        "surface": ("patch", names),
         "side": ("patch", SIDES[patches.is_back.astype(int)]),
-    }  # fmt: skip
-    facts = {"source": patches.scene.source, "method": str(solution.provenance["method"]), "rays": solution.rays,
-             "replicates": solution.replicates, "status": solution.status}  # fmt: skip
+    }
+    facts = {
+        "source": patches.scene.source,
+        "method": str(solution.provenance["method"]),
+        "rays": solution.rays,
+        "replicates": solution.replicates,
+        "status": solution.status,
+    }
     return xarray.Dataset(variables, coords=coordinates, attrs=facts)
 
 

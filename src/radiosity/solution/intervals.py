@@ -90,9 +90,13 @@ def count_bounds(count: np.ndarray, level: float, cluster: np.ndarray | float = 
 
 
 def irradiance_bounds(
-    irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, level: float,
-    cluster: np.ndarray | float = 1.0, usual: np.ndarray | None = None,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    irradiance: np.ndarray,
+    arrivals: np.ndarray,
+    area: np.ndarray,
+    level: float,
+    cluster: np.ndarray | float = 1.0,
+    usual: np.ndarray | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
     """(n_patches, n_bands) each: what the irradiance does not fall below and does not exceed, each with a probability of
     ``level``, by the distribution of arrivals alone: rough where many landed, and all that is known where none did. Where lines
     brought nothing they count as none. Arguments as of `power_of_an_arrival`; ``usual`` may have a row for each patch."""
@@ -107,9 +111,13 @@ def by_luck(mean: np.ndarray, error: np.ndarray) -> np.ndarray:
 
 
 def least_error(
-    irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray,
-    usual: np.ndarray | None = None, replicates: int = 1,
-) -> np.ndarray:  # fmt: skip
+    irradiance: np.ndarray,
+    error: np.ndarray,
+    arrivals: np.ndarray,
+    area: np.ndarray,
+    usual: np.ndarray | None = None,
+    replicates: int = 1,
+) -> np.ndarray:
     """(n_patches, n_bands) standard error, where it is zero since all replicates agree by chance, or since signed lines of the
     residue cancel. It is written over.
 

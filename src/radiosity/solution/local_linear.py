@@ -70,9 +70,7 @@ class Regions:
         return points @ np.column_stack([first, np.cross(normal, first)])
 
 
-def weights(
-    regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.ndarray, *, least: int = 1, planes: bool = True
-):
+def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.ndarray, *, least: int = 1, planes: bool = True):
     """(m, n_patches) sparse matrix W: W times power over area of the patches is the estimate at m points, each in the plane of
     the region ``of`` it. Rows sum to one.
 

@@ -94,10 +94,12 @@ class RefineCheck:
 
         moved = (area @ self.change[here]) / (np.sqrt(area.sum()) * size)
         return {
-            "patches": int(here.sum()), "sampling": relative(self.coarse.standard_error**2),
-            "discretisation": relative(self.square_of_means), "within": relative(self.square_within),
+            "patches": int(here.sum()),
+            "sampling": relative(self.coarse.standard_error**2),
+            "discretisation": relative(self.square_of_means),
+            "within": relative(self.square_within),
             "change": float(moved[np.nanargmax(np.abs(moved))]) if np.isfinite(moved).any() else float("nan"),
-        }  # fmt: skip
+        }
 
     def report(self) -> str:
         """The table in plain text, the surfaces with the largest errors first."""

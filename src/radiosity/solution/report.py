@@ -113,8 +113,10 @@ def _dark(rows: list[dict]) -> list[str]:
     if not names:
         return []
     area = sum(row["dark"] for row in rows)
-    return [f"two-sided, lit on one side alone: {printable(shown(names, 4))}; their other sides ({area:.4g} m²), which no line "
-            "reached, are left out of areas and means"]  # fmt: skip
+    return [
+        f"two-sided, lit on one side alone: {printable(shown(names, 4))}; their other sides ({area:.4g} m²), which no line "
+        "reached, are left out of areas and means"
+    ]
 
 
 def _why(solution) -> str:

@@ -55,9 +55,10 @@ def save(solution: Solution, path: Path, *, derived: bool = True) -> None:
             arrays |= {f"{which}_{name}": getattr(paint, name) for name in PAINT_ARRAYS}
             arrays |= {f"{which}_picture_{i}": picture for i, picture in enumerate(paint.images)}
             paints[which] = {
-                "images": len(paint.images), "limit": None if np.isinf(paint.limit) else paint.limit,
+                "images": len(paint.images),
+                "limit": None if np.isinf(paint.limit) else paint.limit,
                 "samplers": [asdict(sampler) for sampler in paint.samplers],
-            }  # fmt: skip
+            }
     arrays |= {"patches_columns": patches.columns, "patches_rows": patches.rows}
     arrays |= {name: getattr(solution, name) for name in SOLUTION_ARRAYS}
     arrays |= {name: getattr(solution, name) for name in POWER_ARRAYS if getattr(solution, name) is not None}
@@ -65,9 +66,18 @@ def save(solution: Solution, path: Path, *, derived: bool = True) -> None:
         arrays |= {"radiosity": solution.radiosity, "standard_error": solution.standard_error}
     arrays |= {f"state_{name}": value for name, value in solution.state.items()}
     meta = {name: getattr(solution, name) for name in SCALARS}
-    meta |= {"format": FORMAT, "paints": paints, "scene": {
-        "names": scene.names, "bands": scene.bands, "photometric": scene.photometric, "scale": scene.scale,
-        "source": scene.source, "cameras": [asdict(c) for c in scene.cameras]}}  # fmt: skip
+    meta |= {
+        "format": FORMAT,
+        "paints": paints,
+        "scene": {
+            "names": scene.names,
+            "bands": scene.bands,
+            "photometric": scene.photometric,
+            "scale": scene.scale,
+            "source": scene.source,
+            "cameras": [asdict(c) for c in scene.cameras],
+        },
+    }
     arrays["meta"] = np.array(json.dumps(meta))
     with whole_file(path) as file:
         np.savez(file, **arrays)
@@ -126,10 +136,15 @@ def _restore(arrays: dict, meta: dict) -> Solution:
         paints[which] = Paint(images, **held, limit=limit, samplers=samplers)
     cameras = tuple(_camera(**fields) for fields in described["cameras"])
     scene = Scene(
-        **{name: arrays[f"scene_{name}"] for name in SCENE_ARRAYS}, **paints, cameras=cameras,
-        names=tuple(described["names"]), bands=tuple(described["bands"]), photometric=described["photometric"],
-        scale=described["scale"], source=described["source"],
-    )  # fmt: skip
+        **{name: arrays[f"scene_{name}"] for name in SCENE_ARRAYS},
+        **paints,
+        cameras=cameras,
+        names=tuple(described["names"]),
+        bands=tuple(described["bands"]),
+        photometric=described["photometric"],
+        scale=described["scale"],
+        source=described["source"],
+    )
     patches = Patches(scene, arrays["patches_columns"], arrays["patches_rows"])
     state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
     scalars = {name: meta[name] for name in SCALARS}

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...engine.solve import solve
 from ...patches import Patches, subdivide
+from ...run.solve import solve
 from .. import figures, report
 from ..contest import ARMS, Entry, contest
 from ..footprint import scene_of

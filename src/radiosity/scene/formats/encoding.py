@@ -13,8 +13,13 @@ from ...errors import SceneError
 from ..assemble import warn
 from .code_pages import CODE_PAGES, weight_of
 
-MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe\0\0", "utf-32"), (b"\0\0\xfe\xff", "utf-32"), (b"\xff\xfe", "utf-16"),
-         (b"\xfe\xff", "utf-16"))  # fmt: skip
+MARKS = (
+    (b"\xef\xbb\xbf", "utf-8-sig"),
+    (b"\xff\xfe\0\0", "utf-32"),
+    (b"\0\0\xfe\xff", "utf-32"),
+    (b"\xff\xfe", "utf-16"),
+    (b"\xfe\xff", "utf-16"),
+)
 MOST_WORDS = 1000  # that are weighed
 SURE = math.log(100)  # by which the best code page must lead the second
 HIGH = re.compile(rb"[\x80-\xff]")

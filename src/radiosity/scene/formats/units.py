@@ -8,9 +8,22 @@ from ..assemble import ReadOptions, warn
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}  # metres
 WORDS = {
-    "m": "m", "meter": "m", "metre": "m", "cm": "cm", "centimeter": "cm", "centimetre": "cm", "mm": "mm", "millimeter": "mm",
-    "millimetre": "mm", "in": "in", "inch": "in", "inche": "in", "ft": "ft", "foot": "ft", "feet": "ft",
-}  # fmt: skip
+    "m": "m",
+    "meter": "m",
+    "metre": "m",
+    "cm": "cm",
+    "centimeter": "cm",
+    "centimetre": "cm",
+    "mm": "mm",
+    "millimeter": "mm",
+    "millimetre": "mm",
+    "in": "in",
+    "inch": "in",
+    "inche": "in",
+    "ft": "ft",
+    "foot": "ft",
+    "feet": "ft",
+}
 SAID = re.compile(r"\bunits?\s*(?:[:=]|\bis\b|\bare\b|\bin\b)?\s*[\"']?([a-z]+)", re.IGNORECASE)
 
 
@@ -25,4 +38,4 @@ def warn_of_unit(source, comments: Iterable[str], options: ReadOptions) -> None:
     unit = said(comments)
     if unit is not None and not isclose(UNITS[unit], options.unit, rel_tol=1e-6):
         text = f"says that its unit is {unit}, and lengths are taken in units of {options.unit:g} m"
-        warn(f"{source}: {text}; if the comment is right, write unit = \"{unit}\" in a .toml (docs/scene-toml.md)")
+        warn(f'{source}: {text}; if the comment is right, write unit = "{unit}" in a .toml (docs/scene-toml.md)')

@@ -94,9 +94,18 @@ def _part(file: GltfFile, node: Node, mesh: dict, primitive: dict, materials: Ma
     copies = len(vertices) // max(count, 1)
     uv, (color,) = [_repeated(values, copies) for values in uv], [_repeated(color, copies)]
     return Part(
-        name, vertices, faces, finish.material, uv[0], color, base and base.image, emissive and emissive.image, uv[1],
-        sampler=base.sampler if base else DEFAULT_SAMPLER, emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
-    )  # fmt: skip
+        name,
+        vertices,
+        faces,
+        finish.material,
+        uv[0],
+        color,
+        base and base.image,
+        emissive and emissive.image,
+        uv[1],
+        sampler=base.sampler if base else DEFAULT_SAMPLER,
+        emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
+    )
 
 
 def _repeated(values: np.ndarray | None, copies: int) -> np.ndarray | None:

@@ -9,10 +9,17 @@ from .file import COMPRESSED, UNPACK, GltfFile
 from .nodes import Node, composed
 
 READ = (
-    "KHR_texture_transform", "KHR_mesh_quantization", "KHR_lights_punctual", "EXT_texture_webp", "KHR_node_visibility",
-    "EXT_mesh_gpu_instancing", "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_emissive_strength",
+    "KHR_texture_transform",
+    "KHR_mesh_quantization",
+    "KHR_lights_punctual",
+    "EXT_texture_webp",
+    "KHR_node_visibility",
+    "EXT_mesh_gpu_instancing",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_emissive_strength",
     "KHR_materials_pbrSpecularGlossiness",
-)  # fmt: skip
+)
 # factors beside which a material is not diffuse, and their defaults; what only shapes their light is left out in silence
 GLOSSY = {
     "KHR_materials_transmission": ("transmissionFactor", 0.0),
@@ -22,9 +29,17 @@ GLOSSY = {
     "KHR_materials_iridescence": ("iridescenceFactor", 0.0),
 }
 SILENT = (
-    "KHR_materials_specular", "KHR_materials_ior", "KHR_materials_volume", "KHR_materials_dispersion", "KHR_materials_anisotropy",
-    "KHR_xmp_json_ld", "KHR_animation_pointer", "KHR_node_hoverability", "KHR_node_selectability", "KHR_interactivity",
-)  # fmt: skip
+    "KHR_materials_specular",
+    "KHR_materials_ior",
+    "KHR_materials_volume",
+    "KHR_materials_dispersion",
+    "KHR_materials_anisotropy",
+    "KHR_xmp_json_ld",
+    "KHR_animation_pointer",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "KHR_interactivity",
+)
 INSTANCED = {"TRANSLATION": 3, "ROTATION": 4, "SCALE": 3}
 MOST_INSTANCED = 20_000_000  # faces or vertices of one object
 

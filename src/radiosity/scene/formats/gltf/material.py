@@ -77,8 +77,10 @@ class Materials:
 
     def report(self) -> None:
         if self.colorless:
-            warn(f"{self.file.path}: materials without a base colour (by default white metal, which exporters write where they "
-                 f"cannot convert one): reflectance {DEFAULT_REFLECTANCE} taken for {shown(self.colorless)}")  # fmt: skip
+            warn(
+                f"{self.file.path}: materials without a base colour (by default white metal, which exporters write where they "
+                f"cannot convert one): reflectance {DEFAULT_REFLECTANCE} taken for {shown(self.colorless)}"
+            )
         warn_of_black(self.file.path, self.black)
         warn_of_bytes(self.file.path, self.bytes)
         if self.unlit:

@@ -16,10 +16,25 @@ from ..names import repeated
 from .ply_rows import Columns, Property, read_ascii, read_binary
 
 TYPES = {
-    "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",
-    "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "int64": "i8", "uint64": "u8",
-    "float32": "f4", "float64": "f8",
-}  # fmt: skip
+    "char": "i1",
+    "uchar": "u1",
+    "short": "i2",
+    "ushort": "u2",
+    "int": "i4",
+    "uint": "u4",
+    "float": "f4",
+    "double": "f8",
+    "int8": "i1",
+    "uint8": "u1",
+    "int16": "i2",
+    "uint16": "u2",
+    "int32": "i4",
+    "uint32": "u4",
+    "int64": "i8",
+    "uint64": "u8",
+    "float32": "f4",
+    "float64": "f8",
+}
 WITH_FACES = ("vertex", "face", "tristrips")
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
@@ -56,8 +71,10 @@ def read_ply(path: Path) -> Ply:
         least = sum((p.count or p.dtype).itemsize for p in properties) if order else len(properties)
         have = len(body) - at if order else len(words) - at
         if count * least > have:
-            raise SceneError(f"{path}: the header announces {kind}, at least {count * least} {'bytes' if order else 'numbers'}; "
-                             f"{have} are left: the file is truncated or damaged")  # fmt: skip
+            raise SceneError(
+                f"{path}: the header announces {kind}, at least {count * least} {'bytes' if order else 'numbers'}; "
+                f"{have} are left: the file is truncated or damaged"
+            )
         try:
             if order:
                 columns[name], at = read_binary(body, at, count, properties)

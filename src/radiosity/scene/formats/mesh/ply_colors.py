@@ -14,8 +14,20 @@ from .ply_rows import Columns
 NAMES = (("red", "green", "blue"), ("r", "g", "b"), ("diffuse_red", "diffuse_green", "diffuse_blue"))
 OPACITIES = ("alpha", "a", "opacity", "diffuse_alpha")
 # words in names of properties that would change the colours if they were read
-TELLING = ("red", "green", "blue", "color", "colour", "gray", "grey", "intensity", "emission", "emissive", "radiance",
-           "reflectance")  # fmt: skip
+TELLING = (
+    "red",
+    "green",
+    "blue",
+    "color",
+    "colour",
+    "gray",
+    "grey",
+    "intensity",
+    "emission",
+    "emissive",
+    "radiance",
+    "reflectance",
+)
 LARGEST = 65535
 
 

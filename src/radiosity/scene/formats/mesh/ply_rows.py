@@ -57,8 +57,13 @@ def _size(value) -> int:
 def read_binary(body: bytes, at: int, count: int, properties: list[Property]) -> tuple[Columns, int]:
     """Columns of ``count`` rows from bytes, and where they end. ValueError or IndexError: they do not fit."""
     sizes = _first_sizes(body, at, properties) if count else [1] * len(properties)
-    row = np.dtype([(f"{kind}{i}", t, n) for i, (p, size) in enumerate(zip(properties, sizes, strict=True))
-                    for kind, t, n in ([("n", p.count, ())] if p.count else []) + [("v", p.dtype, (size,))]])  # fmt: skip
+    row = np.dtype(
+        [
+            (f"{kind}{i}", t, n)
+            for i, (p, size) in enumerate(zip(properties, sizes, strict=True))
+            for kind, t, n in ([("n", p.count, ())] if p.count else []) + [("v", p.dtype, (size,))]
+        ]
+    )
     if at + count * row.itemsize <= len(body):
         table = np.frombuffer(body, row, count, at)
         if all((table[f"n{i}"] == size).all() for i, (p, size) in enumerate(zip(properties, sizes, strict=True)) if p.count):

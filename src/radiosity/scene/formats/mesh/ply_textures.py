@@ -79,4 +79,3 @@ def of_vertices(vertex: Columns) -> np.ndarray | None:
     """(n_vertices, 2) texture coordinates of vertices, or None."""
     held = vertex.numbers
     return next((np.column_stack([held[u], held[v]]) for u, v in COORDINATES if u in held and v in held), None)
-

@@ -98,8 +98,10 @@ def _ascii(path: Path, data: bytes) -> list[Solid]:
     if end != "endsolid":
         warn(f"{path}: the file ends without endsolid; it may be truncated")
     if not count["facet"] == count["endfacet"] == count["vertex"] / 3:
-        raise SceneError(f"{path}: {count['endfacet']} of {count['facet']} facets are complete, with {count['vertex']} vertices; "
-                         "the file is truncated or damaged")  # fmt: skip
+        raise SceneError(
+            f"{path}: {count['endfacet']} of {count['facet']} facets are complete, with {count['vertex']} vertices; "
+            "the file is truncated or damaged"
+        )
     try:
         solids = [Solid(name, np.array(words, np.float64).reshape(-1, 3, 3)) for name, words in found if words]
     except ValueError as error:

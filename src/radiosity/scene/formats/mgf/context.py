@@ -45,10 +45,18 @@ class NamedContexts:
         self._material: bytes | None = None
         self._vertex: bytes | None = None
         self.handlers = {
-            b"p": self._set_point, b"v": self._get_vertex, b"c": self._get_color, b"cxy": self._set_chromaticity,
-            b"m": self._get_material, b"sides": self._set_sides, b"rd": self._set_reflectance, b"ed": self._set_emittance,
-            b"rs": self._set_not_diffuse, b"td": self._set_not_diffuse, b"ts": self._set_not_diffuse,
-        }  # fmt: skip
+            b"p": self._set_point,
+            b"v": self._get_vertex,
+            b"c": self._get_color,
+            b"cxy": self._set_chromaticity,
+            b"m": self._get_material,
+            b"sides": self._set_sides,
+            b"rd": self._set_reflectance,
+            b"ed": self._set_emittance,
+            b"rs": self._set_not_diffuse,
+            b"td": self._set_not_diffuse,
+            b"ts": self._set_not_diffuse,
+        }
 
     @property
     def material(self) -> MgfMaterial:

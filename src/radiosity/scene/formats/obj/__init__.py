@@ -52,8 +52,11 @@ def read(path: Path, options: ReadOptions) -> Scene:
     uv = np.array(tables.uv, np.float64).reshape(-1, 2)
     crossed: dict[str, list[int]] = {}
     partly: list[str] = []
-    parts = [_part(name or path.stem, material, rows, (vertices, colors, uv), finishes.get(material), crossed, partly)
-             for (name, material), rows in tables.groups.items() if rows]  # fmt: skip
+    parts = [
+        _part(name or path.stem, material, rows, (vertices, colors, uv), finishes.get(material), crossed, partly)
+        for (name, material), rows in tables.groups.items()
+        if rows
+    ]
     warn_of_crossing(path, crossed)
     if partly:
         text = "vertex colours are left out where some vertices of a surface have none"
@@ -110,9 +113,12 @@ def _part(
         partly.append(name)
     base, emissive = finish.base, finish.emissive
     part = replace(
-        part, texture=base and base.image, emission_texture=emissive and emissive.image,
-        sampler=base.sampler if base else DEFAULT_SAMPLER, emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
-    )  # fmt: skip
+        part,
+        texture=base and base.image,
+        emission_texture=emissive and emissive.image,
+        sampler=base.sampler if base else DEFAULT_SAMPLER,
+        emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
+    )
     if (corners[:, 1] >= 0).all():
         own = uv[corners[:, 1]]
         return replace(part, uv=base and base.uv(own), emission_uv=emissive and emissive.uv(own))

@@ -13,8 +13,22 @@ from ..beside import in_any_case
 from ..textures import linear_image
 
 # options of map_Kd and map_Ke, and how many values follow (-o, -s, -t: one to three numbers)
-OPTIONS = {"-blendu": 1, "-blendv": 1, "-boost": 1, "-mm": 2, "-texres": 1, "-clamp": 1, "-bm": 1, "-imfchan": 1, "-type": 1,
-           "-cc": 1, "-colorspace": 1, "-o": 3, "-s": 3, "-t": 3}  # fmt: skip
+OPTIONS = {
+    "-blendu": 1,
+    "-blendv": 1,
+    "-boost": 1,
+    "-mm": 2,
+    "-texres": 1,
+    "-clamp": 1,
+    "-bm": 1,
+    "-imfchan": 1,
+    "-type": 1,
+    "-cc": 1,
+    "-colorspace": 1,
+    "-o": 3,
+    "-s": 3,
+    "-t": 3,
+}
 # those that would change the colours and are not followed, with the values at which they change nothing
 UNCHANGED = {"-t": ("0", "0", "0"), "-mm": ("0", "1"), "-cc": ("off",)}
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")

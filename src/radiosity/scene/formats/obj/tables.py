@@ -13,9 +13,30 @@ FREE_FORM = ("curv", "curv2", "surf")
 NO_FACES = {"p": "points", "l": "lines"}
 # statements that change no face: normals, smoothing, what belongs to free forms, and how programs show things
 WITHOUT_EFFECT = (
-    "vn", "vp", "s", "deg", "bmat", "step", "cstype", "parm", "trim", "hole", "scrv", "sp", "end", "con", "mg",
-    "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech", "stech",
-)  # fmt: skip
+    "vn",
+    "vp",
+    "s",
+    "deg",
+    "bmat",
+    "step",
+    "cstype",
+    "parm",
+    "trim",
+    "hole",
+    "scrv",
+    "sp",
+    "end",
+    "con",
+    "mg",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+    "ctech",
+    "stech",
+)
 HEAD = 1 << 16  # characters in which comments are looked at
 PAINTED = "#MRGB"  # ZBrush's colours
 NONE = -1

@@ -112,8 +112,11 @@ def checked(values: dict, source: str) -> SceneFile:
 
 def _sentence(fault, values: dict) -> str:
     path = fault["loc"]
-    where = ", ".join(f"{step} {path[i + 1] + 1}" if i + 1 < len(path) and isinstance(path[i + 1], int) else str(step)
-                      for i, step in enumerate(path) if isinstance(step, str))  # fmt: skip
+    where = ", ".join(
+        f"{step} {path[i + 1] + 1}" if i + 1 < len(path) and isinstance(path[i + 1], int) else str(step)
+        for i, step in enumerate(path)
+        if isinstance(step, str)
+    )
     if path[0] == "surface" and len(path) > 1 and isinstance(values["surface"][path[1]], dict):
         where = where.replace(",", f" ('{values['surface'][path[1]].get('name', '')}'),", 1)
     if fault["type"] == "extra_forbidden":

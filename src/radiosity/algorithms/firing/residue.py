@@ -1,0 +1,175 @@
+"""What whole lines leave unsent (contract 12), and where the lines begin that send it on.
+
+When a stage ends, patch i owes x_i = E_i A_i / delta + rho_i h_i and has fired s_i = floor(x_i + phase_i) lines. The residue
+r_i = x_i - s_i is known exactly, and h_j - sum_i s_i F_ij has mean zero; so what is missing of the mean of h is the answer D to
+the means of the residues: D = F^T r + F^T rho D. Where no light comes back to its patch these are zero, since phases are uniform.
+In a narrow gap they are not, and most of the light is missing at few lines. Bands have residues of their own: what a patch owes
+of each less what its lines have carried.
+
+Residues are summed over groups of consecutive patches, in which most of their noise cancels, and become whole lines by systematic
+rounding along the patches: all that is left unsent of a replicate is less than a line. A line carries 1 or -1 of the band that a
+group lacks most of (or has too much of), and its share of the others. It begins on a patch of the group in proportion to what
+these owe, up to one line: as the means of their residues grow, too.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...patches.model import Patches
+from ...pieces import PIECE, pieces
+from ...problem.bands import QUANTUM
+from ...problem.model import Problem
+from ...problem.quanta import Source
+from ...sampling.streams import Purpose, stream
+from ..process import State
+
+SHARE = 0.025  # of a replicate's quanta: the lines that noise makes are to be no more
+MOST = 512  # patches of a group
+TYPICAL = math.sqrt(1 / (3 * math.pi))  # mean size of a normal variable of the variance 1/6, which residues have
+ONE = np.uint64(1 << 32)
+
+
+@dataclass(frozen=True, eq=False)
+class Starts:
+    """Lines that send the residue on.
+
+    Attributes:
+        replicate, patch: (m,) int64, where they begin, replicate by replicate.
+        line: (m,) uint32, which of its replicate, from 0 on.
+        power: (m, n_groups) int64, what they carry, `QUANTUM` to a quantum: that, or less that, of one of the groups.
+    """
+
+    replicate: np.ndarray
+    patch: np.ndarray
+    line: np.ndarray
+    power: np.ndarray
+
+    @staticmethod
+    def of(problem: Problem, state: State, phase: np.ndarray, seed: int) -> "Starts":
+        """From a process's state after a stage.
+
+        Args:
+            phase: (replicates, n_patches) uint32.
+        """
+        residue, found = Residue.of(problem, state, phase), []
+        groups = Groups.of(problem.patches, residue.quanta)
+        for replicate in range(len(phase)):
+            random = np.random.Generator(np.random.Philox(stream(seed, replicate, Purpose.RESIDUE)))
+            patch, power = _lines(residue, replicate, groups, random)
+            found.append((np.full(len(patch), replicate), patch, np.arange(len(patch), dtype=np.uint32), power))
+        return Starts(*(np.concatenate(column) for column in zip(*found, strict=True)))
+
+    @property
+    def net(self) -> int:
+        """How many carry more than nothing, less those that carry less."""
+        return int(np.sign(self.power.max(axis=1) + self.power.min(axis=1)).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Residue:
+    """Of all patches after a stage.
+
+    Attributes:
+        problem: what is solved.
+        quanta: N.
+        emitted: (n_patches,) uint64, E_i A_i / delta times 2^32.
+        state: of the process.
+        phase: (replicates, n_patches) uint32.
+    """
+
+    problem: Problem
+    quanta: int
+    emitted: np.ndarray
+    state: State
+    phase: np.ndarray
+
+    @staticmethod
+    def of(problem: Problem, state: State, phase: np.ndarray) -> "Residue":
+        """After a process's state."""
+        quanta = int(state["quanta"])
+        whole, fraction = problem.source.emitted(quanta)
+        return Residue(problem, quanta, (whole.astype(np.uint64) << np.uint64(32)) | fraction, state, phase)
+
+    def read(self, replicate: int, part: slice) -> tuple[np.ndarray, np.ndarray]:
+        """What some patches owe of the scalar problem, (k,) uint64, and what is left of each group, (k, n_groups) int64; both in
+        2^-32 of a quantum."""
+        arrivals, phase = self.state["arrivals"][replicate, part], self.phase[replicate, part]
+        owed = self.problem.source.rho[part].astype(np.uint64) * arrivals + self.emitted[part]
+        if "received" not in self.state:
+            return owed, (((owed + phase) % ONE).astype(np.int64) - phase)[:, None]
+        groups, received = self.problem.groups, self.state["received"][replicate, part]
+        share = groups.emission[part] * (self.problem.patches.area[part] / self.problem.source.power)[:, None]
+        owed_of_each = share * (self.quanta * QUANTUM) + Source.fixed(groups.reflectance[part]) * 2.0**-32 * received
+        return owed, 2 * np.round(owed_of_each - self.state["sent"][replicate, part]).astype(np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class Groups:
+    """Consecutive patches whose residues are summed.
+
+    Attributes:
+        n_patches: in all.
+        begins: (k,) int64, the first patch of each, increasing; None where each patch is alone.
+    """
+
+    n_patches: int
+    begins: np.ndarray | None
+
+    @staticmethod
+    def of(patches: Patches, quanta: int) -> "Groups":
+        """At N quanta. None reaches over the end of a face, or else of a surface, where these are no more than groups."""
+        n, size = len(patches), group_size(len(patches), quanta)
+        if size == 1:
+            return Groups(n, None)
+        faces, surface = patches.first[:-1].astype(np.int64), patches.scene.surface
+        surfaces = faces[np.concatenate([[True], surface[1:] != surface[:-1]])]
+        runs = next((runs for runs in (faces, surfaces) if len(runs) * size <= n), np.zeros(1, np.int64))
+        length = np.diff(np.append(runs, n))
+        count = -(-length // size)
+        of = np.repeat(np.arange(len(runs)), count)
+        turn = np.arange(len(of)) - (np.cumsum(count) - count)[of]
+        return Groups(n, runs[of] + turn * length[of] // count[of])
+
+    def parts(self) -> Iterator[tuple[slice, np.ndarray]]:
+        """Whole groups, some `PIECE` patches at a time, and where groups begin in them."""
+        if self.begins is None:
+            yield from ((part, np.arange(part.stop - part.start)) for part in pieces(self.n_patches))
+            return
+        step = max(PIECE * len(self.begins) // self.n_patches, 1)
+        ends = np.append(self.begins, self.n_patches)
+        for group in range(0, len(self.begins), step):
+            part = slice(int(ends[group]), int(ends[min(group + step, len(self.begins))]))
+            yield part, self.begins[group : group + step] - part.start
+
+
+def group_size(n_patches: int, quanta: int) -> int:
+    """Patches whose residues are summed before they become lines: so many that these stay few."""
+    alone = TYPICAL * n_patches / (SHARE * quanta)
+    return min(math.ceil(alone**2), MOST)
+
+
+def _lines(residue: Residue, replicate: int, groups: Groups, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Patches where a replicate's lines begin, and what they carry."""
+    total, found = int(random.integers(0, 1 << 32)), []
+    for part, begins in groups.parts():
+        owed, left = residue.read(replicate, part)
+        sums = np.add.reduceat(left, begins)
+        most = sums[np.arange(len(sums)), np.abs(sums).argmax(axis=1)]
+        reached = np.cumsum(np.append(total, most))
+        total = int(reached[-1])
+        group = np.repeat(np.arange(len(sums)), np.abs(np.diff(reached >> 32)))
+        power = np.round(sums[group] * (QUANTUM / np.abs(most[group]))[:, None]).astype(np.int64)
+        found.append((part.start + (group if groups.begins is None else _within(owed, begins, group, random)), power))
+    patch, power = (np.concatenate(column) for column in zip(*found, strict=True))
+    return patch, power
+
+
+def _within(owed: np.ndarray, begins: np.ndarray, group: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """A patch of each line's group."""
+    weight = np.concatenate([[0], np.cumsum(np.minimum(owed, ONE), dtype=np.uint64)])
+    low, high = weight[begins[group]], weight[np.append(begins[1:], len(owed))[group]]
+    at = low + (random.random(len(group)) * (high - low)).astype(np.uint64)
+    return np.searchsorted(weight, np.minimum(at, high - np.uint64(1)), side="right") - 1

@@ -1,0 +1,127 @@
+"""The lines that send the residue on, and the walks that they begin (see `residue`), outside the counters of hits and lines.
+
+A line of weight 1 goes on from where it lands with its weight times the reflectance, and where that falls below `LEAST`, with
+this weight or not at all: absorption by chance alone would add noise to what the scene receives where it reflects nearly all.
+"""
+
+from dataclasses import dataclass
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import frozen, upload
+from ...device.launches import shared
+from ...device.recorded import loop
+from ...pieces import pieces
+from ...problem.bands import QUANTUM
+from ...problem.model import Problem
+from ...sampling.numbers import WORDS
+from ...sampling.numbers.random import philox
+from ...sampling.streams import Purpose, stream
+from ...tracing.lines import local_line
+from ..process import State
+from .residue import Starts
+
+LEAST = QUANTUM // 2  # 2^30
+LONGER = 1.6  # times as many lines as chance alone would take, 1.5 to 1.7 where reflectances are 0.5 to 1
+
+
+@dataclass(frozen=True, eq=False)
+class Sent:
+    """What residues bring to what landed, which may be less than nothing, in 64-bit fixed point: `QUANTUM` to a quantum.
+
+    Attributes:
+        received: (replicates, n_patches, n_groups) int64, both together.
+        missed: (2, replicates, n_groups) int64, escaped and lost, of the residue alone.
+        fired: n_groups whole numbers, what of the residue left patches along lines, of all replicates.
+        lines: of the residue, of all replicates.
+    """
+
+    received: np.ndarray
+    missed: np.ndarray
+    fired: list[int]
+    lines: int
+
+
+def starts(engine, problem: Problem, state: State) -> Starts:
+    """Where lines begin after the state's stage."""
+    return Starts.of(problem, state, frozen(engine.phase).reshape(engine.replicates, engine.n), engine.seed)
+
+
+def send(engine, problem: Problem, state: State, begun: Starts) -> Sent:
+    """Send the residues of a complete stage on.
+
+    Args:
+        engine: of the run; its counters are left alone.
+        problem: what is solved.
+        state: of the stage.
+        begun: its `starts`.
+    """
+    n_groups = begun.power.shape[1]
+    tally = dr.zeros(engine.types.Int64, (engine.total + 2 * engine.replicates) * n_groups)
+    dr.eval(tally)
+    fired, lines = _walk(engine, begun, tally) if len(begun.line) else ([0] * n_groups, 0)
+    flat = frozen(tally).reshape(-1, n_groups)  # nobody else holds it: hits are added where it lies, which takes no memory
+    received = flat[: engine.total].reshape(engine.replicates, engine.n, n_groups)
+    for replicate, row in enumerate(received):
+        for part in pieces(engine.n):
+            if "received" in state:
+                row[part] += state["received"][replicate, part].astype(np.int64)
+            else:
+                row[part] += (state["arrivals"][replicate, part] * np.int64(QUANTUM))[:, None]
+    return Sent(received, flat[engine.total :].reshape(2, engine.replicates, n_groups), fired, lines)
+
+
+def _walk(engine, begun: Starts, tally) -> tuple[list[int], int]:
+    """One lane a line, which its walk follows to the end, in one kernel. What was fired of each group, and how many lines."""
+    types, (m, n_groups) = engine.types, begun.power.shape
+    width = max(m, 2)  # arrays of one entry would compile a kernel of their own
+
+    def column(kind, values):
+        return upload(kind, np.resize(values, width))
+
+    number = column(types.UInt32, (begun.replicate * engine.n + begun.patch).astype(np.uint32))
+    line, going = column(types.UInt32, begun.line), dr.arange(types.UInt32, width) < dr.opaque(types.UInt32, m)
+    streams = [stream(engine.seed, replicate, Purpose.RESIDUE_LINES) for replicate in range(engine.replicates)]
+    words = upload(types.UInt32, np.array([stream.generate_state(WORDS, np.uint32) for stream in streams]))
+
+    def body(number, turn, going, weight, powers, fired):
+        replicate = engine.replicate(number)
+        points, choice = _numbers(types, words, line, turn, replicate)
+        slot = engine.land_in(local_line(engine.geometry, engine.record(number), points), replicate, going)
+        for g, power in enumerate(powers):
+            dr.scatter_add(tally, power, slot * n_groups + g, active=going)
+        fired = [before + power for before, power in zip(fired, powers, strict=True)]
+        here = going & (slot < engine.total)
+        patch = slot - engine.replicate(slot) * engine.n_opaque
+        rho = dr.gather(types.UInt32, engine.rho, patch, here)
+        left = types.UInt32((types.UInt64(weight) * types.UInt64(rho)) >> 32)
+        after = dr.maximum(left, LEAST)
+        here &= choice >> 2 < left
+        return slot, turn + 1, here, after, _reflected(engine, powers, patch, here, left, after), fired
+
+    powers = [column(types.Int64, power) for power in begun.power.T]
+    none = [dr.zeros(types.Int64, width) for _ in powers]
+    state = (number, dr.zeros(types.UInt32, width), going, dr.full(types.UInt32, QUANTUM, width), powers, none)
+    _, turn, _, _, _, fired = loop(state, lambda number, turn, going, *rest: going, body)
+    with shared(width):
+        dr.eval(tally, turn, *fired)
+    return [int(frozen(one)[:m].sum()) for one in fired], int(frozen(turn)[:m].sum(dtype=np.int64))
+
+
+def _reflected(engine, powers: list, patch, here, left, after) -> list:
+    """In a kernel: the powers of lines that go on with the weight ``after`` where ``left`` is left of it."""
+    types, bands = engine.types, engine.bands
+    if bands is None:
+        return [dr.select(powers[0] < 0, -types.Int64(after), types.Int64(after))]
+    wide = types.Float64
+    gain = wide(after) / wide(left) * 2.0**-32
+    shares = [wide(dr.gather(types.UInt32, rho, patch, here)) * gain for rho in bands.rhos]
+    return [types.Int64(dr.round(wide(power) * share)) for power, share in zip(powers, shares, strict=True)]
+
+
+def _numbers(types, words, line, turn, replicate):
+    """In a kernel: four numbers of the ``turn``-th line of a walk, and a word that decides whether it goes on."""
+    first, second = (list(dr.gather(types.Array4u, words, replicate * 2 + half)) for half in (0, 1))
+    points = [types.Float(word >> 8) * 2.0**-24 for word in philox([line, turn, *first[2:]], first[:2])]
+    return points, philox([line, turn, *second[2:]], second[:2])[0]

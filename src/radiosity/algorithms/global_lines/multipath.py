@@ -1,0 +1,188 @@
+"""Global multipath (Sbert, Pueyo, Neumann, Purgathofer 1996): power waits on patches for the next line that crosses them.
+
+Of L lines a patch expects L e_i span ends, e_i = A_i / (2 pi R^2). The paper fixes L, lets a patch emit E_i A_i / (L e_i) at
+each end, and adds up powers. All of that is proportional to 1 / L: so here a patch emits E_i A_i / e_i at each end, and sums are
+divided by L when they are read. Then L need not be known beforehand, a run may go on from where it is, and what it holds after L
+lines is what the paper's method gives for L, to the bit. `docs/global-lines.md` has more.
+"""
+
+from math import ceil
+
+import numpy as np
+
+from ...device.backend import frozen, upload
+from ...errors import MethodError
+from ...problem.quanta import Source
+from ...tracing.global_lines.spans import ONE_WAY, Spans
+from ..process import AbstractProcess, State, Swept
+from . import first_shot
+from .exchange import LEDGER, Exchange
+from .first_shot import FirstShot
+from .landed import HIGHEST, Landed, unit
+from .mixing import Mixed
+
+FULLEST = 63  # bits of a sum
+WARM_UP, MOST_WARM_UP = 4, 64  # ends of a mean patch, the first times 1 / (1 - mean reflectance)
+BATCH = 1 << 21  # spans of all replicates between two looks at the clock
+
+
+class Multipath(AbstractProcess):
+    """N is the number of global lines of a replicate (of spans, where they are drawn one by one). All lines, as they are counted,
+    are proportional to it: each line has a fixed expected number of ends, and a first shot has its share of all.
+
+    Without a first shot the state after N lines depends on N alone. With one, the first shot is made finer at each stage, from
+    N/2 to N for example, and the global lines of that stage start from what it has left by then: an average, weighted by
+    lines, of unbiased results.
+    """
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        patches, groups, types = self.geometry.patches, self.problem.groups, self.geometry.device.types
+        self.spans = Spans(self.geometry, self.method, self.seed, self.replicates)
+        self.mixed = Mixed(self.spans)
+        self.shot = None
+        if self.method.first_shot:
+            self.shot = FirstShot(self.geometry, self.problem, self.method, self.seed, self.replicates)
+        self.n, self.total = len(patches), len(patches) * self.replicates
+        self._quanta, self.done = 0, 0
+        self.ends = np.zeros((self.replicates, self.n), np.int64)
+        self.ledger = [{name: [0] * self.replicates for name in LEDGER} for _ in range(groups.n_groups)]
+        emitted = [self._fixed(groups.emission[:, g] * patches.area, g) for g in range(groups.n_groups)]
+        self.exchanges = [
+            Exchange(
+                types,
+                self.geometry.some_backs_pass,
+                upload(types.UInt32, Source.fixed(groups.reflectance[:, g])),
+                upload(types.UInt64, np.tile(emitted[g], self.replicates)),
+                dr_zeros(types, self.total),
+                dr_zeros(types, self.total),
+            )
+            for g in range(groups.n_groups)
+        ]
+
+    @property
+    def quanta(self) -> int:
+        return self._quanta
+
+    @property
+    def nested(self) -> bool:
+        return self.shot is None
+
+    def advance(self, quanta: int, swept: Swept) -> None:
+        most = float(self.spans.ends_per_line.max()) * quanta
+        if most > 2.0 ** (FULLEST - HIGHEST):
+            raise MethodError(
+                f"{quanta} lines a replicate cross a patch {most:.3g} times, more than its 64-bit sums hold; "
+                "take fewer lines a replicate and more replicates, or smaller patches"
+            )
+        self._quanta = quanta
+        if self.shot is not None:
+            self._shoot(quanta, swept)
+        if self.done == 0:
+            self._begin()
+        while self.done < quanta:
+            swept(self._carry(min(self._batch - self.done % self._batch, quanta - self.done)))
+
+    @property
+    def _batch(self) -> int:
+        """Lines of a replicate between two looks at the clock: whole blocks."""
+        spans_a_line = max(float(self.spans.ends_per_line.sum()) / 2, 1e-3)
+        return max(1, round(BATCH / spans_a_line / self.replicates / self.mixed.block)) * self.mixed.block
+
+    def _begin(self) -> None:
+        """Put the power on the patches that waits there in the long run: what they reflect of a uniform irradiance that
+        balances what is emitted, and then what the first lines make of that.
+
+        From nothing, the power that waits would be missing from all sums: that is about 1 / (1 - rho) of the ends that a patch
+        has had, three standard errors in the labyrinth of reflectance 0.9.
+        """
+        types, groups, area = self.geometry.device.types, self.problem.groups, self.geometry.patches.area
+        for g, exchange in enumerate(self.exchanges):
+            rho = groups.reflectance[:, g]
+            source = frozen(exchange.source).reshape(self.replicates, self.n).astype(float)
+            mean = source @ area / float((1 - rho) @ area)
+            exchange.unshot = upload(types.UInt64, np.floor(mean[:, None] * rho).astype(np.uint64))
+        visits = WARM_UP / (1 - float(np.average(groups.reflectance.max(axis=1), weights=area)))
+        lines = ceil(min(visits, MOST_WARM_UP) / float(self.spans.ends_per_line.mean()) / self.mixed.block) * self.mixed.block
+        while self.done < lines:
+            self._carry(min(self._batch, lines - self.done))
+        self.done, self.ends[:] = 0, 0
+        for exchange, ledger in zip(self.exchanges, self.ledger, strict=True):
+            exchange.landed = dr_zeros(types, self.total)
+            ledger.update({name: [0] * self.replicates for name in LEDGER})
+
+    def _shoot(self, quanta: int, swept: Swept) -> None:
+        """Refine the first shot, and let patches emit what it lets them reflect."""
+        shot = self.shot
+        assert shot is not None
+        shot.fire(first_shot.lines_for(self.method.first_shot, quanta * float(self.spans.ends_per_line.sum())), swept)
+        state = shot.capture()
+        for g, exchange in enumerate(self.exchanges):
+            power, _ = first_shot.landed(self.problem, state, g)
+            source = self._fixed(power * self.problem.groups.reflectance[:, g], g)
+            exchange.source = upload(self.geometry.device.types.UInt64, source)
+
+    def _carry(self, count: int) -> int:
+        """The next lines of each replicate: how many ends they have, all together."""
+        drawn = [self.mixed.draw(replicate, self.done, count) for replicate in range(self.replicates)]
+        UInt32 = self.geometry.device.types.UInt32
+        both = [np.concatenate([getattr(pairs, end) for pairs in drawn]) for end in ("one", "other")]
+        before = int(self.ends.sum())
+        for row, pairs in zip(self.ends, drawn, strict=True):
+            for end in (pairs.one, pairs.other):
+                row += np.bincount(end[end < ONE_WAY], minlength=self.n)
+        lengths = np.array([len(pairs.one) for pairs in drawn])
+        if lengths.any():
+            one, other = (upload(UInt32, np.append(end, end[-1:])) for end in both)  # never of one entry
+            for exchange, ledger in zip(self.exchanges, self.ledger, strict=True):
+                for name, sums in zip(LEDGER, exchange.run(one, other, lengths, self.n), strict=True):
+                    ledger[name] = [old + int(new) for old, new in zip(ledger[name], sums, strict=True)]
+        self.done += count
+        return int(self.ends.sum()) - before
+
+    def _fixed(self, power: np.ndarray, group: int) -> np.ndarray:
+        """From the power of patches, W or lm, (..., n_patches), to what they emit at each span end, in units."""
+        return np.round(power / self.spans.ends_per_line / unit(self.problem, self.spans.ends_per_line, group)).astype(np.uint64)
+
+    def capture(self) -> State:
+        shape = (len(self.exchanges), self.replicates, self.n)
+        limbs = [[[divmod(x, 2**32) for x in ledger[name]] for name in LEDGER] for ledger in self.ledger]
+        state = {
+            "quanta": np.array(self._quanta),
+            "lines_done": np.array(self.done),
+            "ends": self.ends.copy(),
+            "ends_per_line": self.spans.ends_per_line,
+            "ledger": np.array(limbs, np.uint64),
+            "unshot": np.stack([frozen(x.unshot) for x in self.exchanges]).reshape(shape),
+            "landed": np.stack([frozen(x.landed) for x in self.exchanges]).reshape(shape),
+        }
+        return state if self.shot is None else state | self.shot.capture()
+
+    def restore(self, state: State) -> None:
+        wanted = {"quanta", "lines_done", "ends", "ledger", "unshot", "landed"}
+        if wanted - set(state) or state["ends"].shape != self.ends.shape:
+            raise MethodError("the solution to go on from lacks the sums of its multipath run; start anew")
+        UInt64 = self.geometry.device.types.UInt64
+        self._quanta, self.done, self.ends = int(state["quanta"]), int(state["lines_done"]), state["ends"].astype(np.int64)
+        for g, exchange in enumerate(self.exchanges):
+            exchange.unshot, exchange.landed = upload(UInt64, state["unshot"][g]), upload(UInt64, state["landed"][g])
+            self.ledger[g] = {
+                name: [(int(high) << 32) + int(low) for high, low in rows]
+                for name, rows in zip(LEDGER, state["ledger"][g], strict=True)
+            }
+        if self.shot is not None:
+            self.shot.restore(state)
+
+    def unfinished(self, state: State) -> bool:
+        return int(state["lines_done"]) < int(state["quanta"])
+
+    @property
+    def tally(self) -> Landed:
+        return Landed()
+
+
+def dr_zeros(types, width: int):
+    """Zeros to be scattered into: `dr.zeros` would be a literal."""
+    import drjit as dr
+
+    return dr.opaque(types.UInt64, 0, width)

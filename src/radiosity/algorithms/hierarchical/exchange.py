@@ -1,0 +1,50 @@
+"""The equation with given links: gather over links, push down, reflect, pull up, until nothing changes."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from .levels import Levels
+from .links import Links
+
+
+class Exchange:
+    """Irradiance of patches from radiosity of patches, over links.
+
+    Args:
+        levels: of all elements.
+        links: sorted.
+    """
+
+    def __init__(self, levels: Levels, links: Links):
+        from scipy.sparse import csr_array
+
+        self.levels = levels
+        starts = np.searchsorted(links.receiver, np.arange(len(levels.area) + 1))
+        self.factors = csr_array((links.factor, links.source, starts), shape=(len(levels.area),) * 2)
+
+    def gather(self, radiosity: np.ndarray) -> np.ndarray:
+        """(n_patches, n_bands) to (n_patches, n_bands)."""
+        return self.levels.push(self.factors @ self.levels.pull(radiosity))
+
+    def solve(
+        self, emission: np.ndarray, reflectance: np.ndarray, begin: np.ndarray, tolerance: float, told: Callable[[int], None]
+    ) -> np.ndarray:
+        """(n_patches, n_bands) irradiance H, where B = E + rho H and H comes from B: Jacobi iterations, each of which leaves at
+        most rho_max of an error where factors sum to at most one.
+
+        Args:
+            begin: an irradiance to begin with.
+            tolerance: of radiosity, relative to the largest one of its band.
+        """
+        received, bound = begin, float(reflectance.max(initial=0.0))
+        steps = 2 + (math.ceil(math.log(tolerance * (1 - bound) / 10) / math.log(bound)) if bound > 0 else 0)
+        for _ in range(steps):
+            new = self.gather(emission + reflectance * received)
+            change = np.abs(reflectance * (new - received)).max(axis=0)
+            received = new
+            told(0)
+            if (change <= tolerance * (1 - bound) * (emission + reflectance * received).max(axis=0)).all():
+                break
+        return received

@@ -1,0 +1,91 @@
+"""From pairs of elements to links: form factor, visible share, and by how much they may be wrong."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...patches import Hierarchy
+from ...tracing.geometry import Geometry
+from ...tracing.visibility import Polygons, visible_share
+from .kernel import Shapes, facing, samples, unoccluded
+from .links import Links
+from .parameters import Hierarchical
+
+BATCH = 1 << 13  # pairs: their points fit into the processor's cache
+
+Told = Callable[[int], None]
+
+
+@dataclass(eq=False)
+class Maker:
+    """Makes links, and counts what that takes.
+
+    Attributes:
+        geometry: the scene on a device, or None where no rays are asked for.
+        hierarchy: the elements.
+        parameters: rays and what they are for.
+        told: called after each batch with the rays traced for it; it may raise.
+        rays: traced so far.
+        pairs: looked at so far.
+    """
+
+    geometry: Geometry | None
+    hierarchy: Hierarchy
+    parameters: Hierarchical
+    told: Told
+    rays: int = 0
+    pairs: int = 0
+
+    def make(self, receiver: np.ndarray, source: np.ndarray) -> Links:
+        """Links of those pairs that face each other at all, in the order given."""
+        parts = [self._batch(receiver[at : at + BATCH], source[at : at + BATCH]) for at in range(0, len(receiver), BATCH)] or [
+            Links.none()
+        ]
+        return Links(*(np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])))
+
+    def _batch(self, receiver: np.ndarray, source: np.ndarray) -> Links:
+        one, other = Shapes.of(self.hierarchy, receiver), Shapes.of(self.hierarchy, source)
+        some, whole = facing(self.hierarchy, one, other)
+        one, other, whole = one.take(some), other.take(some), whole[some]
+        factor = unoccluded(self.hierarchy, one, other)
+        share, rays = self._visible(one, other)
+        if self.parameters.refinement == "brightness-factor":
+            spread = _seen(np.where(whole, factor, np.maximum(factor, _disc(one, other))), share, self.parameters.rays)
+        else:
+            spread = self._spread(one, other, factor, share, whole)
+        self.pairs += len(receiver)
+        self.rays += rays
+        self.told(rays)
+        return Links(one.element, other.element, factor * share, spread)
+
+    def _visible(self, receiver: Shapes, source: Shapes) -> tuple[np.ndarray, int]:
+        """Visible shares, from the source's side since light goes that way, and the rays that they took."""
+        count = len(receiver.element)
+        if self.geometry is None or count == 0:
+            return np.ones(count), 0
+        one, other = (Polygons(shape.corners, self.hierarchy.face(shape.element)) for shape in (source, receiver))
+        rays = self.parameters.rays
+        return visible_share(self.geometry, one, other, rays, self.parameters.seed), count * rays
+
+    def _spread(self, one: Shapes, other: Shapes, factor: np.ndarray, share: np.ndarray, whole: np.ndarray) -> np.ndarray:
+        """The largest difference of a point's factor from the link's. Where obstacles hide a part, points may see all or
+        nothing."""
+        values = samples(self.hierarchy, one, other)
+        high, low = values.max(axis=1), values.min(axis=1)
+        high = np.where(whole, high, np.maximum(high, _disc(one, other)))
+        clear = np.maximum(high - factor, factor - low)
+        partly = np.maximum(high - factor * share, factor * share)
+        return np.where(share >= 1, clear, _seen(np.where(share > 0, partly, high), share, self.parameters.rays))
+
+
+def _seen(value: np.ndarray, share: np.ndarray, rays: int) -> np.ndarray:
+    """A bound where no ray came through: some share may be visible still, by Laplace's rule one in rays + 2."""
+    return np.where(share > 0, value, value / (rays + 2))
+
+
+def _disc(receiver: Shapes, source: Shapes) -> np.ndarray:
+    """A bound, roughly, of the factor from a point of the receiver to the source, turned as may be: pairs that look over each
+    other's planes in part are judged by it, since points of quadrature may miss the part."""
+    square = ((receiver.centroid - source.centroid) ** 2).sum(axis=1)
+    return source.area / (np.pi * square + source.area)

@@ -1,0 +1,82 @@
+"""Refine, solve, and refine for the solution found, with smaller and smaller epsilon (multigridding)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...patches import Hierarchy, Patches
+from ...tracing.geometry import Geometry
+from .exchange import Exchange
+from .levels import Levels
+from .links import Links
+from .making import Maker, Told
+from .oracle import Oracle, Radiosity
+from .parameters import Hierarchical
+from .refine import refined
+from .roots import root_pairs
+
+ROUGH = 1e-3  # tolerance of solutions that links are refined for
+
+
+@dataclass(frozen=True)
+class Pass:
+    """One solution with given links.
+
+    Attributes:
+        epsilon: of its links.
+        links: how many.
+        change: the largest change of a radiosity since the pass before, over the largest radiosity of its band.
+    """
+
+    epsilon: float
+    links: int
+    change: float
+
+
+class Rounds:
+    """A solution that each round makes better; arguments as in `solve.solve_hierarchical`.
+
+    Attributes:
+        complete: rounds so far.
+        irradiance: (n_patches, n_bands) float64, with the links so far.
+        links: sorted; before the first round those between whole sides are made.
+        history: every pass.
+    """
+
+    def __init__(self, patches: Patches, geometry: Geometry | None, parameters: Hierarchical, told: Told):
+        self.hierarchy, self.parameters, self.told = Hierarchy(patches), parameters, told
+        self.levels = Levels(self.hierarchy)
+        self.oracle = Oracle(self.levels, parameters)
+        self.maker = Maker(geometry if parameters.rays else None, self.hierarchy, parameters, told)
+        self.emission, self.reflectance = patches.emission, patches.reflectance
+        self.irradiance, self.history, self.complete = np.zeros_like(self.emission), [], 0
+        self.links = Links.none()
+
+    @property
+    def done(self) -> bool:
+        return self.complete == len(self.parameters.rounds)
+
+    def advance(self) -> None:
+        """The next round; if ``told`` ends it by raising, what it began is lost and it may be called again."""
+        epsilon = self.parameters.rounds[self.complete]
+        links = Links.joined([self.maker.make(*root_pairs(self.hierarchy, self.told))]) if self.complete == 0 else self.links
+        irradiance, history, new = self.irradiance, list(self.history), True
+        while new:
+            before = self.emission + self.reflectance * irradiance
+            links, new = refined(links, self.oracle, self.maker, Radiosity.of(self.levels, before), epsilon)
+            if new or not history:
+                irradiance = self._solved(links, irradiance, ROUGH)
+                change = _change(before, self.emission + self.reflectance * irradiance)
+                history.append(Pass(epsilon, len(links), change))
+        if self.complete + 1 == len(self.parameters.rounds):
+            irradiance = self._solved(links, irradiance, self.parameters.tolerance)
+        self.links, self.irradiance, self.history = links, irradiance, history
+        self.complete += 1
+
+    def _solved(self, links: Links, begin: np.ndarray, tolerance: float) -> np.ndarray:
+        return Exchange(self.levels, links).solve(self.emission, self.reflectance, begin, tolerance, self.told)
+
+
+def _change(before: np.ndarray, after: np.ndarray) -> float:
+    largest = after.max(axis=0)
+    return float((np.abs(after - before).max(axis=0) / np.where(largest > 0, largest, 1)).max())

@@ -1,0 +1,101 @@
+"""Hierarchical radiosity from begin to end, and what it found."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...patches import Patches
+from ...tracing.geometry import Geometry
+from .exchange import Exchange
+from .levels import Levels
+from .links import Links
+from .making import Told
+from .oracle import Radiosity
+from .parameters import Hierarchical
+from .rounds import ROUGH, Pass, Rounds
+
+
+@dataclass(frozen=True, eq=False)
+class HierarchicalResult:
+    """Attributes:
+    irradiance, radiosity: (n_patches, n_bands) float64, W/m² or lm/m².
+    indicated: (n_patches, n_bands) float64: the errors of irradiance of all links, summed without their signs and sent on as
+        light is (equation 6 of the paper): well above the true error. NaN for brightness-factor, which tells no error.
+    links, hidden: how many at the end, and how many of them carry nothing, since no ray came through.
+    elements: how many there are in the trees that the links ask for.
+    pairs: form factors computed, for links replaced later too.
+    rays: traced.
+    history: every pass.
+    final: the links themselves.
+    """
+
+    irradiance: np.ndarray
+    radiosity: np.ndarray
+    indicated: np.ndarray
+    links: int
+    hidden: int
+    elements: int
+    pairs: int
+    rays: int
+    history: tuple[Pass, ...]
+    final: Links
+
+
+def solve_hierarchical(
+    patches: Patches, geometry: Geometry | None = None, parameters: Hierarchical | None = None, told: Told = lambda rays: None
+) -> HierarchicalResult:
+    """B = E + rho H over links of elements whose leaves are the patches.
+
+    The same arguments give the same bits.
+
+    Args:
+        patches: cut by ``subdivide(..., powers_of_two=True)``.
+        geometry: the same patches on a device; None: nothing stands between any two faces, and no rays are traced.
+        parameters: epsilon and the rest.
+        told: called between batches with the rays traced since; it may raise.
+
+    Raises:
+        SceneError: patches that are no leaves of a hierarchy.
+        MethodError: more links than there is room for.
+    """
+    rounds = Rounds(patches, geometry, parameters or Hierarchical(), told)
+    while not rounds.done:
+        rounds.advance()
+    levels, links, irradiance, oracle = rounds.levels, rounds.links, rounds.irradiance, rounds.oracle
+    reflectance = patches.reflectance
+    radiosity = patches.emission + reflectance * irradiance
+    indicated = np.full_like(radiosity, np.nan)
+    if oracle.by_error:
+        here, there = oracle.parts(links, Radiosity.of(levels, radiosity))
+        own = _delta(levels, links, here + there)
+        indicated = own + Exchange(levels, links).solve(reflectance * own, reflectance, np.zeros_like(own), ROUGH, told)
+    return HierarchicalResult(
+        irradiance,
+        radiosity,
+        indicated,
+        len(links),
+        int((links.factor == 0).sum()),
+        _elements(levels, links),
+        rounds.maker.pairs,
+        rounds.maker.rays,
+        tuple(rounds.history),
+        links,
+    )
+
+
+def _delta(levels: Levels, links: Links, errors: np.ndarray) -> np.ndarray:
+    """(n_patches, n_bands): the errors of all links that reach a patch, summed."""
+    columns = [np.bincount(links.receiver, weights=band, minlength=len(levels.area)) for band in errors.T]
+    return levels.push(np.stack(columns, axis=1))
+
+
+def _elements(levels: Levels, links: Links) -> int:
+    """Elements at the ends of links, those that hold them, and the siblings of all."""
+    used = np.zeros(len(levels.area), bool)
+    used[links.receiver] = used[links.source] = True
+    divided = np.zeros_like(used)
+    for element in reversed(levels.below):
+        parent = levels.parent[element]
+        divided[parent[(used | divided)[element]]] = True
+    roots = len(levels.hierarchy.side_face)
+    return roots + sum(int(divided[levels.parent[element]].sum()) for element in levels.below)

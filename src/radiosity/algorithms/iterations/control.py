@@ -1,0 +1,90 @@
+"""A constant control variate: a radiosity beta is taken out of what lines carry, and put back exactly.
+
+H_i = sum_j F_ij B_j = beta f_i + sum_j F_ij (B_j - beta), where f_i = sum_j F_ij is 1 in a closed scene and 1 less the share of
+its lines that patch i misses in any other. Lines fired for nothing else measure that share, so the form holds in open scenes
+too: exactly where nothing is missed, and with the error of those lines where something is. (P. Bekaert, "Hierarchical and
+stochastic algorithms for radiosity", thesis, K. U. Leuven 1999; docs/iterations.md.)
+"""
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import upload
+from .exchange import BITS, LINE, Exchange
+from .shooter import Ends
+
+SHARE = 8  # one line in so many measures what is missed
+
+
+class Control:
+    """The constants of all replicates and groups, and the share of its lines that each patch misses.
+
+    Attributes:
+        beta: (replicates, groups) float64, in units of Phi over the scene's area.
+        missed: (2, replicates, n_patches) int64, probing lines escaped and lost.
+        probed: (replicates, n_patches) int64, probing lines fired.
+    """
+
+    def __init__(self, exchange: Exchange):
+        self.exchange, n, replicates = exchange, exchange.n, exchange.replicates
+        self.beta = np.zeros((replicates, exchange.groups))
+        self.missed = np.zeros((2, replicates, n), np.int64)
+        self.probed = np.zeros((replicates, n), np.int64)
+
+    def probe(self, lines: int) -> int:
+        """Fire ``lines`` of each replicate, evenly over all area and at least one a patch, to see which are missed."""
+        exchange, types = self.exchange, self.exchange.types
+        counts = dr.maximum(exchange.counts(types.UInt64(exchange.area * dr.opaque(types.Float64, float(lines) * LINE))), 1)
+        slots, groups, replicates = exchange.shooter.slots, exchange.groups, exchange.replicates
+        carried = np.zeros((slots, groups), np.float32)
+        carried[-2 * replicates : -replicates], carried[-replicates:] = 1, LINE
+        ends = Ends(dr.opaque(types.Float, 0.5, slots), upload(types.Float, carried))
+        fired = exchange.shoot(counts, ends=ends)
+        seen = np.array(exchange.patches(exchange.shooter.received)).reshape(replicates, exchange.n, groups)[..., 0]
+        self.missed += [seen % LINE, seen >> BITS]
+        self.probed += np.array(counts, np.int64).reshape(replicates, exchange.n)
+        return fired
+
+    def kept(self) -> np.ndarray:
+        """(replicates, n_patches) float64: f_i, from all probing lines so far."""
+        return kept(self.missed, self.probed)
+
+    def constant(self):
+        """(total * groups,) Float64: the power A_i beta / Phi of the constant on each patch."""
+        exchange = self.exchange
+        return upload(exchange.types.Float64, self.beta[:, None, :] * exchange.areas[:, None])
+
+    def received(self):
+        """(total * groups,) Float64: the power f_i A_i beta / Phi that patches receive of it."""
+        return self.constant() * self.exchange.by_patch(upload(self.exchange.types.Float64, self.kept()))
+
+    def adapt(self, power) -> None:
+        """Take the area-weighted median of the radiosity, where the lines' power, sum A |B - beta|, is least."""
+        exchange = self.exchange
+        value = np.array(power).reshape(exchange.replicates, exchange.n, exchange.groups) / exchange.areas[:, None]
+        for replicate in range(exchange.replicates):
+            for group in range(exchange.groups):
+                self.beta[replicate, group] = median(value[replicate, :, group], exchange.areas)
+
+    def capture(self) -> dict[str, np.ndarray]:
+        return {"beta": self.beta.copy(), "probe_missed": self.missed.copy(), "probed": self.probed.copy()}
+
+    def restore(self, state: dict[str, np.ndarray]) -> None:
+        self.beta, self.missed, self.probed = (state[key].copy() for key in ("beta", "probe_missed", "probed"))
+
+
+def kept(missed: np.ndarray, probed: np.ndarray) -> np.ndarray:
+    """Share of the probing lines that landed on patches."""
+    return 1 - missed.sum(axis=0) / np.maximum(probed, 1)
+
+
+def median(values: np.ndarray, weights: np.ndarray) -> float:
+    """The value at which the weights of smaller and of larger values are equal."""
+    order = np.argsort(values)
+    below = np.cumsum(weights[order])
+    return float(values[order[np.searchsorted(below, below[-1] / 2)]])
+
+
+def source_constant(emission: np.ndarray, reflectance: np.ndarray, areas: np.ndarray) -> float:
+    """The constant for which the remaining source, sum A |E - (1 - rho) beta|, is least."""
+    return median(emission / (1 - reflectance), areas * (1 - reflectance))

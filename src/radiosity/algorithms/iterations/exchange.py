@@ -1,0 +1,153 @@
+"""One stochastic Jacobi step: patches send powers along local lines, and patches receive them.
+
+How many lines a patch fires is what it expects, rounded systematically: with offset r, uniform in [0, 1), patch i fires
+floor(C_i + r) - floor(C_(i-1) + r) lines, where C_i is the sum of expectations up to it. Each count is one of the two whole
+numbers beside c_i, and its mean is c_i.
+"""
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import upload
+from ...method import Method
+from ...problem.model import Problem
+from ...problem.quanta import Source
+from ...sampling.streams import Purpose, stream
+from ...tracing.geometry import Geometry
+from .shooter import Ends, Shooter
+
+BITS = 30
+LINE = 2**BITS  # fixed point units of one expected line
+TURNS = 2  # sequences that steps take in turn where both ends of a line score (docs/iterations.md)
+
+
+class Exchange:
+    """Powers out, powers in.
+
+    Arrays over patches and groups are flat, group g of patch number m at m * n_groups + g.
+
+    Attributes:
+        shooter: fires.
+        n, replicates, groups, total: sizes; total is n * replicates.
+        area: (total,) Float64, share of each patch in the area of all.
+        rho: (total * groups,) Float64, reflectance as the integers of the firing engine have it.
+        emitted: (total * groups,) Float64, E_i A_i over Phi.
+        step: how many steps were made: each has rounding offsets of its own.
+        turns: sequences of points that steps take in turn; a warm-up has others, so many too.
+        first: of the sequences that are taken now.
+    """
+
+    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int):
+        groups = problem.groups
+        self.seed, self.replicates, self.groups = seed, replicates, groups.n_groups
+        self.two_ended = method.estimator == "bidirectional"
+        self.turns, self.first = TURNS if self.two_ended else 1, 0
+        sequences = self.turns * (2 if self.two_ended and method.warm_up else 1)
+        self.shooter = Shooter(geometry, problem.source, method, seed, replicates, self.groups, sequences)
+        self.types, self.n, self.total = self.shooter.types, len(problem.patches), self.shooter.total
+        self.areas = problem.patches.area / problem.patches.area.sum()
+        self.area = self._tiled(self.areas[:, None])
+        self.rho = self._tiled(Source.fixed(groups.reflectance) * 2.0**-32)
+        self.emitted = self._tiled(groups.emission * problem.patches.area[:, None] / problem.source.power)
+        self.replicate = self.shooter.engine.replicate(dr.arange(self.types.UInt32, self.total))
+        every = np.arange(replicates)
+        slots = np.concatenate([np.repeat(every, self.n), every, every])
+        self.slot_replicate = upload(self.types.UInt32, np.repeat(slots, self.groups).astype(np.uint32))
+        dr.eval(self.replicate)
+        self.step = 0
+
+    def _tiled(self, values: np.ndarray):
+        return upload(self.types.Float64, np.tile(values.ravel(), self.replicates))
+
+    def by_patch(self, values):
+        """(total,) array spread over the groups."""
+        return values if self.groups == 1 else dr.repeat(values, self.groups)
+
+    def by_replicate(self, values: np.ndarray):
+        """(replicates,) float64 spread over patches: (total,) Float64."""
+        return dr.gather(self.types.Float64, upload(self.types.Float64, np.append(values, 0.0)), self.replicate)
+
+    def by_slot(self, values: np.ndarray):
+        """(replicates,) float64 spread over slots and groups."""
+        return dr.gather(self.types.Float64, upload(self.types.Float64, np.append(values, 0.0)), self.slot_replicate)
+
+    def largest(self, values):
+        """(total * groups,) to the largest magnitude of the groups, (total,)."""
+        return dr.abs(values) if self.groups == 1 else dr.block_reduce(dr.ReduceOp.Max, dr.abs(values), self.groups)
+
+    def sums(self, values) -> np.ndarray:
+        """(total,) whole numbers to their sum in each replicate, (replicates,)."""
+        sums = dr.block_reduce(dr.ReduceOp.Add, values, self.n)
+        dr.eval(sums)
+        return np.array(sums)
+
+    def counts(self, expected):
+        """Lines that patches fire in this step: (total,) UInt32, from their expectation in units of 1 / LINE."""
+        types = self.types
+        dr.eval(expected)
+        before = dr.prefix_sum(expected)
+        dr.eval(before)
+        drawn = [np.random.Generator(np.random.Philox(self._stream(r))).integers(0, LINE) for r in range(self.replicates)]
+        offset = dr.gather(types.UInt64, upload(types.UInt64, np.array([*drawn, 0], np.uint64)), self.replicate)
+        low = before - dr.gather(types.UInt64, before, self.replicate * self.shooter.engine.n_opaque) + offset
+        counts = types.UInt32(((low + expected) >> BITS) - (low >> BITS))
+        dr.eval(counts)
+        return counts
+
+    @property
+    def turn(self) -> int:
+        """Which of the sequences that are taken now the next step takes."""
+        return self.step % self.turns
+
+    def begin_warm_up(self) -> None:
+        """Take sequences that no later step takes, where steps take several."""
+        self.first = self.turns if self.turns > 1 else 0
+
+    def end_warm_up(self) -> None:
+        self.first = 0
+
+    def shoot(self, counts, weights=None, ends: Ends | None = None) -> int:
+        """The step's lines, see `Shooter.shoot`."""
+        self.shooter.take(self.first + self.turn)
+        self.step += 1
+        return self.shooter.shoot(counts, weights, ends)
+
+    def _stream(self, replicate: int) -> np.random.SeedSequence:
+        return stream(self.seed, replicate, Purpose.ROUNDING, self.step)
+
+    def send(self, power, expected) -> tuple[int, np.ndarray | None]:
+        """Send powers; `Shooter.received` then holds what arrived.
+
+        Args:
+            power: (total * groups,) Float64, signed, in the units that are received; by expected line below 2^30 of them.
+            expected: (total,) UInt64, lines that patches are to fire in the mean, times LINE; positive where there is power.
+
+        Returns:
+            Lines fired, and the power that left each replicate in them, (replicates, groups) int64; None where both ends
+            score.
+        """
+        types = self.types
+        counts = self.counts(expected)
+        mean = types.Float64(expected) * (1.0 / LINE)
+        if self.two_ended:
+            return self.shoot(counts, ends=self._ends(power, mean)), None
+        # a patch that surely fires shares its power out among its lines; one that may not fire sends it with its probability
+        lines = dr.select(expected >= LINE, types.Float64(counts), mean)
+        weights = types.Int(dr.round(power / self.by_patch(dr.select(lines > 0, lines, 1.0))))
+        dr.eval(weights)
+        left = types.Int64(weights) * types.Int64(self.by_patch(counts))
+        dr.eval(left)
+        fired = np.array(left).reshape(self.replicates, self.n, self.groups).sum(axis=1)
+        return self.shoot(counts, weights), fired
+
+    def _ends(self, power, mean) -> Ends:
+        types = self.types
+        none = dr.zeros(types.Float, 2 * self.replicates)
+        density = dr.concat([types.Float(mean / self.area), none])
+        carried = dr.concat([types.Float(power / self.by_patch(self.area)), dr.repeat(none, self.groups)])
+        dr.eval(density, carried)
+        return Ends(density, carried)
+
+    def patches(self, received):
+        """Of an array over slots and groups the part of the patches, (total * groups,)."""
+        return dr.gather(type(received), received, dr.arange(self.types.UInt32, self.total * self.groups))

@@ -1,0 +1,95 @@
+"""Incremental stochastic Jacobi iterations: send what was not sent yet, until nothing is left (Shirley 1991; Bekaert 1999).
+
+With N quanta a patch owes E_i A_i N / Phi + rho_i (what it received) quanta of power; a step sends all that is owed beyond what
+was sent, in one expected line a quantum. When N grows, emission grows and the same counters go on: what a stage adds is an
+independent solution with its share of the lines, merged in proportion to them (Feda and Purgathofer 1993).
+
+Rounding ends the iterations: when less than a line is left it is sent with its probability, in full or not at all. So what is cut
+off has no bias, and no threshold is needed.
+"""
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import upload
+from ...problem.model import Problem
+from ..process import State, Swept
+from .control import SHARE, Control, source_constant
+from .exchange import LINE, Exchange
+
+
+class Incremental:
+    """Power received and unsent of all replicates, in units of a quantum / LINE.
+
+    Attributes:
+        received: (slots * groups,) Int64, all that arrived.
+        unsent: (total * groups,) Float64, whole numbers.
+        emitted, fired: (replicates, groups) int64, the power that sources gave and that left along lines.
+    """
+
+    def __init__(self, exchange: Exchange, problem: Problem, control: Control | None):
+        self.exchange, self.control, self.quanta = exchange, control, 0
+        types = exchange.types
+        self.received = upload(types.Int64, np.zeros(exchange.shooter.slots * exchange.groups, np.int64))
+        self.unsent = upload(types.Float64, np.zeros(exchange.total * exchange.groups))
+        self.emitted, self.fired = (np.zeros((exchange.replicates, exchange.groups), np.int64) for _ in range(2))
+        self.probing = 0
+        if control is not None:
+            groups, area = problem.groups, problem.patches.area
+            best = [source_constant(*columns, area) for columns in zip(groups.emission.T, groups.reflectance.T, strict=True)]
+            control.beta[:] = np.array(best) * area.sum() / problem.source.power
+
+    def advance(self, quanta: int, swept: Swept) -> None:
+        """Send all that is owed at N quanta."""
+        if quanta > self.quanta:
+            self.begin(quanta)
+        while lines := self.step():
+            swept(lines)
+
+    def begin(self, quanta: int) -> None:
+        """More emission."""
+        exchange, types = self.exchange, self.exchange.types
+        more, self.quanta = quanta - self.quanta, quanta
+        source = np.array(exchange.emitted)
+        if self.control is not None and self.control.beta.any():
+            self.probing = self.control.probe(max(more // SHARE, 1))
+            # B - beta solves the equation of the source E - (1 - rho f) beta
+            source += np.array(exchange.rho * self.control.received() - self.control.constant())
+        new = np.rint(source * (float(more) * LINE))
+        self.unsent = upload(types.Float64, np.array(self.unsent) + new)
+        self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.groups).sum(axis=1)
+
+    def step(self) -> int:
+        """One iteration, and its lines; none when all is sent."""
+        if self.probing:
+            lines, self.probing = self.probing, 0
+            return lines
+        exchange, types = self.exchange, self.exchange.types
+        if not dr.any(self.unsent != 0):
+            return 0  # without a step counted: a run that goes on from here comes by twice
+        lines, fired = exchange.send(self.unsent, types.UInt64(exchange.largest(self.unsent)))
+        self.fired += 0 if fired is None else fired
+        self.received += exchange.shooter.received
+        self.unsent = dr.round(exchange.rho * types.Float64(exchange.patches(exchange.shooter.received)))
+        dr.eval(self.received, self.unsent)
+        return lines
+
+    @property
+    def scale(self) -> float:
+        """Of the received power: one unit over Phi."""
+        return 1.0 / (float(self.quanta) * LINE)
+
+    def capture(self) -> State:
+        state = {"received": np.array(self.received), "unsent": np.array(self.unsent), "scale": np.array(self.scale)}
+        state["progress"] = np.array([self.quanta, self.probing])
+        if not self.exchange.two_ended and self.control is None:
+            state |= {"emitted": self.emitted.copy(), "left": self.fired.copy()}
+        return state
+
+    def restore(self, state: State) -> None:
+        types = self.exchange.types
+        self.received = upload(types.Int64, state["received"])
+        self.unsent = upload(types.Float64, state["unsent"])
+        self.quanta, self.probing = (int(x) for x in state["progress"])
+        if "emitted" in state:
+            self.emitted, self.fired = state["emitted"].copy(), state["left"].copy()

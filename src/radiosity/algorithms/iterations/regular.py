@@ -1,0 +1,158 @@
+"""Regular stochastic Jacobi iterations: each sends the total power anew, and results are averaged (Neumann et al. 1995).
+
+Iteration k sends P = Pe + rho A_(k-1) with N_k lines and receives R_k. The result is the mean of all R_k, weighted by N_k; with a
+control variate by N_k / T_k^2, T_k being the power sent, since that is what their variances go with. The source A takes R_k with
+its weight in the result too, but never with less than 1/2: a source that remembers all would keep the error of its first
+iterations, which falls as slowly as L^-(1-lambda) with all lines L (docs/iterations.md).
+
+Where both ends score, iterations take two sequences in turn, and there are two sources: iterations of one sequence send what
+those of the other received. What is sent then does not depend on the points that it is sent along. Each source hears of every
+other iteration only, so it forgets more of what it had.
+
+Iterations begin at the light alone, whose image is too dark by lambda^k after k of them. With ``warm_up`` they begin at an
+incremental solution instead, which has no bias, and neither have they (Bekaert 1999). Without it, the first iterations, until
+lambda^k is 1/10 000 or less, are a start-up that the result leaves out (RenderPark has such an option).
+"""
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import upload
+from ...problem.model import Problem
+from ..process import State, Swept
+from .control import Control
+from .exchange import LINE, Exchange
+from .incremental import Incremental
+from .plan import START, Plan
+
+FORGET = {1: 1 / 2, 2: 7 / 8}  # least weight of an iteration in the source that takes it, by turns
+UNIT = 2.0**27  # of received power: the mean of what a line carries
+TOTAL = 2.0**58  # of sums of power: Phi / (1 - rho_max)
+
+
+class Regular:
+    """Means over the iterations of all replicates.
+
+    Attributes:
+        received: (slots * groups,) Float64, the mean of R_k over Phi.
+        sources: (total * groups,) Float64 each, A over Phi: for each turn, of what steps of the other turn received.
+        weights: (replicates,) float64, the sum of the weights of all R_k in the mean.
+        constants: (replicates, groups) float64, the mean of beta_k.
+        plan: how many lines are fired when.
+    """
+
+    def __init__(self, exchange: Exchange, problem: Problem, control: Control | None, warm_up: bool):
+        self.exchange, self.control, types = exchange, control, exchange.types
+        rho, area = problem.groups.reflectance.max(axis=1), problem.patches.area
+        self.plan = Plan(exchange.n, min(float(rho @ area / area.sum()), 0.99))
+        self.total = TOTAL * (1 - float(rho.max()))
+        self.warm = Incremental(exchange, problem, None) if warm_up else None
+        self.received = upload(types.Float64, np.zeros(exchange.shooter.slots * exchange.groups))
+        self.sources = [upload(types.Float64, np.zeros(exchange.total * exchange.groups)) for _ in range(exchange.turns)]
+        self.weights, self.constants = np.zeros(exchange.replicates), np.zeros((exchange.replicates, exchange.groups))
+
+    def advance(self, quanta: int, swept: Swept) -> None:
+        """Iterate until a replicate has traced N lines."""
+        if quanta > self.plan.quanta:
+            self._begin(quanta)
+        while not self.plan.over:
+            swept(self._next())
+
+    @property
+    def quanta(self) -> int:
+        return self.plan.quanta
+
+    def _begin(self, quanta: int) -> None:
+        plan = self.plan
+        if plan.quanta == 0 and self.warm is not None:
+            plan.starting = 1
+            self.exchange.begin_warm_up()
+            self.warm.begin(max(round(quanta / START * (1 - plan.mean)), 1))
+        plan.begin(quanta, probes=self.control is not None)
+
+    def _next(self) -> int:
+        plan = self.plan
+        if plan.probing and self.control is not None:
+            lines, plan.probing = plan.probing, 0
+            plan.done += lines
+            return self.control.probe(lines)
+        if plan.starting and self.warm is not None:
+            lines = self.warm.step()
+            if lines == 0:
+                self._take_over(self.warm)
+            return lines
+        return self._iterate(plan.lines())
+
+    def _take_over(self, warm: Incremental) -> None:
+        """The incremental solution becomes the source, and part of the result, with the weight of its lines."""
+        types, plan = self.exchange.types, self.plan
+        lines = round(warm.quanta / (1 - plan.mean))  # not the lines traced: these depend on the solution
+        self.received = types.Float64(warm.received) * warm.scale
+        self.exchange.end_warm_up()
+        source = self.exchange.patches(self.received)
+        dr.eval(source, self.received)
+        self.sources = [source] * self.exchange.turns
+        sent = self._sent(self._largest(self.exchange.emitted + self.exchange.rho * source))
+        self.weights = self._weight(lines, sent)
+        plan.starting, plan.done, plan.summed = 0, plan.done + lines, lines
+
+    def _largest(self, power):
+        """(total,) UInt64: the largest band of each patch."""
+        types = self.exchange.types
+        largest = types.UInt64(self.exchange.largest(power) * dr.opaque(types.Float64, self.total))
+        dr.eval(largest)
+        return largest
+
+    def _sent(self, largest) -> np.ndarray:
+        """(replicates,) float64: T over Phi, from whole numbers, so that no order matters."""
+        return np.maximum(self.exchange.sums(largest), 1).astype(np.float64) / self.total
+
+    def _weight(self, lines: int, sent: np.ndarray) -> np.ndarray:
+        """(replicates,) float64, of an iteration in the mean."""
+        return np.full(len(sent), float(lines)) if self.control is None else lines / sent**2
+
+    def _iterate(self, lines: int) -> int:
+        exchange, control, types, turn = self.exchange, self.control, self.exchange.types, self.exchange.turn
+        power = exchange.emitted + exchange.rho * self.sources[turn]
+        if control is not None:
+            if self.plan.count & (self.plan.count - 1) == 0:  # a median costs a sort
+                control.adapt(power)
+            power -= control.constant()
+        largest = self._largest(power)
+        sent = self._sent(largest)
+        expected = types.UInt64(types.Float64(largest) * exchange.by_replicate(lines * LINE / (sent * self.total)))
+        fired, _ = exchange.send(power * exchange.by_patch(exchange.by_replicate(lines * UNIT / sent)), expected)
+        arrived = types.Float64(exchange.shooter.received) * exchange.by_slot(sent / (lines * UNIT))
+        dr.eval(arrived)
+        weight = np.ones(exchange.replicates)
+        if self.plan.count_iteration(lines):
+            weight = self._weight(lines, sent)
+            self.weights += weight
+            weight /= self.weights
+            self.received = dr.lerp(self.received, arrived, exchange.by_slot(weight))
+            if control is not None:
+                self.constants += weight[:, None] * (control.beta - self.constants)
+        fresh = exchange.patches(arrived) + (0 if control is None else control.received())
+        other = (turn + 1) % exchange.turns
+        taken = exchange.by_patch(exchange.by_replicate(np.maximum(weight, FORGET[exchange.turns])))
+        self.sources[other] = dr.lerp(self.sources[other], fresh, taken)
+        dr.eval(self.sources[other], self.received)
+        return fired
+
+    def capture(self) -> State:
+        state = {"received": np.array(self.received), "source": np.concatenate(self.sources), "scale": np.array(1.0)}
+        state |= {"constants": self.constants.copy(), "weights": self.weights.copy()}
+        state["progress"] = self.plan.capture()
+        if self.warm is not None and self.plan.starting:
+            state |= {f"warm_{key}": value for key, value in self.warm.capture().items()}
+        return state
+
+    def restore(self, state: State) -> None:
+        types = self.exchange.types
+        self.plan.restore(state["progress"])
+        self.received = upload(types.Float64, state["received"])
+        self.sources = [upload(types.Float64, part) for part in np.split(state["source"], self.exchange.turns)]
+        self.constants, self.weights = state["constants"].copy(), state["weights"].copy()
+        if self.warm is not None and self.plan.starting:
+            self.exchange.begin_warm_up()
+            self.warm.restore({key.removeprefix("warm_"): value for key, value in state.items() if key.startswith("warm_")})

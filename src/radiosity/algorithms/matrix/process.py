@@ -1,0 +1,93 @@
+"""Form factors first, from counted lines; then the equation (Sbert 1993 with global lines; local lines likewise).
+
+M. Sbert, "An integral geometry based method for fast form-factor computation", Computer Graphics Forum 12(3), 1993.
+"""
+
+import numpy as np
+
+from ...errors import MethodError
+from ...factors.counts import PairCounts
+from ...factors.lines import GlobalLines, LocalLines
+from ...run.progress import Interrupted
+from ..process import AbstractProcess, State, Swept
+from .tally import MatrixTally
+
+LIMIT = 1 << 28  # pairs that are kept: 3 GiB, and as much again while they are merged
+LAUNCH = 1 << 22  # lines between two looks at the clock
+
+
+class Matrix(AbstractProcess):
+    """Counts of lines between patches. N lines a replicate give the same counts in any stages."""
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        # a line between patches counts for both, unless they may see each other through backs that hide one of them
+        both_ways = self.method.lines == "local" and not self.geometry.some_backs_pass
+        arguments = (self.geometry, self.problem, self.method, self.seed, self.replicates)
+        if self.method.lines == "local":
+            self.lines: LocalLines | GlobalLines = LocalLines(*arguments, both_ways=both_ways)
+        else:
+            self.lines = GlobalLines(*arguments)
+        self.n, self.counts, self.wanted, self.reached = len(self.problem.patches), PairCounts(), 0, 0
+        self.reader = MatrixTally(both_ways, directed=self.geometry.some_backs_pass)
+
+    @property
+    def quanta(self) -> int:
+        return self.wanted
+
+    @property
+    def nested(self) -> bool:
+        return True
+
+    def advance(self, quanta: int, swept: Swept) -> None:
+        self.wanted = max(quanta, self.wanted)
+        traced = 0
+
+        def add(rows: np.ndarray, columns: np.ndarray) -> None:
+            nonlocal traced
+            self.counts.add(rows, columns)
+            traced += len(rows)
+
+        while self.reached < self.wanted:
+            end = min(self.wanted, self.reached + max(1, LAUNCH // self.replicates))
+            self._check(end)
+            traced = 0
+            self.lines.trace(self.reached, end, add)
+            self.reached = end
+            swept(traced)
+
+    def _check(self, end: int) -> None:
+        """Refuse what would not fit in memory: no more pairs than there are, and than lines."""
+        ends = len(self.counts) / max(self.reached, 1) if self.reached else 1.0 * self.replicates
+        expected = min(self.replicates * self.n * (self.n + 2), len(self.counts) + int(ends * (end - self.reached)))
+        if expected <= LIMIT:
+            return
+        reason = (
+            f"the form factors of {self.n} patches in {self.replicates} replicates may come to {expected:.2g} pairs after {end} "
+            f"lines each, and {LIMIT:.2g} are kept at most; take fewer replicates, fewer patches, or an order without factors"
+        )
+        raise Interrupted(reason) if self.reached else MethodError(reason)
+
+    def capture(self) -> State:
+        keys, counts = self.counts.arrays
+        return {
+            "quanta": np.array(self.wanted),
+            "reached": np.array(self.reached),
+            "replicates": np.array(self.replicates),
+            "keys": keys,
+            "counts": counts,
+        }
+
+    def restore(self, state: State) -> None:
+        if not {"keys", "counts", "reached"} <= set(state) or int(state["replicates"]) != self.replicates:
+            raise MethodError("the solution to go on from lacks the counts of its lines, or has other replicates; start anew")
+        self.counts = PairCounts(state["keys"], state["counts"])
+        self.wanted, self.reached = int(state["quanta"]), int(state["reached"])
+        self.lines.resume(self.reached)
+
+    def unfinished(self, state: State) -> bool:
+        return int(state["reached"]) < int(state["quanta"])
+
+    @property
+    def tally(self) -> MatrixTally:
+        return self.reader

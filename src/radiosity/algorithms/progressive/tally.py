@@ -1,0 +1,42 @@
+"""The ambient term, and how the state of a progressive run is read."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...problem.model import Problem
+from ..baseline_tally import SolvedTally
+from ..process import AbstractTally, State
+
+
+def ambient(area: np.ndarray, reflectance: np.ndarray, unshot: np.ndarray) -> np.ndarray:
+    """(groups,) irradiance, the same everywhere, that light not shot yet will bring in the end, if it spreads evenly: the sum of
+    A dB over the sum of (1 - rho) A, which balances what it brings with what is absorbed (Cohen et al. 1988, equation 6)."""
+    absorbs = area @ (1 - reflectance)
+    return np.divide(area @ unshot, absorbs, out=np.zeros(unshot.shape[1]), where=absorbs > 0)
+
+
+@dataclass(frozen=True, eq=False)
+class ProgressiveTally(AbstractTally):
+    """As `SolvedTally`; with ``ambient`` irradiance is more by the ambient term, which the books leave out: it is for display."""
+
+    ambient: bool
+    solved: SolvedTally
+
+    counts_landings = False
+
+    def lines(self, problem: Problem, state: State) -> int:
+        return self.solved.lines(problem, state)
+
+    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
+        return self.solved.arrivals(problem, state)
+
+    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
+        values, unit = self.solved.irradiance(problem, state, group)
+        if not self.ambient:
+            return values, unit
+        area = problem.patches.area
+        return values + area * ambient(area, problem.groups.reflectance, state["unshot"])[group], unit
+
+    def books(self, problem: Problem, state: State, group: int) -> dict:
+        return self.solved.books(problem, state, group)

@@ -1,0 +1,28 @@
+"""Every algorithm: the name that `method` gives it, and the class that runs it."""
+
+from importlib import import_module
+
+from ..method import Baseline, Method
+from ..problem.model import Problem
+from ..tracing.geometry import Geometry
+from .process import AbstractProcess
+
+PROCESSES = {
+    "firing": "firing.process:Firing",
+    "walks": "walks.shooting:Walks",
+    "gathering": "walks.gathering:Gathering",
+    "iteration": "iterations.process:Iteration",
+    "multipath": "global_lines.multipath:Multipath",
+    "pooling": "global_lines.pooling:Pooling",
+    "matrix": "matrix.process:Matrix",
+    "full-matrix": "full_matrix:FullMatrix",
+    "progressive": "progressive.process:Progressive",
+    "hierarchical": "hierarchical.process:Hierarchical",
+}
+
+
+def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: int, replicates: int) -> AbstractProcess:
+    """The process that runs a method."""
+    geometry.prepare()
+    module, cls = PROCESSES[method.machine].split(":")
+    return getattr(import_module(f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)

@@ -1,0 +1,85 @@
+"""Fractional absorption: of M walks the first M rho^k go on at the k-th landing (A. Keller, "Quasi-Monte Carlo radiosity", 7th
+Eurographics Workshop on Rendering, 1996; the rule as in his "Instant radiosity", 1997).
+
+The birth patch of walk n is chosen by the fifth number of point n, so that the first walks are a fair sample of all. A landing
+on patch i multiplies the power by rho_i c_k / c_(k+1), where c_k walks go on k times: nothing but the last leg is cut off, a bias
+of the order of 1 / M.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import upload
+from ...problem.model import Problem
+from ...tracing.lanes import Batch
+from ..firing.counters import Engine
+
+MIX = 0x9E3779B1  # low bits of the choice, of which a number in single precision has only 24
+
+
+@dataclass
+class Fractions:
+    """Birthplaces and the fixed shares that go on.
+
+    Attributes:
+        engine: counters and numbers.
+        cumulative: UInt32 (n_patches,), the sum of shares of emission up to each patch, times 2^32.
+        mean: area-weighted mean reflectance, of the largest band.
+        begun: walks of earlier stages; counts: how many of this one's go on k times.
+    """
+
+    engine: Engine
+    cumulative: Any
+    mean: float
+    begun: int = 0
+    counts: list[int] = field(default_factory=list)
+
+    @staticmethod
+    def of(engine: Engine, problem: Problem) -> "Fractions":
+        """Of a problem."""
+        area, rho = problem.patches.area, problem.groups.reflectance.max(axis=1)
+        whole = np.cumsum(problem.source.share)
+        cumulative = np.minimum(np.floor(whole / whole[-1] * 2.0**32), 2**32 - 1).astype(np.uint32)
+        lit = np.flatnonzero(problem.source.share)[-1]
+        cumulative[lit:] = 2**32 - 1
+        return Fractions(engine, upload(engine.types.UInt32, cumulative), float(area @ rho / area.sum()))
+
+    def batch(self, begun: int, quanta: int) -> tuple[Batch, int]:
+        """Walks begun + 1 to quanta of each replicate; their patches are chosen in the kernel."""
+        engine, new = self.engine, quanta - begun
+        self.begun, self.counts = begun, [new]
+        while self.counts[-1]:
+            self.counts.append(int(new * self.mean ** len(self.counts)))
+        u32 = engine.types.UInt32
+        numbers = upload(u32, np.arange(engine.replicates, dtype=np.uint32) * engine.n)
+        counts, fired = (dr.opaque(u32, value, engine.replicates) for value in (new, begun))
+        return Batch.of(engine.types, numbers, counts, fired, engine.record), quanta
+
+    def birthplace(self, number, index, bits: int):
+        """In a kernel: patch number where a walk begins, and its record; ``number`` tells the replicate."""
+        engine, types = self.engine, self.engine.types
+        replicate = engine.replicate(number)
+        chosen = engine.points(number, index, replicate, engine.record(number), bits)[4]
+        position = (types.UInt32(chosen * 2.0**24) << 8) | ((index * MIX) >> 24)
+        patch = dr.binary_search(
+            0,
+            engine.n - 1,
+            lambda at: dr.gather(types.UInt32, self.cumulative, at) <= position,
+        )
+        here = replicate * engine.n_opaque + patch
+        return here, engine.record(here)
+
+    def go_on(self, index, leg: int):
+        """Mask: walks that go on at their ``leg``-th landing."""
+        return index - dr.opaque(self.engine.types.UInt32, self.begun) <= dr.opaque(self.engine.types.UInt32, self._count(leg))
+
+    def factor(self, leg: int):
+        """Float: how many walks each of those stands for."""
+        after = self._count(leg)
+        return dr.opaque(self.engine.types.Float, self._count(leg - 1) / after if after else 0.0)
+
+    def _count(self, leg: int) -> int:
+        return self.counts[leg] if leg < len(self.counts) else 0

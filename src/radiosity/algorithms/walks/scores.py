@@ -1,0 +1,119 @@
+"""What landings score, and the power that particles carry (the estimators of random walks; M. Sbert 1997, section 3)."""
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import frozen, upload
+from ...method.model import Method
+from ...problem.model import Problem
+from ..firing.counters import Engine
+
+UNIT = 2**24  # fixed point units of a quantum: as fine as a weight in single precision, and 2^32 landings fit
+
+
+class Scores:
+    """Power received by every patch, as an estimator sees it.
+
+    With w the power that a particle brings to patch i, and p_i the chance to survive there, a landing scores w (collision),
+    w / (1 - p_i) where the walk ends (absorption), or w / p_i where it goes on (survival; a black patch, where none goes on,
+    scores w). Each has the mean w, so that all of them estimate the power received. p_i is the largest reflectance of the bands;
+    of each band the particle goes on with w rho_i / p_i.
+
+    Attributes:
+        survival: Float (n_patches,), p.
+        carries: particles have powers of their own; else all carry one quantum.
+        weighted: ``received`` is kept; else arrivals are all there is.
+        received: UInt64, group g of a slot at slot * n_groups + g, in `UNIT`.
+        fired: power that left along lines, from the lines' side of the ledger, for each group.
+    """
+
+    def __init__(self, engine: Engine, problem: Problem, method: Method):
+        self.engine, self.estimator = engine, method.estimator
+        types, groups = engine.types, problem.groups
+        self.n = groups.n_groups
+        reflectance = groups.reflectance.max(axis=1)
+        self.fractional = method.absorption == "fractional"
+        self.survival = upload(types.Float, reflectance.astype(np.float32))
+        self.carries = self.n > 1 or self.fractional
+        self.weighted = self.carries or method.estimator != "collision"
+        if self.carries:
+            top = groups.emission.max(axis=1)
+            share = groups.emission / np.where(top > 0, top, 1)[:, None]
+            kept = 1.0 if self.fractional else np.where(reflectance > 0, reflectance, 1)[:, None]
+            ratio = groups.reflectance / kept
+            self.shares, self.ratios = (
+                [upload(types.Float, column.astype(np.float32)) for column in x.T] for x in (share, ratio)
+            )
+        if self.weighted:
+            self.received = dr.opaque(types.UInt64, 0, (engine.total + 2 * engine.replicates) * self.n)
+        self.fired = [0] * self.n
+
+    def arrays(self) -> tuple:
+        """What kernels write to."""
+        return (self.received,) if self.weighted else ()
+
+    def born(self, number) -> tuple:
+        """What particles of patch numbers carry at first."""
+        if not self.carries:
+            return ()
+        patch = number - self.engine.replicate(number) * self.engine.n_opaque
+        return tuple(dr.gather(self.engine.types.Float, share, patch) for share in self.shares)
+
+    def fixed(self, weights) -> tuple:
+        """In fixed point, rounded."""
+        types = self.engine.types
+        return tuple(types.UInt64(weight * float(UNIT) + 0.5) for weight in weights)
+
+    def count_fired(self, weights, lines: int, real=True) -> None:
+        """Enter lines that leave in the ledger, with what they carry."""
+        if not self.carries:
+            self.add_fired([lines * (UNIT if self.weighted else 1)] * self.n)
+            return
+        sums = [dr.sum(dr.select(real, fixed, 0)) for fixed in self.fixed(weights)]
+        dr.eval(sums)
+        self.add_fired([int(total[0]) for total in sums])
+
+    def add_fired(self, power: list[int]) -> None:
+        """To the ledger."""
+        self.fired = [before + new for before, new in zip(self.fired, power, strict=True)]
+
+    def deposit(self, weights, slot, patch, probability, alive, real, mode) -> None:
+        """In a kernel: lines land in slots; those of no patch score what they bring."""
+        if not self.weighted:
+            return
+        one = self.engine.types.Float(1)
+        for g in range(self.n):
+            brought = weights[g] if self.carries else one
+            (score,) = self.fixed((self._score(brought, probability, alive),))
+            dr.scatter_add(self.received, score, slot * self.n + g, active=real, mode=mode)
+
+    def _score(self, brought, probability, alive):
+        if self.estimator == "absorption":
+            return dr.select(alive, 0, brought / (1 - probability))
+        if self.estimator == "survival":
+            return dr.select(probability > 0, dr.select(alive, brought / probability, 0), brought)
+        return brought
+
+    def reflected(self, weights, patch, on, factor) -> tuple:
+        """What goes on from a landing; ``factor`` restores what a fixed share of walks left behind."""
+        if not self.carries:
+            return ()
+        ratios = (dr.gather(self.engine.types.Float, ratio, patch, on) for ratio in self.ratios)
+        return tuple(w * r * (1 if factor is None else factor) for w, r in zip(weights, ratios, strict=True))
+
+    def capture(self) -> dict[str, np.ndarray]:
+        """fired_power (n_groups,) uint64; where weighted also received (replicates, n_patches, n_groups) and
+        received_missed (2, replicates, n_groups), uint64."""
+        engine, state = self.engine, {"fired_power": np.array(self.fired, np.uint64)}
+        if self.weighted:
+            flat, split = frozen(self.received), engine.total * self.n
+            state["received"] = flat[:split].reshape(engine.replicates, engine.n, self.n)
+            state["received_missed"] = flat[split:].reshape(2, engine.replicates, self.n)
+        return state
+
+    def restore(self, state: dict[str, np.ndarray]) -> None:
+        """Put captured sums back."""
+        self.fired = [int(power) for power in state["fired_power"]]
+        if self.weighted:
+            flat = np.concatenate([state["received"].ravel(), state["received_missed"].ravel()])
+            self.received = upload(self.engine.types.UInt64, flat)

@@ -1,0 +1,61 @@
+"""What the sums of shooting walks mean."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...problem.model import Problem
+from ...problem.quanta import Source
+from ...solution.books import Books, by_difference, exact_sum, exact_totals
+from ..process import AbstractTally, State
+from .scores import UNIT
+
+
+@dataclass(frozen=True)
+class WalkTally(AbstractTally):
+    """Landings, or their scores.
+
+    Attributes:
+        collisions: every landing scores what it brings, so that the books close in whole numbers.
+        chosen: walks are N to a replicate, not rounded patch by patch.
+    """
+
+    collisions: bool
+    chosen: bool
+
+    def lines(self, problem: Problem, state: State) -> int:
+        return exact_sum(state["arrivals"]) + exact_sum(state["missed"])
+
+    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
+        return state["arrivals"].sum(axis=0, dtype=np.int64)
+
+    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
+        quantum = problem.source.power / int(state["quanta"])
+        if "received" in state:
+            return state["received"][..., group], quantum / UNIT
+        return state["arrivals"], quantum
+
+    def books(self, problem: Problem, state: State, group: int) -> dict:
+        replicates, quanta = len(state["arrivals"]), int(state["quanta"])
+        unit = UNIT if "received" in state else 1
+        counts, missed = state["arrivals"], state["missed"]
+        if "received" in state:
+            counts, missed = state["received"][..., group], state["received_missed"][..., group]
+        watts = problem.source.power / quanta / unit / 2**32 / replicates
+        reflectance = problem.groups.reflectance[:, group]
+        emission = float(problem.groups.emission[:, group] @ problem.patches.area)
+        if not self.collisions:
+            received = counts.sum(axis=0, dtype=np.float64)
+            escaped, lost = (float(exact_sum(x)) * 2**32 * watts for x in missed)
+            return by_difference(emission, float(received @ (1 - reflectance)) * 2**32 * watts, escaped, lost)
+        rho = Source.fixed(reflectance)
+        arrived, reflected = exact_totals(counts, rho)
+        emitted = self._emitted(problem, quanta, unit, emission) * replicates
+        fired = int(state["fired_power"][group]) << 32
+        escaped, lost = (exact_sum(x) << 32 for x in missed)
+        return Books(emitted, fired, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()
+
+    def _emitted(self, problem: Problem, quanta: int, unit: int, emission: float) -> int:
+        if unit == 1 and not self.chosen:
+            return problem.source.emitted_in_all(quanta)
+        return round(emission / problem.source.power * quanta * unit) << 32

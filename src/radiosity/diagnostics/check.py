@@ -1,0 +1,122 @@
+"""`check`: what a scene holds, and what in it is probably not meant."""
+
+import warnings
+
+import numpy as np
+
+from ..errors import RadiosityWarning, SceneError, shown
+from ..scene import topology
+from ..scene.model import Scene
+from . import contact_findings, dark_sides, leaks
+from .report import NOTE, SERIOUS, WARNING, Finding, Report, surface_rows
+
+LITTLE = 0.01  # of the lines: that much is lost on the backs of lamps in many sound scenes
+BOX_SIDES = ("x low", "x high", "y low", "y high", "z low", "z high")
+
+
+def check_file(
+    name, *, max_reflectance: float = 0.95, strict: bool = False, allow_outside: bool = False, device: str = "auto"
+) -> Report:
+    """Load a scene and check it; what the reader says about the file is among the findings."""
+    from ..scene import load_scene
+
+    findings = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", RadiosityWarning)
+        try:
+            scene = load_scene(name, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside)
+        except SceneError as error:
+            scene, findings = None, [Finding(SERIOUS, "file", str(error))]
+    said = dict.fromkeys(str(w.message) for w in caught if issubclass(w.category, RadiosityWarning))
+    findings = [Finding(WARNING, "file", text) for text in said] + findings
+    if scene is None:
+        return Report(str(name), None, (), tuple(findings))
+    report = check(scene, device=device)
+    return Report(str(name), scene, report.surfaces, (*findings, *report.findings))
+
+
+def check(scene: Scene, *, walks: int = leaks.WALKS, seed: int = 0, device: str = "auto") -> Report:
+    """Check a scene: geometry, materials, light, and by tracing lines where light gets lost.
+
+    Raises:
+        DeviceError: lines cannot be traced on this machine.
+    """
+    from ..patches import subdivide
+
+    patches = subdivide(scene, cells=1)
+    power = np.zeros((2, scene.n_faces))  # of fronts and backs, all bands together
+    np.add.at(power, (patches.is_back.astype(int), patches.face), (patches.emission * patches.area[:, None]).sum(axis=1))
+    findings = [*_values(patches), *_light(power), *_topology(scene), *_lines(scene, power, walks, seed, device)]
+    for surface, front, back in leaks.flipped_emitters(scene, (power[0] > 0) & (power[1] == 0), seed=seed, device=device):
+        text = f"{_percent(front)} of the lines from its emitting side see the scene, {_percent(back)} from behind"
+        name = scene.names[surface]
+        findings.append(
+            Finding(SERIOUS, "flipped light", f"light '{name}' seems to face the wrong way: {text}; turn its faces round")
+        )
+    return Report(scene.source, scene, surface_rows(patches), tuple(findings))
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.3g} %"
+
+
+def _values(patches):
+    scene = patches.scene
+    wrong = ~((patches.reflectance >= 0) & (patches.reflectance < 1)).all(axis=1)
+    if wrong.any():
+        names = [scene.names[s] for s in np.unique(patches.surface[wrong])]
+        text = f"reflectance outside [0, 1) on {shown(names)}; energy would grow at each reflection"
+        yield Finding(SERIOUS, "reflectance", text)
+    empty = [scene.names[i] for i in np.flatnonzero(np.bincount(scene.surface, minlength=len(scene.names)) == 0)]
+    if empty:
+        yield Finding(WARNING, "empty surface", f"no face with an area in {shown(empty)}; a light among them emits nothing")
+
+
+def _light(power: np.ndarray):
+    if not power.any():
+        text = "no surface emits; give one an emission: Ke, an area emitter, ed, or power in a .toml (docs/scene-toml.md)"
+        yield Finding(SERIOUS, "no light", text)
+
+
+def _topology(scene: Scene):
+    yield from contact_findings.findings(scene)
+    edges = topology.open_edges(scene)
+    if len(edges.face):
+        metres = np.bincount(scene.surface[edges.face], edges.length, len(scene.names))
+        ranks = np.round(metres / metres.max(), 6)  # equal lengths in the order of surfaces, wherever they lie
+        worst = [scene.names[s] for s in np.argsort(-ranks, kind="stable") if metres[s] > 0]
+        count = f"{len(edges.face)} of {edges.total} edges ({edges.length.sum():.3g} m) belong to one face only"
+        harmless = "no harm in free-standing faces, and where a long edge meets several short ones"
+        yield Finding(NOTE, "open edges", f"{count}, most on {shown(worst, 4)}; {harmless}")
+
+
+def _lines(scene: Scene, power: np.ndarray, walks: int, seed: int, device: str):
+    followed = leaks.follow(scene, power, walks, seed=seed, device=device)
+    fates = dark_sides.inside(scene, followed)
+    lines = len(fates.fate)
+    if fates.escaped + fates.lost > 0.99:
+        gone = _percent(fates.escaped + fates.lost)
+        yield Finding(SERIOUS, "leaks", f"{gone} of {lines} lines meet no radiating side; are the normals turned round?")
+        return
+    if fates.escaped:
+        where, advice = _escapes(scene, fates), "an open scene where the share is large, a crack where it is small"
+        yield Finding(WARNING, "leaks", f"{_percent(fates.escaped)} of {lines} lines leave the scene ({where}): {advice}")
+    if fates.lost:
+        counts = np.bincount(scene.surface[fates.hit[fates.fate == leaks.LOST]], minlength=len(scene.names))
+        where, advice = _ranked(scene.names, counts), "if they should reflect, turn those faces round or make them two-sided"
+        severity = WARNING if fates.lost > LITTLE else NOTE
+        text = f"{_percent(fates.lost)} of {lines} lines land on absorbing backs (of {where}): {advice}"
+        yield Finding(severity, "leaks", text)
+    yield from dark_sides.findings(scene, followed, power)
+
+
+def _escapes(scene: Scene, fates: leaks.Fates) -> str:
+    gone = fates.fate == leaks.ESCAPED
+    starts = np.bincount(scene.surface[fates.face[gone]], minlength=len(scene.names))
+    ends = np.bincount(fates.exit[gone], minlength=6)
+    return f"from {_ranked(scene.names, starts)}; through {_ranked(BOX_SIDES, ends)}"
+
+
+def _ranked(names, counts: np.ndarray, most: int = 3) -> str:
+    order = [i for i in np.argsort(-counts, kind="stable") if counts[i]][:most]
+    return ", ".join(f"'{names[i]}' {100 * counts[i] / counts.sum():.0f} %" for i in order)

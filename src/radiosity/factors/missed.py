@@ -1,0 +1,43 @@
+"""What leaves patches and reaches none: shares that leave the scene or land on absorbing backs, by local lines."""
+
+import drjit as dr
+import numpy as np
+
+from ..device.backend import upload
+from ..device.turn import turn
+from ..sampling.numbers import ready
+from ..sampling.streams import Purpose, stream
+from ..tracing.departure import place_number
+from ..tracing.geometry import Geometry
+from ..tracing.lanes import CHUNK
+from ..tracing.lines import land, local_line, patch_of
+
+
+@turn()
+def missed(geometry: Geometry, lines: int = 1024, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Shares escaped and lost, (n_patches,) float64 each, exactly zero where no line tells of any.
+
+    Args:
+        lines: of each patch, 1 to 65 535: points of the Sobol' sequence, with a digital shift for each patch.
+    """
+    types, n = geometry.device.types, len(geometry.patches)
+    UInt32, size = types.UInt32, max(CHUNK // lines, 1)
+    numbers = ready("sobol", types)
+    shift = upload(UInt32, numbers.randomisation(stream(seed, 0, Purpose.VISIBILITY)))
+    geometry.prepare()
+    counts = np.zeros((2, n))
+    for begin in range(0, n, size):
+        count = min(size, n - begin)
+        lane = dr.arange(UInt32, max(count * lines, 2))  # arrays of one entry would compile kernels of their own
+        row = dr.minimum(lane // dr.opaque(UInt32, lines), dr.opaque(UInt32, count - 1))
+        patch = row + dr.opaque(UInt32, begin)
+        index = lane - row * dr.opaque(UInt32, lines) + 1
+        words = [dr.gather(UInt32, shift, UInt32(i)) for i in range(8)]
+        record = dr.gather(types.Array2u, geometry.patch_records, patch)
+        points = numbers.points(index, patch, numbers.of_patch(words, place_number(record)), 16)
+        landed = patch_of(geometry, land(geometry, *local_line(geometry, record, points)), n + 1, n)
+        dr.eval(landed)
+        found = np.array(landed)[: count * lines].reshape(count, lines)
+        for code in (0, 1):
+            counts[code, begin : begin + count] = (found == n + code).sum(axis=1)
+    return counts[0] / lines, counts[1] / lines

@@ -1,0 +1,12 @@
+"""Which line is fired next?"""
+
+ORDERS = {
+    "depth-first": "each walk is followed to its end",
+    "breadth-first": "sweep after sweep: all light reflected k times before any reflected k + 1 times",
+    "staged": "breadth-first in stages of ever more, weaker lines; a picture after each",
+    "well-distributed": "in stages of half the quantum each; a patch fires what it lacks to its share",
+    "incremental": "iterations that send the light not sent yet, in ever fewer lines",
+    "regular": "iterations that send all light anew, averaged",
+    "multipath": "each line carries on what earlier lines left on the patches it crosses",
+    "matrix": "lines give form factors first; the equation is solved afterwards",
+}

@@ -1,0 +1,97 @@
+"""Contract 2 in integers: what each patch owes.
+
+With quantum delta = Phi / N, patch i owes floor(E_i A_i / delta + rho_i h_i + phase_i) lines after h_i arrivals. All three
+terms are fixed point numbers with a 32-bit fraction, so the sum is exact and the same everywhere.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import SceneError
+from ..patches.model import Patches
+from ..pieces import pieces
+from ..sampling.streams import Purpose, stream
+
+ONE = 2.0**32
+LIMIT = 2**32 - 1  # of every counter
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A scene's scalar problem: what the integers of contract 2 count.
+
+    Attributes:
+        share: (n_patches,) float64, E_i A_i / Phi.
+        rho: (n_patches,) uint32, reflectance times 2^32.
+        power: Phi, W or lm.
+    """
+
+    share: np.ndarray
+    rho: np.ndarray
+    power: float
+
+    @staticmethod
+    def of(patches: Patches, emission: np.ndarray, reflectance: np.ndarray) -> "Source":
+        """From scalar emission and reflectance, (n_patches,) each.
+
+        Raises:
+            SceneError: nothing emits.
+        """
+        power = emission * patches.area
+        try:
+            total = math.fsum(power)
+        except OverflowError:
+            total = math.inf
+        if total == math.inf:
+            raise SceneError(f"{patches.scene.source}: the total power is too large for numbers; check emission and unit")
+        if not (math.isfinite(total) and total > 0):
+            raise SceneError(
+                f"{patches.scene.source}: no surface emits (total power {total:g} {patches.scene.power_unit}); "
+                "give one an emission: in the file where its format has lights, else by power = 40 for a surface in a .toml "
+                "(docs/scene-toml.md)"
+            )
+        return Source(power / total, Source.fixed(reflectance), total)
+
+    @staticmethod
+    def fixed(reflectance: np.ndarray) -> np.ndarray:
+        """Reflectance in [0, 1) times 2^32, uint32."""
+        fixed = np.empty(reflectance.shape, np.uint32)
+        for part in pieces(len(fixed)):
+            fixed[part] = np.floor(reflectance[part] * ONE)
+        return fixed
+
+    def emitted(self, quanta: int) -> tuple[np.ndarray, np.ndarray]:
+        """E_i A_i / delta at N quanta: whole lines and 2^-32ths, uint32 each. Never falls when N grows."""
+        whole, fraction = (np.empty(len(self.share), np.uint32) for _ in range(2))
+        for part, *both in self._emitted(quanta):
+            whole[part], fraction[part] = both
+        return whole, fraction
+
+    def emitted_in_all(self, quanta: int) -> int:
+        """Their sum, in 2^-32ths."""
+        return sum((int(whole.sum()) << 32) + int(fraction.sum()) for _, whole, fraction in self._emitted(quanta))
+
+    def _emitted(self, quanta: int) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
+        for part in pieces(len(self.share)):
+            lines = self.share[part] * quanta
+            whole = np.floor(lines)
+            yield part, whole.astype(np.uint64), np.floor((lines - whole) * ONE).astype(np.uint64)
+
+
+def phases(seed: int, replicates: int, n_patches: int) -> np.ndarray:
+    """(replicates, n_patches) uint32, uniform: the rounding offset of each patch."""
+    result = np.empty((replicates, n_patches), np.uint32)
+    for replicate in range(replicates):
+        generator = np.random.Generator(np.random.Philox(stream(seed, replicate, Purpose.PHASE)))
+        result[replicate] = generator.integers(0, 2**32, n_patches, dtype=np.uint32)
+    return result
+
+
+def owed(source: Source, quanta: int, arrivals: np.ndarray, phase: np.ndarray) -> np.ndarray:
+    """Contract 2 on the host, (..., n_patches) uint64: for the books and for tests."""
+    whole, fraction = source.emitted(quanta)
+    low = source.rho.astype(np.uint64) * arrivals.astype(np.uint64) + fraction.astype(np.uint64) + phase.astype(np.uint64)
+    return whole.astype(np.uint64) + (low >> np.uint64(32))

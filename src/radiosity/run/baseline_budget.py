@@ -1,0 +1,48 @@
+"""How far a baseline goes, how finely a scene is cut for it where nobody says, and what its books tell of its form factors."""
+
+import warnings
+
+from ..errors import MethodError, RadiosityWarning
+from ..method import Baseline, Method
+from .budget import DONE, Budget
+
+MISSING = 0.01  # of the emitted power: more than this out of balance is told
+PATCHES = 2_000  # of a scene that is not cut yet: pairs of them still fit everywhere
+
+
+def chosen_budget(method: Baseline, **asked) -> Budget:
+    """The budget that was asked for, or to go on until the method is done.
+
+    Raises:
+        MethodError: several budgets, or one that the method cannot keep.
+    """
+    given = {name: value for name, value in asked.items() if value is not None}
+    if "error" in given:
+        raise MethodError(f"error: {method} draws no ever larger samples, and cannot go on to a target; refine its own choices")
+    if method.scheme == "full-matrix" and {"rays", "seconds"} & set(given):
+        raise MethodError(
+            f"{', '.join(given)}: a full matrix is made whole or not at all; its lines follow from the number of "
+            "patches and from resolution or samples: leave it out"
+        )
+    return Budget(**given) if given else Budget(quanta=DONE)
+
+
+def cut_for(method: "Method | Baseline") -> dict:
+    """Arguments of `subdivide` for a scene that is not cut yet."""
+    if not isinstance(method, Baseline):
+        return {}
+    return {"about": PATCHES, "powers_of_two": method.needs_powers_of_two}
+
+
+def warn_of_missing(method: Baseline, books: tuple[dict, ...], state: dict) -> None:
+    """Tell of power that form factors lose or make, or that had to be cut (`algorithms.progressive`)."""
+    off = max((abs(book["rounding"]) / book["emitted"] for book in books if book["emitted"] > 0), default=0.0)
+    off = max(off, float(state.get("cut", 0.0)))
+    if off > MISSING and state.get("done", False):
+        way_out = "factors polygons (a hemicube is one point)" if method.factors == "hemicube" else "more samples"
+        warnings.warn(
+            f"{off:.1%} of the emitted power is out of balance: form factors are inaccurate by this much; "
+            f"take {way_out}, or smaller patches",
+            RadiosityWarning,
+            stacklevel=6,
+        )

@@ -1,0 +1,164 @@
+"""How long to go on: rays, seconds, a target error or quanta, and the ladder of stages that leads there."""
+
+import math
+from dataclasses import dataclass
+
+from ..errors import MethodError
+from ..problem.quanta import LIMIT
+
+FIRST_STAGE = 1 << 20  # quanta of all replicates together in the first stage
+FULL = 0.95 * LIMIT  # lines of a replicate: its counters have 32 bits
+LEAST_QUANTA = 1024
+AIM, AIM_ONCE = 0.97, 0.9  # of a target error, at the last stage; lower where a stage between two rungs cannot be gone on from
+LEAST_STEP = 1.05  # times the lines so far
+DONE = 1 << 31  # quanta, more than any baseline takes: it ends when there is nothing left to do
+BASELINE_RUNGS = {"full-matrix": 1, "progressive": 64, "hierarchical": 1}  # the whole matrix; shots; passes of refinement
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Exactly one of the four is not None; but an error may have a limit: rays, seconds or both.
+
+    Attributes:
+        rays: lines in all, replicates together.
+        seconds: of wall time, compilation included.
+        error: relative, of the scene (see `Solution.error`).
+        quanta: N of each replicate.
+
+    Raises:
+        MethodError: none or too many given, or a value that makes no sense.
+    """
+
+    rays: float | None = None
+    seconds: float | None = None
+    error: float | None = None
+    quanta: int | None = None
+
+    def __post_init__(self):
+        given = {name: value for name, value in vars(self).items() if value is not None}
+        if not given or (len(given) > 1 and ("error" not in given or "quanta" in given)):
+            raise MethodError(
+                f"give exactly one of rays, seconds, error and quanta (given: {', '.join(given) or 'none'}); only an error may "
+                "have rays or seconds beside it, as its limit"
+            )
+        for name, value in given.items():
+            self._check(name, value)
+            object.__setattr__(self, name, int(value) if name in ("rays", "quanta") else float(value))  # numpy's become Python's
+
+    @staticmethod
+    def _check(name: str, value) -> None:
+        try:
+            good = not isinstance(value, bool) and math.isfinite(value) and value > 0
+        except TypeError:
+            good = False
+        if not good:
+            raise MethodError(f"{name} is {value!r}; it must be a positive number")
+        if name == "error" and value >= 1:
+            raise MethodError(f"error is {value:g}; give a relative error below 1 (0.01 or, on the command line, 1%)")
+        if name in ("rays", "quanta") and (value != int(value) or value < 1):
+            raise MethodError(f"{name} is {value!r}; it must be a whole number of 1 or more")
+
+    def allows(self, lines: float, seconds: float) -> bool:
+        """So many lines and so much time are within the limits of an error."""
+        return (self.rays is None or lines <= self.rays) and (self.seconds is None or seconds <= self.seconds)
+
+    def check(self, replicates: int) -> None:
+        """Refuse what 32-bit counters could not hold, before anything is traced.
+
+        Raises:
+            MethodError: too many lines for a replicate.
+        """
+        lines = max((self.rays or 0) / replicates, self.quanta or 0)
+        if lines >= LIMIT:
+            raise MethodError(
+                f"{lines:.3g} lines for each of {replicates} replicates overflow the 32-bit counters "
+                f"(fewer than {LIMIT}); take more replicates or fewer lines"
+            )
+        if self.error is not None and replicates < 2:
+            raise MethodError("a target error needs 2 replicates or more: a single one has no error")
+
+
+def first_stage(replicates: int, n_patches: int) -> int:
+    """N of the first rung: a power of two, so large that passing over all patches does not outweigh the lines."""
+    return max(LEAST_QUANTA, 1 << round(math.log2(max(FIRST_STAGE / replicates, 2 * n_patches))))
+
+
+def first_rung(order: str, replicates: int, share) -> int:
+    """N of the first rung for an order: staged ones begin with few lines, to show something soon; well distributed ones with a
+    quantum no larger than the power of the weakest light, so that none is silent (``share`` of power, (n_patches,)).
+    """
+    if order in BASELINE_RUNGS:
+        return BASELINE_RUNGS[order]
+    usual = first_stage(replicates, len(share))
+    if order == "staged":
+        return LEAST_QUANTA
+    if order == "well-distributed":
+        return min(usual, max(LEAST_QUANTA, 1 << math.ceil(math.log2(1 / share[share > 0].min()))))
+    return usual
+
+
+def rung_after(quanta: int, first: int) -> int:
+    """The rung above N on the ladder of doubling powers of two that begins at ``first``."""
+    return first if quanta < first else 1 << (quanta.bit_length())
+
+
+def on_ladder(quanta: int, first: int) -> bool:
+    """N is a rung."""
+    return quanta >= first and quanta & (quanta - 1) == 0
+
+
+@dataclass(frozen=True)
+class Progressed:
+    """What is known after a stage: quanta of each replicate, lines of all, seconds, what the error may be (NaN: it cannot be told
+    yet), and the slope at which it falls with lines."""
+
+    quanta: int
+    lines: int
+    seconds: float
+    stage_seconds: float
+    error: float
+    slope: float = 0.5
+
+
+def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, most: float, *, replay: bool) -> int | None:
+    """N of the next stage, or None where the budget is used up.
+
+    The stages of any run are the rungs of the ladder below its last N, then N: so N alone replays a run also where
+    bands make the result depend on the stages (``replay``); there a stage between two rungs is the last. Integers alone
+    do not depend on stages, and may go on from any N. A replicate counts ``most`` lines at most.
+    """
+    if replay and not on_ladder(at.quanta, first):
+        return None
+    rung = rung_after(at.quanta, first)
+    wanted = _wanted(budget, rung, at, replay)
+    if wanted <= at.quanta * 1.01:
+        return None
+    target = min(rung, wanted)
+    if at.lines / replicates * target / at.quanta > most:
+        return None  # 32-bit counters hold no more
+    return target
+
+
+def _wanted(budget: Budget, rung: int, at: Progressed, replay: bool) -> int:
+    """The least of what each part of the budget wants."""
+    if budget.quanta is not None:
+        return int(budget.quanta)
+    wanted = []
+    if budget.rays is not None:
+        wanted.append(round(budget.rays * at.quanta / at.lines) if at.lines else rung)  # nothing was hit yet: try more
+    if budget.seconds is not None:
+        left = budget.seconds - at.seconds
+        rate = max(at.lines, 1) / max(at.stage_seconds, 1e-9) / 2  # a stage fires about half of all lines so far
+        wanted.append(round(at.quanta * (1 + 0.9 * left * rate / max(at.lines, 1))) if left > 0 else 0)
+    if budget.error is not None:
+        wanted.append(_for_error(budget.error, rung, at, replay))
+    return min(wanted)
+
+
+def _for_error(error: float, rung: int, at: Progressed, replay: bool) -> int:
+    if at.error <= error:
+        return 0
+    if math.isnan(at.error):
+        return rung  # more lines may tell
+    aim = (AIM_ONCE if replay else AIM) * error
+    return max(math.ceil(at.quanta * (at.error / aim) ** (1 / at.slope)), math.ceil(LEAST_STEP * at.quanta))

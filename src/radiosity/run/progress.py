@@ -1,0 +1,153 @@
+"""What a run tells about itself while it goes on, and how it is asked to stop."""
+
+import math
+import signal
+import threading
+import time
+from collections.abc import Callable
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from ..device.turn import aside
+from .budget import DONE, Budget
+
+SLOPE = 0.6  # of the error against lines, as measured with low discrepancy numbers
+LAST = 4  # stages that a run's own slope is taken from
+FLATTEST, STEEPEST = 0.35, 1.0
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A moment of a run.
+
+    Attributes:
+        stage: how many stages are complete.
+        rays: lines of sweeps so far, replicates together; those that send the residue on come where results are read.
+        rays_per_second: since the first sweep began.
+        error: relative error after the last complete stage, NaN where unknown.
+        fraction: of the budget, 0 to 1, or None where it cannot be told yet.
+        seconds_left: an estimate, or None.
+        message: what is being done.
+    """
+
+    stage: int
+    rays: int
+    rays_per_second: float
+    error: float
+    fraction: float | None
+    seconds_left: float | None
+    message: str
+
+
+Listener = Callable[[Progress], None]
+
+
+class Teller:
+    """Counts a run's lines and tells a listener how far it is."""
+
+    def __init__(self, budget: Budget, listener: Listener | None):
+        self.budget, self.listener = budget, listener
+        self.begun = self.tracing_since = time.perf_counter()
+        self.stage, self.lines, self.lines_before, self.error, self.bound = 0, 0, 0, math.nan, math.nan
+        self.lines_a_quantum = 0.0
+        self.known: list[tuple[float, float]] = []  # logarithms to base 2 of lines and error after each stage
+
+    @property
+    def elapsed(self) -> float:
+        return time.perf_counter() - self.begun
+
+    def begin(self, lines: int) -> None:
+        """Tracing begins, with lines of an earlier run done."""
+        self.tracing_since, self.lines, self.lines_before = time.perf_counter(), lines, lines
+
+    def complete(self, lines: int, quanta: int, error: float, margin: float = 1.0, swept: int | None = None) -> None:
+        """A stage is complete; the error may be ``margin`` times what is stated (NaN: nobody knows). ``swept`` of its lines were
+        told, or else all."""
+        swept = lines if swept is None else swept
+        self.bound = error * margin
+        self.stage, self.lines, self.error, self.lines_a_quantum = self.stage + 1, swept, error, swept / quanta
+        if error > 0 and lines > 0:
+            self.known.append((math.log2(lines), math.log2(error)))
+
+    @property
+    def slope(self) -> float:
+        """Of the error against lines, a positive power: of this run's last stages by least squares, drawn towards `SLOPE` as if
+        by one more doubling."""
+        last = self.known[-LAST:]
+        if len(last) < 2:
+            return SLOPE
+        x, y = ([value - sum(column) / len(last) for value in column] for column in zip(*last, strict=True))
+        spread = sum(a * a for a in x)
+        slope = (SLOPE * 0.5 - sum(a * b for a, b in zip(x, y, strict=True))) / (0.5 + spread)
+        return min(max(slope, FLATTEST), STEEPEST)
+
+    def tell(self, message: str) -> None:
+        """Pass the moment on."""
+        if self.listener is None:
+            return
+        tracing = time.perf_counter() - self.tracing_since
+        rate = (self.lines - self.lines_before) / tracing if tracing > 0 else 0.0
+        fraction, left = self._ahead(rate)
+        moment = Progress(
+            self.stage,
+            self.lines,
+            rate,
+            self.error,
+            None if fraction is None else min(max(fraction, 0.0), 1.0),
+            None if left is None else max(left, 0.0),
+            message,
+        )
+        with aside():
+            self.listener(moment)
+
+    def _ahead(self, rate: float) -> tuple[float | None, float | None]:
+        """The fraction that is done, and the seconds left: of an error with a limit, by what comes first."""
+        fractions, lefts = [], []
+        if self.budget.seconds is not None:
+            fractions.append(self.elapsed / self.budget.seconds)
+            lefts.append(self.budget.seconds - self.elapsed)
+        for whole in (self.budget.rays, self._expected_lines()):
+            if whole:
+                fractions.append(self.lines / whole)
+                lefts += [(whole - self.lines) / rate] if rate else []
+        return max(fractions, default=None), min(lefts, default=None)
+
+    def _expected_lines(self) -> float | None:
+        """Of a run to so many quanta, or to an error, once something is known of it."""
+        if self.budget.quanta == DONE:
+            return None
+        if self.budget.quanta is not None:
+            return self.lines_a_quantum * self.budget.quanta or None
+        if self.budget.error is None or not self.bound > 0:
+            return None
+        return max(self.lines, self.lines * (self.bound / self.budget.error) ** (1 / self.slope))
+
+
+class Interrupted(Exception):
+    """The run was asked to stop between two sweeps."""
+
+
+class Stop:
+    """Set by Ctrl-C; looked at between sweeps, where the counters are whole. A second Ctrl-C stops at once."""
+
+    def __init__(self):
+        self.asked = False
+
+    @contextmanager
+    def listening(self):
+        """Take over SIGINT in the main thread for a while."""
+        if threading.current_thread() is not threading.main_thread():
+            yield self
+            return
+        before = signal.getsignal(signal.SIGINT)
+
+        def handle(number, frame):
+            if self.asked:
+                raise KeyboardInterrupt
+            self.asked = True
+
+        signal.signal(signal.SIGINT, handle)
+        try:
+            yield self
+        finally:
+            signal.signal(signal.SIGINT, before)

@@ -1,0 +1,305 @@
+"""The one loop over stages."""
+
+import math
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import asdict, replace
+from importlib.metadata import version
+from typing import Any
+
+from ..algorithms.firing.state import check_same
+from ..algorithms.process import AbstractMeanTally, AbstractProcess, State
+from ..algorithms.table import make
+from ..device.backend import choose, give_back_memory
+from ..device.turn import turn
+from ..errors import DeviceError, MethodError, RadiosityWarning, result_kept
+from ..method import Baseline, Method
+from ..patches import Patches
+from ..problem.model import Problem
+from ..solution.model import NOT_REACHED, Solution
+from ..solution.without_results import without_results
+from ..tally import unmet
+from ..tracing.geometry import TRACING, Geometry
+from . import demand
+from .baseline_budget import warn_of_missing
+from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
+from .checkpoint import Checkpoint
+from .progress import Interrupted, Listener, Stop, Teller
+from .shortfall import warn_of_more, warn_of_target
+from .snapshot import Snapshot
+from .target import Target, nothing_before_lights
+from .trial import few_quanta
+
+MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
+COUNTERS_FULL = "counters full before the end; take more replicates"
+LOST_HITS = (
+    "the energy balance does not close: hits were lost while another thread of this process ran kernels of Dr.Jit or Mitsuba "
+    "(runs of radiosity wait for each other). Solve again while nothing else uses them, or in a process of its own; a checkpoint "
+    "of this run is of no use"
+)
+ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
+LARGE = 1 << 19  # counters: before results are read, memory that sweeps took is given back, which costs some milliseconds
+PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
+
+
+class Run:
+    """A problem, a method and a budget."""
+
+    def __init__(
+        self,
+        patches: Patches,
+        method: Method | Baseline,
+        budget: Budget,
+        replicates: int,
+        seed: int,
+        device: str,
+        listener: Listener | None,
+        resume: Solution | None,
+        checkpoint: Checkpoint | None,
+        error_of: str | None = None,
+    ):
+        self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
+        self.replicates, self.resume, self.checkpoint = replicates, resume, checkpoint
+        self.snapshot: Snapshot | None = None  # of the last complete stage
+        self.also: Callable[[Snapshot], Any] | None = None  # what else is read of a stage
+        self.seconds_before = 0.0 if resume is None else resume.seconds
+        self.problem = Problem.of(patches)
+        bands = self.problem.groups.n_groups
+        if bands > 1 and method.machine == "firing" and method.order == "depth-first":
+            raise MethodError(
+                f"order '{method.order}' cannot carry {bands} different bands: "
+                "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
+            )
+        demand.check(method, patches, bands, replicates, budget.rays)
+        self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
+        self.rung = first_rung(method.order, replicates, self.problem.source.share)
+        self.teller, self.stop = Teller(budget, listener), Stop()
+        self.error_of, self.target = error_of, Target.of(patches, error_of)
+        self.teller.tell("compiling")
+        self.device = choose(device)
+        if resume is not None:
+            check_same(resume.provenance, self._provenance())
+        self.geometry = Geometry(patches, self.device)
+
+    def solve(self) -> Solution:
+        """Stage after stage until the budget is used up, or Ctrl-C."""
+        with turn(), self.stop.listening():
+            return self._stages()
+
+    def _stages(self) -> Solution:
+        process, target = self._process(self.problem, self.replicates), 0
+        self.process = process
+        if self.resume is None:
+            target = self._first_quanta()
+        else:
+            process.restore(self.resume.state)
+            target = process.quanta
+            last = not process.nested and not process.unfinished(self.resume.state) and not on_ladder(target, self.rung)
+            if last and (self.budget.seconds is not None or self._budget != self.resume.provenance.get("budget")):
+                raise MethodError(
+                    f"a run by {self.method} in {self.problem.groups.n_groups} groups of bands cannot go on from {target} quanta "
+                    "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
+                    f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
+                )
+        self.teller.begin(0 if self.resume is None else process.tally.swept_lines(self.problem, process.capture()))
+        status, pending, steps = "complete", {}, [target]
+        while target:
+            started = time.perf_counter()
+            try:
+                for step in steps:
+                    process.advance(step, self._swept)
+            except Interrupted as reason:
+                status, pending = str(reason), process.capture()
+                break
+            large = self.replicates * len(self.patches) > LARGE
+            if large:
+                give_back_memory()
+            snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture(), self.replicates, self.also)
+            known = self.replicates > 1 and self._error_matters
+            error = self.target.error(snapshot) if known else math.nan
+            margin = self._margin(snapshot)
+            lines = snapshot.lines if known or large else round(snapshot.about_lines)
+            self.teller.complete(lines, target, error, margin, process.tally.swept_lines(self.problem, snapshot.state))
+            if self.stop.asked and not snapshot.done:
+                status = "interrupted"
+                break
+            if snapshot.done or self._no_light(snapshot):
+                break
+            stage, slope = time.perf_counter() - started, self.teller.slope
+            at = Progressed(target, lines, self.teller.elapsed, stage, error * margin, slope)
+            replay = not process.nested
+            if replay and self._missed(at):
+                self.process = process = self._process(self.problem, self.replicates)
+                steps = self._climb(target)
+                target = steps[-1]
+                continue
+            target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
+            steps = [target] if target else []
+            if target and large and self.replicates > 1:
+                snapshot.settle()
+                give_back_memory()
+        if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
+            raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
+        if self.snapshot is None:
+            solution = self._so_far(status, pending)
+        else:
+            if status in ("complete", COUNTERS_FULL) and not self._reached(self.snapshot):
+                status = COUNTERS_FULL if self.budget.error is None else NOT_REACHED
+            solution = self._solution(self.snapshot, status, pending)
+        if self.checkpoint is not None:
+            self.checkpoint.end(solution)
+        if solution.quanta == 0:
+            raise KeyboardInterrupt
+        return solution
+
+    @property
+    def _had_results(self) -> bool:
+        return self.resume is not None and self.resume.quanta > 0
+
+    def _so_far(self, status: str, state: State) -> Solution:
+        """Results of the last complete stage, if any, and a state to go on from."""
+        seconds = self.teller.elapsed + self.seconds_before
+        if self.snapshot is not None:
+            return self._read(self.snapshot, status, state)
+        if self.resume is not None and self._had_results:
+            return replace(self.resume, seconds=seconds, status=status, state=state, provenance=self._provenance())
+        return without_results(self.patches, self.replicates, seconds, status, self._provenance(), state)
+
+    def _missed(self, at: Progressed) -> bool:
+        """The stage was to be the last, and its error is above what was asked for; the limit leaves room for another run."""
+        more = 2 * rung_after(at.quanta, self.rung) / at.quanta
+        return (
+            self.budget.error is not None
+            and not at.error <= self.budget.error
+            and not on_ladder(at.quanta, self.rung)
+            and self.budget.allows(at.lines * more / 2, at.seconds + at.stage_seconds * more)
+        )
+
+    def _climb(self, quanta: int) -> list[int]:
+        """The rungs up to the one above N: from N itself no run goes on to the bits of a longer one, so another one begins."""
+        rungs = [self.rung]
+        while rungs[-1] < quanta:
+            rungs.append(rung_after(rungs[-1], self.rung))
+        return rungs
+
+    def _reached(self, snapshot: Snapshot) -> bool:
+        """The error was reached, or another budget used up; else the counters were."""
+        if snapshot.done or self._no_light(snapshot):
+            return True
+        if self.budget.error is not None:
+            return self.teller.bound <= self.budget.error
+        if self.budget.quanta is not None:
+            return snapshot.quanta >= self.budget.quanta
+        return self.budget.rays is None or snapshot.lines >= 0.5 * self.budget.rays
+
+    def _margin(self, snapshot: Snapshot) -> float:
+        """How many times the stated error the true one may be, where it is to be reached; NaN where too few lines landed."""
+        if self.budget.error is None:
+            return 1.0
+        return self.target.margin(snapshot) if self.target.judged(snapshot) else math.nan
+
+    def _no_light(self, snapshot: Snapshot) -> bool:
+        """No patch can receive anything, and there is no error to wait for."""
+        return self.budget.error is not None and not snapshot.irradiance[0].any() and nothing_before_lights(self.patches)
+
+    def _process(self, problem: Problem, replicates: int) -> AbstractProcess:
+        return make(self.geometry, problem, self.method, self.seed, replicates)
+
+    @property
+    def _error_matters(self) -> bool:
+        """Between stages the error costs a pass over all replicates: for a target, or for someone who looks on."""
+        return self.budget.error is not None or self.teller.listener is not None
+
+    def _swept(self, count: int) -> None:
+        self.teller.lines += count
+        self.teller.tell("tracing")
+        if self.stop.asked:
+            raise Interrupted("interrupted")
+        if self.teller.lines / self.replicates > self.most:
+            raise Interrupted(COUNTERS_FULL)
+        seconds = self.budget.seconds
+        if seconds is not None and self.teller.stage and self.teller.elapsed > PATIENCE * seconds + 1:
+            raise Interrupted("complete")
+        if self.checkpoint is not None and self.checkpoint.due:
+            self.checkpoint.write(lambda: self._so_far("interrupted", self.process.capture()))
+
+    def _first_quanta(self) -> int:
+        """N of the first stage: the ladder's first rung, or less where the budget asks for less."""
+        if self.budget.quanta is not None:
+            return min(self.rung, int(self.budget.quanta))
+        if isinstance(self.method, Baseline):
+            return self.rung
+        if self.budget.rays is None or self.budget.rays >= MANY * self.rung * self.replicates:
+            return self.rung
+        counted = self.problem.scalar if self.method.machine == "firing" else self.problem
+        found = few_quanta(self.budget.rays, self.replicates, self._process(counted, 1), self._tried)
+        return min(self.rung, found)
+
+    def _tried(self, count: int) -> None:
+        self.teller.tell("trying")
+        if self.stop.asked:
+            raise KeyboardInterrupt
+
+    def _solution(self, snapshot: Snapshot, status: str, pending) -> Solution:
+        solution = self._read(snapshot, status, pending or snapshot.state)
+        with result_kept():
+            if self.resume is None:
+                warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
+            if status == NOT_REACHED:
+                warn_of_target(self, snapshot)
+            if isinstance(snapshot.tally, AbstractMeanTally):
+                unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
+            ends = snapshot.lines / self.replicates / len(self.patches)
+            global_factors = isinstance(self.method, Method) and self.method.machine == "matrix" and self.method.lines != "local"
+            if global_factors and ends < ENDS_ENOUGH:
+                warnings.warn(
+                    f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over "
+                    "that number, and in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
+                    RadiosityWarning,
+                    stacklevel=5,
+                )
+            if isinstance(self.method, Baseline):
+                warn_of_missing(self.method, snapshot.books, snapshot.state)
+        return solution
+
+    def _read(self, snapshot: Snapshot, status: str, state: State) -> Solution:
+        if any(book["closes"] is False for book in snapshot.books):
+            raise DeviceError(LOST_HITS)
+        mean, error = snapshot.irradiance
+        return Solution(
+            self.patches,
+            mean,
+            error,
+            snapshot.arrivals,
+            snapshot.lines,
+            self.teller.elapsed + self.seconds_before,
+            snapshot.quanta,
+            self.replicates,
+            snapshot.books,
+            status,
+            self._provenance(),
+            state,
+            snapshot.surface_power,
+            snapshot.side_power,
+        )
+
+    @property
+    def _budget(self) -> dict:
+        return {name: value for name, value in {**vars(self.budget), "error_of": self.error_of}.items() if value is not None}
+
+    def _provenance(self) -> dict:
+        return {
+            "scene": self.patches.scene.hash,
+            "source": self.patches.scene.source,
+            "method": str(self.method),
+            "choices": asdict(self.method),
+            "seed": self.seed,
+            "replicates": self.replicates,
+            "device": self.device.name,
+            "patches": len(self.patches),
+            "cut": self.patches.hash,
+            "tracing": TRACING,
+            "budget": self._budget,
+            "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
+        }

@@ -1,0 +1,201 @@
+"""A complete stage: what its state means for the scene's bands."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..algorithms.process import AbstractBiasedTally, AbstractTally, State
+from ..pieces import pieces
+from ..problem.model import Problem
+from ..solution.errors import inner_products, margin, mean_and_error, relative_error
+from ..solution.intervals import FEW, by_luck, least_error, usual_power
+
+
+@dataclass(eq=False)
+class Snapshot:
+    """The problem, the state of a process and how it is read; ``also`` reads what else is asked of it."""
+
+    problem: Problem
+    tally: AbstractTally
+    state: State
+    replicates: int = 1
+    also: Callable[["Snapshot"], Any] | None = None
+
+    def settle(self) -> None:
+        """Read all that is asked of it now, and let go of the state, where that is quick and takes less memory: what the process
+        writes next goes to a copy of whatever is held."""
+        if self.tally.settles:
+            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power
+            _ = self.books, self.asked
+            self.state = {}
+            self.tally.forget()
+
+    @cached_property
+    def quanta(self) -> int:
+        return int(self.state["quanta"])
+
+    @property
+    def done(self) -> bool:
+        """More quanta would change nothing."""
+        return bool(self.state.get("done", False))
+
+    @cached_property
+    def lines(self) -> int:
+        return self.tally.lines(self.problem, self.state)
+
+    @cached_property
+    def about_lines(self) -> float:
+        """See `AbstractTally.about_lines`."""
+        return self.tally.about_lines(self.problem, self.state)
+
+    @cached_property
+    def arrivals(self) -> np.ndarray:
+        return self.tally.arrivals(self.problem, self.state)
+
+    @cached_property
+    def irradiance(self) -> tuple[np.ndarray, np.ndarray]:
+        """Mean and standard error, (n_patches, n_bands) each."""
+        groups = self.problem.groups
+        mean, error = (np.empty((len(self.problem.patches), len(groups.index))) for _ in range(2))
+        for group in range(groups.n_groups):
+            bands = np.flatnonzero(groups.index == group)
+            for part, one, its_error in self._irradiance(group):
+                mean[part, bands], error[part, bands] = (x[:, None] * groups.scale[bands] for x in (one, its_error))
+        some = any(by_luck(mean[part], error[part]).any() for part in pieces(len(mean)))
+        if some and self.tally.counts_landings:
+            usual = usual_power(mean, self.arrivals, self.problem.patches.area, self.line)
+            error = least_error(mean, error, self.arrivals, self.problem.patches.area, usual, self.replicates)
+        return mean, error
+
+    @cached_property
+    def line(self) -> np.ndarray:
+        """(n_bands,) or (n_patches, n_bands) W or lm that a line would bring to the mean of replicates: `AbstractTally.line`."""
+        groups = self.problem.groups
+        lines = [np.asarray(self.tally.line(self.problem, self.state, group)) for group in range(groups.n_groups)]
+        return np.stack(lines, axis=-1)[..., groups.index] * groups.scale / self.replicates
+
+    @cached_property
+    def surface_power(self) -> np.ndarray:
+        """See `Solution.surface_power`."""
+        if self.side_power is not None:
+            return self.side_power[:, :, 0::2] + self.side_power[:, :, 1::2]
+        patches = self.problem.patches
+        return self.sums(patches.surface, len(patches.scene.names))
+
+    @cached_property
+    def asked(self) -> Any:
+        """What ``also`` reads."""
+        return None if self.also is None else self.also(self)
+
+    @cached_property
+    def side_power(self) -> np.ndarray | None:
+        """See `Solution.side_power`."""
+        patches = self.problem.patches
+        if not patches.is_back.any():
+            return None
+        return self.sums(2 * patches.surface.astype(np.int64) + patches.is_back, 2 * len(patches.scene.names))
+
+    def sums(self, key: np.ndarray, count: int) -> np.ndarray:
+        """(2, replicates, count, n_bands) W or lm: what patches of an equal key receive, and of it reflect, in each replicate.
+
+        Args:
+            key: (n_patches,) int, 0 to count - 1.
+        """
+        groups, found = self.problem.groups, []
+        runs = np.concatenate([[0], np.flatnonzero(key[1:] != key[:-1]) + 1])  # of an equal key: few, since patches follow faces
+
+        def summed(row):
+            return np.bincount(key[runs], np.add.reduceat(row, runs, dtype=np.float64), count)
+
+        for group in range(groups.n_groups):
+            values, unit = self.tally.irradiance(self.problem, self.state, group)
+            rho = groups.reflectance[:, group]
+            found.append([[summed(row) * unit for row in values], [summed(row * rho) * unit for row in values]])
+        return np.stack([np.array(found[g]) * s for g, s in zip(groups.index, groups.scale, strict=True)], axis=-1)
+
+    def _irradiance(self, group: int) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
+        """Mean and standard error of a group, a piece of the patches at a time."""
+        values, unit = self.tally.irradiance(self.problem, self.state, group)
+        tally = self.tally
+        bias = tally.bias(self.problem, self.state, group) if isinstance(tally, AbstractBiasedTally) else None
+        for part in pieces(len(self.problem.patches)):
+            mean, error = mean_and_error(values[:, part])
+            if bias is not None:
+                error = np.hypot(error, bias[part])
+            factor = unit / self.problem.patches.area[part]
+            yield part, mean * factor, error * factor
+
+    def error(self, rows: np.ndarray | slice = slice(None)) -> float:
+        """See `Solution.error`; of some patches."""
+        patches = self.problem.patches
+        return relative_error(*(value[rows] for value in (patches.reflectance, *self.irradiance, patches.area)))
+
+    def judged(self, rows: np.ndarray | slice = slice(None)) -> bool:
+        """The error of some patches is known well enough to stop there: what makes it up comes from `FEW` lines or more.
+
+        The relative variance of an error that n lines tell goes with 1 / n. So the sum of squared errors s_i of patches that n_i
+        lines reached is known as well as that of a patch which (sum s)^2 / sum (s^2 / n) of them did. Lines are counted as those
+        from the lights that would bring as much power, where these are fewer; the least error where none landed as one.
+        """
+        patches, (mean, error) = self.problem.patches, self.irradiance
+        area, rho, error = patches.area[rows, None], patches.reflectance[rows], error[rows]
+        power, line = mean[rows] * area, np.broadcast_to(self.line, mean.shape)[rows]
+        lines = np.minimum(np.divide(power, line, out=np.full(power.shape, np.inf), where=line > 0), self.arrivals[rows, None])
+        square = area * ((rho if rho.any() else 1.0) * error) ** 2
+        known = square.sum(axis=0) > 0
+        share = square[:, known] / square[:, known].sum(axis=0)
+        told = np.where(lines > 0, lines, 1.0)[:, known]
+        return bool(known.any() and (FEW * (share**2 / told).sum(axis=0) <= 1 + 1e-9).all())
+
+    def error_of_mean(self, rows: np.ndarray | slice, surfaces: np.ndarray) -> float:
+        """Relative standard error of the mean irradiance over some surfaces, the largest of the bands, NaN where nothing landed.
+
+        Args:
+            rows, surfaces: the same, as patches and as surfaces.
+        """
+        power = self.surface_power[0][:, surfaces].sum(axis=1)  # (replicates, n_bands)
+        mean, error = mean_and_error(power)
+        error = np.hypot(error, self._bias_of_sum(rows))
+        lit, blind = mean > 0, (mean <= 0) & (error > 0)
+        return float((error[lit] / mean[lit]).max()) if lit.any() and not blind.any() else float("nan")
+
+    def judged_mean(self, rows: np.ndarray | slice) -> bool:
+        """`FEW` lines or more landed there, counted as in `judged`."""
+        patches, mean = self.problem.patches, self.irradiance[0]
+        power, line = (mean * patches.area[:, None])[rows], np.broadcast_to(self.line, mean.shape)[rows]
+        lines = np.minimum(np.divide(power, line, out=np.full(power.shape, np.inf), where=line > 0), self.arrivals[rows, None])
+        lit = power.sum(axis=0) > 0
+        return bool(lit.any() and (lines[:, lit].sum(axis=0) >= FEW).all())
+
+    def _bias_of_sum(self, rows: np.ndarray | slice) -> np.ndarray:
+        """(n_bands,) W or lm: what the biases of some patches, where a tally tells them, add up to at most."""
+        if not isinstance(self.tally, AbstractBiasedTally):
+            return np.zeros(len(self.problem.groups.index))
+        groups, found = self.problem.groups, []
+        for group in range(groups.n_groups):
+            _, unit = self.tally.irradiance(self.problem, self.state, group)
+            found.append(np.abs(self.tally.bias(self.problem, self.state, group))[rows].sum() * unit)
+        return np.array(found)[groups.index] * groups.scale
+
+    def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
+        """How many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""
+        area, groups, found = self.problem.patches.area[rows], self.problem.groups, []
+        for group in range(groups.n_groups):
+            values, _ = self.tally.irradiance(self.problem, self.state, group)
+            rho = groups.reflectance[rows, group]
+            weight = (rho if rho.any() else np.ones(len(rho))) / np.sqrt(area)
+            found.append(margin(inner_products(np.asarray(values)[:, rows], weight), len(values)))
+        return max(found)
+
+    @cached_property
+    def books(self) -> tuple[dict, ...]:
+        """See `Solution.books`."""
+        groups = self.problem.groups
+        books = [self.tally.books(self.problem, self.state, group) for group in range(groups.n_groups)]
+        return tuple(
+            {name: value if name == "closes" else value * scale for name, value in books[group].items()}
+            for group, scale in zip(groups.index, groups.scale, strict=True)
+        )

@@ -1,0 +1,193 @@
+"""Scene in, solution out."""
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..device.memory import limited
+from ..device.turn import turn
+from ..diagnostics.contact_findings import tell
+from ..errors import MethodError, shown
+from ..method import Baseline, Method, resolve
+from ..patches import Patches, subdivide
+from ..scene.model import Back, Scene
+from ..solution.model import Solution
+from .baseline_budget import chosen_budget, cut_for
+from .budget import Budget
+from .checkpoint import Checkpoint
+from .progress import Listener
+
+if TYPE_CHECKING:
+    from .run import Run
+
+
+SHOOTING = ("firing", "walks")  # processes whose lines carry power from the patches where they begin
+
+
+def solve(
+    scene: Scene | Patches,
+    method: str | Method | Baseline = "random-walk",
+    *,
+    rays: float | None = None,
+    seconds: float | None = None,
+    error: float | None = None,
+    quanta: int | None = None,
+    replicates: int | None = None,
+    seed: int = 0,
+    device: str = "auto",
+    progress: Listener | None = None,
+    resume: Solution | None = None,
+    error_of: str | None = None,
+    checkpoint: str | Path | Checkpoint | None = None,
+    checkpoint_every: float = 30.0,
+    memory: str | float | None = None,
+    **choices,
+) -> Solution:
+    """Solve B = E + rho F B.
+
+    Args:
+        scene: a `Scene` (cut into about 20 000 patches) or the `Patches` of one.
+        method: a preset's name, a `Method` or a `Baseline`.
+        choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. Without ``warm_up``
+            another order or other lines than the method's drop its warm-up.
+        rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
+            traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
+            scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run bit
+            for bit. An error alone may have a limit beside it, rays, seconds or both. Where it is not reached within that, or
+            within what counters hold (2^32 lines for each replicate), or where too few lines landed to tell it, the status is
+            "not reached" and a warning says what is known.
+        error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead; or
+            "mean:NAME": that of the mean irradiance over it, as `Solution.surface_interval` tells it.
+        replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
+        seed: with the same inputs, the same bits.
+        device: "auto", "cpu" or "cuda".
+        progress: called with a `Progress` after each sweep.
+        resume: a solution of the same scene, method, seed and replicates to go on from, also an interrupted one; the
+            budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
+            their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
+            from a stage that is a power of two.
+        checkpoint: an .npz file that is written every now and then, whole or not at all, for ``resume=load_solution(checkpoint)``
+            after the process has been killed. Until a first stage is complete it has no results (NaN, 0 quanta). An interruption
+            writes it too; at the end it stays, brought up to date.
+        checkpoint_every: seconds; longer where writing takes more than a thirtieth of that.
+        memory: the limit, such as "8G", a number of bytes, or "none" for no limit. Default: 70 % of what is free.
+
+    Returns:
+        The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
+        unfinished stage are kept for ``resume``. Of several threads one solves at a time; the others wait for it to end.
+
+    Raises:
+        SceneError: nothing emits. MethodError: a choice or budget that makes no sense, a solution that cannot be resumed, or
+            more memory than the run may take. OutputError: no checkpoint can be written there. DeviceError: nothing to run on,
+            or hits were lost, since another thread ran kernels of Dr.Jit or Mitsuba.
+            KeyboardInterrupt: Ctrl-C before the first stage was complete; a checkpoint has been written.
+
+    Example:
+        >>> patches = rd.subdivide(rd.load_scene("room"), cells=2)
+        >>> solution = rd.solve(patches, rays=10_000, seed=1)
+        >>> solution.radiosity.shape, solution.status
+        ((72, 1), 'complete')
+    """
+    with limited(memory), turn():
+        return prepared(
+            scene,
+            resolve(method, **choices),
+            rays=rays,
+            seconds=seconds,
+            error=error,
+            quanta=quanta,
+            replicates=replicates,
+            seed=seed,
+            device=device,
+            progress=progress,
+            resume=resume,
+            error_of=error_of,
+            checkpoint=checkpoint,
+            checkpoint_every=checkpoint_every,
+        ).solve()
+
+
+def prepared(
+    scene: Scene | Patches,
+    chosen: Method | Baseline,
+    *,
+    rays=None,
+    seconds=None,
+    error=None,
+    quanta=None,
+    replicates=None,
+    seed=0,
+    device="auto",
+    progress=None,
+    resume=None,
+    error_of=None,
+    checkpoint=None,
+    checkpoint_every=30.0,
+) -> "Run":
+    """A checked run that has not begun; arguments and errors are those of `solve`."""
+    usual = 1 if isinstance(chosen, Baseline) else 8
+    replicates = usual if replicates is None else _whole(replicates, "replicates", 1)
+    seed = _whole(seed, "seed", 0)
+    if isinstance(chosen, Baseline):
+        budget = chosen_budget(chosen, rays=rays, seconds=seconds, error=error, quanta=quanta)
+    else:
+        budget = Budget(rays, seconds, error, quanta)
+        budget.check(replicates)
+    if isinstance(scene, Scene):
+        scene = subdivide(scene, **cut_for(chosen))
+    if not isinstance(scene, Patches):
+        raise MethodError(f"solve takes a Scene or Patches, not {type(scene).__name__}; load a file with load_scene")
+    if resume is not None and not isinstance(resume, Solution):
+        raise MethodError(f"resume takes a Solution, not {type(resume).__name__}; load a file with load_solution")
+    if resume is not None and len(resume.patches) != len(scene):
+        raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
+    if error_of is not None and error is None:
+        raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
+    _refuse_open(scene.scene, chosen)
+    keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
+    tell(scene.scene)
+    from .run import Run
+
+    return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper, error_of)
+
+
+def _refuse_open(scene: Scene, method: Method | Baseline) -> None:
+    """A lamp that hides nothing is seen along with what is behind it: only lines that carry power from their patch tell the two
+    apart."""
+    if method.machine in SHOOTING or not (scene.back == Back.OPEN).any():
+        return
+    names = shown([scene.names[i] for i in np.unique(scene.surface[scene.back == Back.OPEN])])
+    raise MethodError(
+        f"lines pass through the lamps {names} (null BSDF), and only walks that begin at the lights follow them: "
+        "take --method random-walk, or give the lamps a black diffuse BSDF"
+    )
+
+
+def _keeper(path, every, method: Method | Baseline) -> Checkpoint:
+    if isinstance(path, Checkpoint):
+        path.check(method)
+        return path
+    try:
+        good = not isinstance(every, bool) and math.isfinite(every) and every >= 0
+    except TypeError:
+        good = False
+    if not good:
+        raise MethodError(f"checkpoint_every is {every!r}; it must be a number of seconds")
+    try:
+        keeper = Checkpoint(Path(path), float(every))
+    except TypeError:
+        raise MethodError(f"checkpoint is {path!r}; it must be the path of an .npz file") from None
+    keeper.check(method)
+    return keeper
+
+
+def _whole(value, name: str, least: int) -> int:
+    try:
+        good = not isinstance(value, bool) and int(value) == value and value >= least
+    except (TypeError, ValueError, OverflowError):
+        good = False
+    if not good:
+        raise MethodError(f"{name} is {value!r}; it must be a whole number of {least} or more")
+    return int(value)

@@ -1,0 +1,85 @@
+"""In a kernel: the next face on a line, what it shows to either side, and where the line goes on behind it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import upload
+from ...scene.model import Back
+from ..departure import before
+from ..geometry import Geometry
+from ..lines import both_sides, patch_of
+from .hull import nothing_beyond
+
+ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `firing`: no patch has these numbers
+PENDING, NOBODY = 0xFFFFFFFB, 0xFFFFFFFA  # what is not known yet, and who looks forward where a passing back hides all behind
+CODES = NOBODY  # from here on numbers are no patches
+ONE_WAY = 1 << 31  # of a patch number: `one` sees it, but it does not see `one`
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A face on a line.
+
+    Attributes:
+        valid: there is one.
+        near, far: the patch on the side where the line comes from, and on that where it goes on; LOST for an absorbing
+            back, and near is ESCAPED where there is no face.
+        near_passes, far_passes: that side is a back that lets lines pass, and ``near`` or ``far`` means nothing.
+        origin: where the line goes on: behind the face.
+        free: nothing lies behind the face.
+    """
+
+    valid: Any
+    near: Any
+    far: Any
+    near_passes: Any
+    far_passes: Any
+    origin: Any
+    free: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Crossings:
+    """The faces of a scene, as lines that go through them meet them."""
+
+    geometry: Geometry
+
+    def prepare(self) -> None:
+        """Make what `next` reads, before any loop is recorded (`recorded.not_recorded`)."""
+        self.geometry.prepare_hits()
+        _ = self.records
+
+    @cached_property
+    def records(self):
+        """(n_faces * 16,) Float: origin, edges, normal, whether there is nothing in front and behind, and the plane's offset."""
+        geometry = self.geometry
+        origin, first, second = geometry.frames
+        free, least = nothing_beyond(geometry), geometry.plane_offsets[:, None]
+        record = np.concatenate([origin, first, second, geometry.normals, free, least, np.zeros_like(least)], axis=1)
+        return upload(self.geometry.device.types.Float, record.astype(np.float32))
+
+    def next(self, origin, direction, active, *, coherent: bool = False) -> Crossing:
+        """The first face from ``origin`` on.
+
+        Lines go on from the point with the hit's coordinates on the face, which is as exact as the face's own corners; the
+        point a distance along the line is as inexact as the line is long, and may lie before a small face near the centre.
+        """
+        geometry = self.geometry
+        types = geometry.device.types
+        hit, turned = both_sides(geometry, origin, direction, coherent, active)
+        near = patch_of(geometry, hit, LOST, ESCAPED)
+        far = patch_of(geometry, turned, LOST, ESCAPED)
+        face = dr.gather(types.UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
+        block = dr.gather(types.Array44f, self.records, face, hit.valid)
+        words = [block[i // 4][i % 4] for i in range(16)]
+        corner, first, second, normal = (types.Array3f(*words[at : at + 3]) for at in range(0, 12, 3))
+        place = corner + first * dr.clip(hit.u, 0, 1) + second * dr.clip(hit.v, 0, 1)
+        onward = before(place, dr.select(hit.front, -normal, normal), words[14])
+        free = hit.valid & (dr.select(hit.front, words[13], words[12]) > 0)
+        return Crossing(
+            hit.valid, near, far, hit.back(Back.PASSES), turned.back(Back.PASSES), dr.select(hit.valid, onward, origin), free
+        )

@@ -1,0 +1,225 @@
+"""Spans of global lines: pairs of patches that see each other, for whoever needs them.
+
+A span is a straight piece between two sides that radiate. Its ends are uniform on patches and cosine distributed, so that the
+other end of a span of patch i lies on patch j with probability F_ij, at both ends alike (Sbert 1993).
+"""
+
+import warnings
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import upload
+from ...device.turn import turn
+from ...errors import MethodError, RadiosityWarning
+from ...method.lines import LINES
+from ...method.model import Method
+from ...sampling.global_lines import by_disc, by_two_points, of_bundle
+from ...sampling.numbers import ready
+from ...sampling.streams import Purpose, stream
+from ...scene.precision import EPSILON
+from ..geometry import Geometry
+from ..tree import REACH
+from .chords import MARGIN, crossing_box, walk
+from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
+from .entrance import Entrance
+from .sorting import ordered
+from .surfaces import Surfaces
+
+__all__ = ["CODES", "ESCAPED", "LOST", "ONE_WAY", "Pairs", "Spans"]
+
+CHUNK = 1 << 20  # lines of a launch
+FEW_ENDS, NO_ENDS = 1e-2, 1e-4  # of the ends of a line: where there are fewer, that is told; and refused
+LEAST_SIDE, MOST_SIDE = 3, 9  # a bundle's lattice has 2^3 to 2^9 lines along an edge
+DENSE = 16  # lines of a bundle to a face: from here on packets pay
+ROOM = 1.25  # spans that a launch makes room for, over those expected
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Spans of some lines.
+
+    Attributes:
+        line: (m,) uint32, the line's number within the call, from 0 on, ascending; the spans of a line in order of depth.
+        one, other: (m,) uint32 patch numbers; or ESCAPED (nothing there) or LOST (an absorbing back); or, in ``other`` alone,
+            ONE_WAY | patch: a patch that ``one`` sees through backs that let lines pass, and that does not see ``one``. Numbers
+            below ONE_WAY are patches, and each such number is one end of a span on that patch.
+        ends_per_line: (n_patches,) float64, expected ends on each patch per line.
+    """
+
+    line: np.ndarray
+    one: np.ndarray
+    other: np.ndarray
+    ends_per_line: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Spans:
+    """Draws spans; every span is a function of (seed, replicate, number of its line).
+
+    Attributes:
+        geometry: the scene on a device.
+        method: ``lines`` other than local, and ``numbers``.
+        seed, replicates: as in a run.
+    """
+
+    geometry: Geometry
+    method: Method
+    seed: int
+    replicates: int
+
+    def __post_init__(self):
+        if self.method.lines not in LINES or self.method.lines == "local":
+            raise MethodError(f"lines '{self.method.lines}' have no spans; take {', '.join(k for k in LINES if k != 'local')}")
+        self._check_filled()
+
+    def _check_filled(self) -> None:
+        """Tell where the faces fill next to nothing of the ball that lines go through, and refuse where no run would end."""
+        ends = float(self.ends_per_line.sum())
+        if ends >= FEW_ENDS:
+            return
+        scene = self.geometry.scene
+        corners = scene.vertices[np.where(scene.faces < 0, scene.faces[:, :1], scene.faces)]
+        name = scene.names[scene.surface[np.abs(corners - scene.centre).max(axis=(1, 2)).argmax()]]
+        text = (
+            f"of lines '{self.method.lines}', through the ball about the whole scene, {ends / 2:.2g} meet faces that see each "
+            f"other, since '{name}' lies far away; take lines 'spans' or 'local'"
+        )
+        if ends < NO_ENDS:
+            raise MethodError(text)
+        warnings.warn(f"{scene.source}: {text}", RadiosityWarning, stacklevel=5)
+
+    @turn()
+    def draw(self, replicate: int, first: int, count: int) -> Pairs:
+        """Spans of the lines ``first`` to below ``first + count`` (from 0) of a replicate.
+
+        Raises:
+            MethodError: the sequence of numbers has not so many points.
+        """
+        parts = []
+        for start in range(0, count, CHUNK):
+            line, one, other = self._launch(replicate, first + start, min(CHUNK, count - start))
+            parts.append((line + np.uint32(start) if start else line, one, other))
+        if len(parts) != 1:
+            none = np.zeros(0, np.uint32)
+            parts = [[np.concatenate(column) for column in zip((none, none, none), *parts, strict=True)]]
+        line, one, other = parts[0]
+        return Pairs(line, one, other, self.ends_per_line)
+
+    @cached_property
+    def ends_per_line(self) -> np.ndarray:
+        """(n_patches,) float64: expected ends on each patch per line."""
+        area, radius = self.geometry.patches.area, self.radius / self.geometry.tree.scale
+        if self.method.lines == "spans":
+            return 2 * area / self.surfaces.area
+        return area / (8 * radius**2 if self.method.lines == "bundles" else 2 * np.pi * radius**2)
+
+    @cached_property
+    def bundle(self) -> int:
+        """Lines of a bundle: a power of four, such that a mean patch has a quarter to one end in a bundle. More would cost
+        directions, which errors depend on most."""
+        area, radius = self.geometry.patches.area, self.radius / self.geometry.tree.scale
+        wanted = 8 * radius**2 / area.mean()
+        return 4 ** int(np.clip(np.floor(np.log2(wanted) / 2), LEAST_SIDE, MOST_SIDE))
+
+    @property
+    def coherent(self) -> bool:
+        """Lines are traced in packets: those of bundles so dense that packets meet the same faces."""
+        return self.method.lines == "bundles" and self.bundle >= DENSE * self.geometry.scene.n_faces
+
+    @cached_property
+    def radius(self) -> float:
+        """Of the ball about the middle of the scene's box, in the caster's units."""
+        distance = np.linalg.norm(self._vertices - self.middle, axis=1).max()
+        return float(np.float32(distance * (1 + 8 * EPSILON)))
+
+    @cached_property
+    def middle(self) -> np.ndarray:
+        """(3,) of that ball."""
+        return self._bounds.mean(axis=0)
+
+    @cached_property
+    def crossings(self) -> Crossings:
+        return Crossings(self.geometry)
+
+    @cached_property
+    def entrance(self) -> Entrance:
+        return Entrance(self.crossings, *self._bounds)
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        return Surfaces(self.geometry)
+
+    @cached_property
+    def _numbers(self):
+        return ready(self.method.numbers, self.geometry.device.types)
+
+    @cached_property
+    def _randomisation(self):
+        drawn = [self._numbers.randomisation(stream(self.seed, r, Purpose.NUMBERS)) for r in range(self.replicates)]
+        return upload(self.geometry.device.types.UInt32, np.array(drawn, np.uint32))
+
+    def _launch(self, replicate: int, first: int, count: int):
+        """Number of the line, one end and the other, of the spans of at most CHUNK lines."""
+        types = self.geometry.device.types
+        UInt32 = types.UInt32
+        begin, at = dr.opaque(UInt32, first + 1), dr.opaque(UInt32, 2 * replicate)
+        words = [*dr.gather(types.Array4u, self._randomisation, at), *dr.gather(types.Array4u, self._randomisation, at + 1)]
+        bundled = self.method.lines == "bundles"
+        last = first + count if not bundled else (first + count - 1) // self.bundle + 1
+        points = partial(self._numbers.points, patch=UInt32(0), randomisation=words, bits=self._numbers.bits_for(last))
+        lane = ordered(types, self.method.lines, self.method.numbers, begin, count)
+        dr.eval(lane)
+        if self.method.lines == "spans":
+            return self.surfaces.spans(self.crossings, lambda lane: points(begin + lane), lane, count)
+        line = partial(self._line, points, begin)
+        box = [types.Array3f(*(dr.opaque(types.Float, float(x)) for x in corner)) for corner in self._box]
+
+        def entering(lane):
+            origin, direction = line(lane)
+            _, distance, axis = crossing_box(origin, direction, *box)
+            outside = origin + direction * (distance - MARGIN)
+            if not self.entrance.known:
+                return outside, direction, types.Bool(False), UInt32(ESCAPED)
+            within, patch, inside = self.entrance.find(origin + direction * distance, direction, axis)
+            return dr.select(within, inside, outside), direction, within, patch
+
+        meets = crossing_box(*line(lane), *box)[0] & (lane < dr.opaque(UInt32, count))
+        met: Any = dr.compress(meets)
+        index = dr.gather(UInt32, lane, met)
+        room = int(ROOM * count * self.ends_per_line.sum()) + 1024
+        walked = walk(self.crossings, index, max(count, 2), entering, room, coherent=self.coherent)
+        return walked.line, walked.one, walked.other
+
+    def _line(self, points, begin, lane):
+        """A point and the direction of the line with number ``begin`` + ``lane``, from 1 on."""
+        types = self.geometry.device.types
+        radius = dr.opaque(types.Float, self.radius)
+        if self.method.lines == "global":
+            point, direction = by_two_points(points(begin + lane), radius, types.Array3f)
+        elif self.method.lines == "global-disc":
+            point, direction = by_disc(points(begin + lane), radius, types.Array3f)
+        else:
+            number, bits = begin + lane - 1, self.bundle.bit_length() - 1
+            numbers, cell = points((number >> bits) + 1), number & (self.bundle - 1)
+            point, direction = of_bundle(numbers, cell, bits // 2, radius, types.Array3f)
+        return point + types.Array3f(*(dr.opaque(types.Float, float(x)) for x in self.middle)), direction
+
+    @cached_property
+    def _vertices(self) -> np.ndarray:
+        """(n, 3) float64, those that faces use, in the caster's units."""
+        faces = self.geometry.scene.faces
+        return self.geometry.tree.vertices[np.unique(faces[faces >= 0])].astype(np.float64)
+
+    @cached_property
+    def _bounds(self) -> np.ndarray:
+        """(2, 3) the scene's box in the caster's units."""
+        return np.stack([self._vertices.min(axis=0), self._vertices.max(axis=0)])
+
+    @property
+    def _box(self) -> np.ndarray:
+        """(2, 3) the box, a little wider."""
+        return self._bounds + np.array([[-1.0], [1.0]]) * 4 * EPSILON * 2.0**REACH

@@ -1,0 +1,236 @@
+"""One lane a line, or a few lines: which patch fires in which lane, and which of its lines."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import drjit as dr
+
+from ..device.backend import upload
+from ..sampling.numbers import strata
+
+CHUNK = 1 << 20  # lanes of one launch on a CPU: enough to keep all cores busy, and little memory to touch
+CORE_CHUNK = 1 << 18  # and for each core where they are many: launches wait for the last one (measured on 4 to 16 cores)
+CUDA_CHUNK = 1 << 24  # and on a GPU, which has many more lanes at work at a time, and memory for them
+PIECE = 1 << 18  # patches of a batch: what it holds of each need not be there of all patches at a time
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What is fired before anything else is asked: fixed before the first line, so that the pieces it is fired in do not matter.
+
+    Attributes:
+        numbers: UInt32, patch numbers; None where they are those from ``low`` on.
+        low, size: the first of them, and how many they are.
+        total: lines of all.
+        counts: UInt32, those of each; None where bands keep what they follow from, see `Engine.batches`.
+    """
+
+    numbers: Any
+    low: int
+    size: int
+    total: int
+    counts: Any = None
+
+    def batches(self, types, owed, fired, records, shifts: tuple[int, ...] = ()) -> "Iterator[Batch]":
+        """A piece at a time, of 2^shift lines a lane: the largest of ``shifts`` that leaves few lanes half empty, or else one.
+        For patch numbers ``owed`` gives what each owes in all, ``records`` two words, and the array ``fired`` what was fired
+        before; no other lines than the batches' are fired until the last one is made."""
+        low = dr.opaque(types.UInt32, self.low)
+        for start in range(0, self.size, PIECE):
+            width = min(PIECE, few_sizes(self.size - start))
+            first = dr.opaque(types.UInt32, start)
+            place = dr.arange(types.UInt32, width) + first
+            inside = place < dr.opaque(types.UInt32, self.size)
+            at = dr.select(inside, place, 0)
+            numbers = at + low if self.numbers is None else dr.gather(types.UInt32, self.numbers, at)
+            before = dr.gather(types.UInt32, fired, numbers)
+            counts = owed(numbers) - before if self.counts is None else dr.gather(types.UInt32, self.counts, at)
+            counts = dr.select(inside, counts, 0)
+            dr.schedule(counts, before)
+            lines, *lanes = sums(types, counts, *(lanes_of(counts, shift) for shift in shifts))
+            if not lines:
+                continue
+            shift, total = fullest(lines, {0: lines, **dict(zip(shifts, lanes, strict=True))})
+            yield Batch.of(types, numbers, counts, before, records, first, shift, total)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Patches that fire in a launch or several: a piece of a sweep.
+
+    Attributes:
+        numbers: UInt32, patch numbers.
+        counts: UInt32, lines each of them fires now, or none.
+        lanes: UInt32, in so many lanes.
+        begins: UInt64, lanes of all before it.
+        fired: UInt32, lines each has fired before.
+        entries: UInt32, in fours, all that a lane asks: the number; the offset that maps a lane to its first line of the
+            patch (fired + 1 - begins * each; 32-bit arithmetic goes round, and the sum is right); and the patch's
+            record, see `Geometry.patch_records`.
+        start: where the piece begins in its sweep, on the device.
+        total: lanes of all.
+        each: lines of a lane, the last one of a patch excepted, which takes what is left: 1, or UInt32, one kernel for all.
+    """
+
+    numbers: Any
+    counts: Any
+    lanes: Any
+    begins: Any
+    fired: Any
+    entries: Any
+    start: Any
+    total: int
+    each: Any
+
+    @staticmethod
+    def of(types, numbers, counts, fired, records, start=0, shift: int = 0, total: int | None = None) -> "Batch":
+        """From patches, one or more of them, how often they fire and did, and ``records`` that gives two words for numbers; of
+        2^shift lines a lane, the ``total`` of lanes where it is known."""
+        if dr.width(numbers) == 1:
+            both = paired(types, dr.arange(types.UInt32, 1))
+            numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
+            counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
+        lanes = lanes_of(counts, dr.opaque(types.UInt32, shift)) if shift else counts
+        each = dr.opaque(types.UInt32, 1 << shift) if shift else 1
+        dr.eval(counts, lanes, fired)
+        begins = dr.prefix_sum(types.UInt64(lanes))
+        face, place = records(numbers)
+        entries = dr.ravel(types.Array4u(numbers, fired + 1 - types.UInt32(begins) * each, face, place))
+        dr.eval(begins, entries)
+        last = dr.width(counts) - 1
+        total = int(begins[last]) + int(lanes[last]) if total is None else total
+        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each)
+
+    @property
+    def several(self) -> bool:
+        """A lane has more than one line."""
+        return not isinstance(self.each, int)
+
+    def chunks(self, types) -> "Iterator[Chunk]":
+        """Launches of a bounded number of lanes."""
+        cuda = dr.backend_v(types.UInt32) is dr.JitBackend.CUDA
+        most = CUDA_CHUNK if cuda else max(CHUNK, CORE_CHUNK * dr.thread_count())
+        for start in range(0, self.total, most):
+            width = min(most, self.total - start)
+            first, end = dr.opaque(types.UInt64, start), dr.opaque(types.UInt64, start + width)  # no literals: one kernel for all
+            # each entry writes its rank where its lanes begin; the running maximum carries it to all of them
+            rank = dr.zeros(types.UInt32, few_sizes(width))
+            here = (self.lanes > 0) & (self.begins < end) & (self.begins + types.UInt64(self.lanes) > first)
+            at = types.UInt32(dr.maximum(self.begins, first) - first)
+            dr.scatter(rank, dr.arange(types.UInt32, dr.width(self.numbers)), at, active=here)
+            rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, dr.width(rank), exclusive=False)
+            dr.eval(rank)
+            rank = dr.reshape(types.UInt32, rank, max(width, 2), shrink=True)
+            yield Chunk(self, rank, first, end, width, max(width, 2))
+
+
+def lanes_of(counts, shift):
+    """Of 2^shift lines, for so many."""
+    whole = counts >> shift
+    return whole + dr.select(whole << shift == counts, type(counts)(0), 1)
+
+
+def fullest(lines: int, lanes: dict[int, int]) -> tuple[int, int]:
+    """The largest of the powers of two whose lanes, this many, so many lines fill to two thirds; and its lanes."""
+    return max((shift, count) for shift, count in lanes.items() if 2 * count << shift <= 3 * lines)
+
+
+def paired(types, rows):
+    """Indices; a single one is repeated. Arrays of one entry would compile kernels of their own."""
+    if dr.width(rows) != 1:
+        return rows
+    return dr.gather(types.UInt32, rows, dr.zeros(types.UInt32, 2) + dr.opaque(types.UInt32, 0))
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Lanes of one launch: the rank of each lane's patch in its batch. A single lane has one beside it that is not real:
+    ``lanes`` is less than ``width`` then, and whatever counts must ask `real`."""
+
+    batch: Batch
+    rank: Any
+    first: Any
+    end: Any
+    lanes: int
+    width: int
+
+    def real(self, types):
+        """Mask of the lanes that hold lines."""
+        return types.UInt64(dr.arange(types.UInt32, self.width)) + self.first < self.end
+
+    def read(self, types, boxes: "Boxes | None" = None):
+        """In a kernel of this width: patch number, index (from 1) of the first line, and patch record of each lane; ``boxes`` for
+        lanes of one line."""
+        batch = self.batch
+        number, ahead, face, place = dr.gather(types.Array4u, batch.entries, self.rank)
+        index = (dr.arange(types.UInt32, self.width) + types.UInt32(self.first)) * batch.each + ahead
+        if boxes is None:
+            return number, index, (face, place)
+        base = dr.gather(types.UInt32, batch.fired, self.rank) + 1
+        count = dr.gather(types.UInt32, batch.counts, self.rank)
+        return number, base + by_boxes(types, base, index - base, count, boxes), (face, place)
+
+    def mask(self, types, *, always: bool = False):
+        """In a kernel: which lanes are real; True where all are, unless ``always``."""
+        return self.real(types) if always or self.lanes < self.width else True
+
+    def lines(self, types, first):
+        """In a kernel: how many each lane fires, from the index of the first."""
+        fired, count = (dr.gather(types.UInt32, column, self.rank) for column in (self.batch.fired, self.batch.counts))
+        lines = dr.minimum(fired + count + 1 - first, self.batch.each)
+        return dr.select(self.mask(types), lines, 0)
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """Of like directions, see `sampling.numbers.strata`: how many, and UInt32, how they are walked."""
+
+    count: int
+    walk: Any
+
+
+def by_boxes(types, base, within, count, boxes: Boxes):
+    """Which of a patch's ``count`` lines from ``base`` on is fired as the ``within``-th, when they go box by box.
+
+    As many whole cycles of the boxes as fit are permuted; the rest, less than a cycle, keeps its order.
+    """
+    n = boxes.count
+    cycles = count // n
+    box = _quotient(types, within, cycles)
+    whole = within < cycles * n
+    offset = dr.gather(types.UInt32, boxes.walk, box, whole) + n - base % n
+    offset = dr.select(offset >= n, offset - n, offset)
+    return dr.select(whole, offset + (within - box * cycles) * n, within)
+
+
+def _quotient(types, dividend, divisor):
+    """Of 32-bit numbers, exact while it is below 2^20: a single precision guess that is one off at most."""
+    guess = types.UInt32(types.Float(dividend) / types.Float(divisor))
+    rest = types.Int(dividend - guess * divisor)
+    guess = dr.select(rest < 0, guess - 1, guess)
+    return dr.select(rest >= types.Int(divisor), guess + 1, guess)
+
+
+def few_sizes(size: int) -> int:
+    """No less, of four sizes an octave. Dr.Jit keeps the memory that is freed, and gives it to arrays of the same size alone."""
+    step = 1 << max((size - 1).bit_length() - 3, 1)
+    return -(-size // step) * step
+
+
+def sums(types, *columns) -> tuple[int, ...]:
+    """Of 32-bit numbers, which may take more, a column each. (``dr.sum`` would store them widened first.)"""
+    total = dr.opaque(types.UInt64, 0, max(len(columns), 2))
+    for i, column in enumerate(columns):
+        dr.scatter_add(total, types.UInt64(column), dr.full(types.UInt32, i, dr.width(column)), mode=dr.ReduceMode.Expand)
+    dr.eval(total)
+    return tuple(int(total[i]) for i in range(len(columns)))
+
+
+def boxes_for(types, counts) -> Boxes | None:
+    """For coherent firing: the boxes that suit the patch of a typical line; None where none would pay."""
+    wide = types.Float64(counts)
+    squares, total = dr.sum(wide * wide), dr.sum(wide)
+    dr.eval(squares, total)
+    size = strata.largest(float(squares[0]) / float(total[0]))
+    return None if size is None else Boxes(strata.boxes(*size), upload(types.UInt32, strata.walk(*size)))

@@ -1,0 +1,165 @@
+"""How much of one polygon sees another: lines between points of both, for pairs of patches or of larger or smaller elements.
+
+A pair's share is the sum of the kernel cos cos' / r² over the pairs of points that see each other, over the sum of all of them.
+So it tends, with more rays, to the true form factor over that without obstacles, and it is one where nothing stands between. The
+plain mean of visible lines (P. Hanrahan, D. Salzman, L. Aupperle, "A rapid hierarchical radiosity algorithm", SIGGRAPH 1991)
+differs from it where the kernel varies over the pair.
+"""
+
+from dataclasses import dataclass
+
+import drjit as dr
+import numpy as np
+
+from ..device.backend import upload
+from ..device.turn import turn
+from ..errors import MethodError
+from ..patches.model import Patches
+from ..sampling.hemisphere import triangle
+from ..sampling.numbers import ready
+from ..sampling.numbers.random import philox
+from .geometry import INSET, OFFSET, Geometry
+from .lanes import CHUNK
+from .lines import land
+
+MOST = (1 << 16) - 1  # rays of a pair
+WORDS = 10  # of a polygon on the device: origin, two edges, offset
+
+
+@dataclass(frozen=True, eq=False)
+class Polygons:
+    """Parallelograms and triangles on faces of a scene.
+
+    Attributes:
+        corners: (m, 4, 3) float64, metres, counterclockwise seen from the radiating side; a triangle repeats its last one.
+        face: (m,) int, the face that each is a part of.
+    """
+
+    corners: np.ndarray
+    face: np.ndarray
+
+    @staticmethod
+    def of(patches: Patches, numbers: np.ndarray | slice = slice(None)) -> "Polygons":
+        """Patches by their numbers; all of them by default."""
+        return Polygons(patches.corners[numbers], patches.face[numbers])
+
+    def __len__(self) -> int:
+        return len(self.face)
+
+    def take(self, rows) -> "Polygons":
+        """Some of them (indices, mask or slice)."""
+        return Polygons(self.corners[rows], self.face[rows])
+
+
+@turn()
+def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int = 16, seed: int = 0) -> np.ndarray:
+    """(m,) float64 in [0, 1]: share of what goes from ``one`` to ``other`` that meets nothing on its way, for m pairs.
+
+    A function of the two polygons, rays and seed, whatever else is asked in the same call; and the same both ways, unless
+    backs let lines pass: then only from ``one`` to ``other``. Zero where the two do not face each other at any pair of points.
+
+    Args:
+        rays: points of each pair, of the Sobol' sequence in four dimensions with a digital shift for each pair; powers of two
+            are best.
+
+    Raises:
+        MethodError: fewer than one ray, or more than 65 535.
+    """
+    if not 1 <= rays <= MOST:
+        raise MethodError(f"rays of a pair are {rays}; they must be 1 to {MOST}")
+    first, second = _keys(one.corners), _keys(other.corners)
+    if not geometry.some_backs_pass:  # a pair is the same whichever comes first
+        swap = first > second
+        one, other = (
+            Polygons(np.where(swap[:, None, None], b.corners, a.corners), np.where(swap, b.face, a.face))
+            for a, b in ((one, other), (other, one))
+        )
+        first, second = np.where(swap, second, first), np.where(swap, first, second)
+    keys = _mixed(first * np.uint64(3) + second)
+    size = max(CHUNK // rays, 1)
+    parts = [
+        _chunk(geometry, one.take(rows), other.take(rows), keys[rows], rays, seed)
+        for rows in (slice(at, at + size) for at in range(0, len(keys), size))
+    ]
+    return np.concatenate(parts) if parts else np.zeros(0)
+
+
+def _chunk(geometry: Geometry, one: Polygons, other: Polygons, keys: np.ndarray, rays: int, seed: int) -> np.ndarray:
+    types, count = geometry.device.types, len(one)
+    Float, UInt32 = types.Float, types.UInt32
+    if count * rays < 2:  # arrays of one entry would compile kernels of their own
+        one, other, keys = one.take([0, 0]), other.take([0, 0]), keys[[0, 0]]
+    records = [upload(Float, _records(geometry, polygons)) for polygons in (one, other)]
+    triangles = upload(UInt32, _is_triangle(one) | 2 * _is_triangle(other))
+    target = upload(UInt32, other.face.astype(np.uint32))
+    words = [upload(UInt32, (keys >> np.uint64(shift)).astype(np.uint32)) for shift in (0, 32)]
+    lane = dr.arange(UInt32, len(one) * rays)
+    pair = lane // dr.opaque(UInt32, rays)
+    index = lane - pair * dr.opaque(UInt32, rays) + 1
+    shift = philox(
+        [*(dr.gather(UInt32, word, pair) for word in words), UInt32(0), UInt32(0)],
+        [dr.opaque(UInt32, seed >> part & 0xFFFFFFFF) for part in (0, 32)],
+    )
+    numbers = ready("sobol", types).points(index, pair, [*shift, UInt32(0)], 16)
+    kinds = dr.gather(UInt32, triangles, pair)
+    start, normal, above = _point(types, records[0], pair, (kinds & 1) != 0, *numbers[:2])
+    end, facing, beyond = _point(types, records[1], pair, (kinds & 2) != 0, *numbers[2:4])
+    way = end - start
+    up, down, square = dr.dot(way, normal), -dr.dot(way, facing), dr.squared_norm(way)
+    faces = (up > above) & (down > beyond)  # nearer to a plane than lines begin there is in the plane
+    kernel = dr.select(faces, up * down / (square * square), 0)
+    origin = start + normal * above
+    hit = land(geometry, origin, dr.normalize(end - origin), active=faces)
+    seen = hit.valid & (dr.gather(UInt32, geometry.primitive_faces, hit.primitive, hit.valid) == dr.gather(UInt32, target, pair))
+    met = dr.select(seen, kernel, 0)
+    dr.eval(kernel, met)
+    whole, part = (np.array(x, np.float64).reshape(-1, rays)[:count].sum(axis=1) for x in (kernel, met))
+    return np.divide(part, whole, out=np.zeros(count), where=whole > 0)
+
+
+def _point(types, records, pair, is_triangle, x, y):
+    """Point of a polygon, its unit normal, and how far in front of it lines begin."""
+    words = [dr.gather(types.Float, records, pair * WORDS + i) for i in range(WORDS)]
+    origin, first, second = (types.Array3f(*words[at : at + 3]) for at in (0, 3, 6))
+    a, b = triangle(x, y)
+    s, t = dr.select(is_triangle, a, x), dr.select(is_triangle, b, y)
+    return origin + first * s + second * t, dr.normalize(dr.cross(first, second)), words[9]
+
+
+def _records(geometry: Geometry, polygons: Polygons) -> np.ndarray:
+    """(m, WORDS) float32 in the caster's coordinates, drawn in from the edges as whole faces are (`Geometry.face_records`)."""
+    tree = geometry.tree
+    points = (polygons.corners - tree.centre) * tree.scale
+    offset = geometry.offset(polygons.face, points)
+    origin, first, second = points[:, 0], points[:, 1] - points[:, 0], points[:, 3] - points[:, 0]
+    flat = _is_triangle(polygons) == 1
+    area = np.maximum(np.linalg.norm(np.cross(first, second), axis=1), 1e-300)
+    lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, second - first)]
+    inset = offset * (INSET / OFFSET)
+    share = np.minimum(3 * inset * np.max(lengths, axis=0) / area, 0.75)
+    margins = [np.where(flat, share / 3, np.minimum(inset * lengths[1 - i] / area, 0.375)) for i in (0, 1)]
+    sizes = [np.where(flat, 1 - share, 1 - 2 * margin) for margin in margins]
+    drawn = origin + margins[0][:, None] * first + margins[1][:, None] * second
+    edges = [edge * size[:, None] for edge, size in zip((first, second), sizes, strict=True)]
+    return np.concatenate([drawn, *edges, offset[:, None]], axis=1).astype(np.float32)
+
+
+def _is_triangle(polygons: Polygons) -> np.ndarray:
+    """(m,) uint32, 1 or 0."""
+    return (polygons.corners[:, 2] == polygons.corners[:, 3]).all(axis=1).astype(np.uint32)
+
+
+def _keys(corners: np.ndarray) -> np.ndarray:
+    """(m,) uint64, a hash of the coordinates."""
+    bits = np.ascontiguousarray(corners + 0.0).reshape(len(corners), 12).view(np.uint64)
+    key = np.zeros(len(bits), np.uint64)
+    for column in bits.T:
+        key = _mixed(key * np.uint64(0x9E3779B97F4A7C15) + column)
+    return key
+
+
+def _mixed(x: np.ndarray) -> np.ndarray:
+    """A bijection of 64-bit words (S. Vigna's SplitMix64)."""
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return x ^ (x >> np.uint64(31))
