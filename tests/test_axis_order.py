@@ -108,14 +108,14 @@ def test_an_order_with_a_memory_of_its_own_is_rejected(monkeypatch, short):
     """It leaves sweeps out by numbers of its own, which no state holds."""
     drawn = np.random.default_rng(0)
 
-    def run(engine, progress):
-        batch, largest = engine.due()
-        while batch is not None and drawn.random() < 0.8:
-            engine.fire(batch, largest)
-            progress(batch.total)
-            batch, largest = engine.due()
+    def run(self, counters, swept):
+        sweep, largest = counters.due()
+        while sweep is not None and drawn.random() < 0.8:
+            counters.fire(sweep, largest)
+            swept(sweep.total)
+            sweep, largest = counters.due()
 
-    monkeypatch.setattr(breadth_first, "run", run)
+    monkeypatch.setattr(breadth_first.BreadthFirst, "run", run)
     method = rd.Method(order="breadth-first")
     assert not same(whole(method), whole(method))
     assert not same(interrupted(method)[0], whole(method))

@@ -105,6 +105,7 @@ def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, shif
     monkeypatch.setattr(lanes.Batch, "of", batch)
     monkeypatch.setattr(lanes, "CHUNK", 2**13 + 3)
     monkeypatch.setattr(lanes, "CORE_CHUNK", 1)
+    monkeypatch.setattr(firing, "MUCH", 2**40)
     one = rd.solve(cut, quanta=2**18, replicates=3)
     assert not any(b.several for b in took)
     monkeypatch.setattr(firing, "MUCH", 0)

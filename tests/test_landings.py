@@ -14,13 +14,13 @@ SLOTS = 37
 
 
 def tally(groups: int):
-    """An engine's counters, some lines landed before."""
+    """Hit counts, some lines landed before."""
     types = choose("cpu").types
     bands = (
         SimpleNamespace(n=groups, received=upload(types.UInt64, np.arange(SLOTS * groups, dtype=np.uint64))) if groups else None
     )
     return SimpleNamespace(
-        types=types,
+        tracer=SimpleNamespace(types=types),
         bands=bands,
         arrivals=upload(types.UInt32, np.arange(SLOTS, dtype=np.uint32)),
         touched=dr.opaque(types.Bool, False, SLOTS),
@@ -32,10 +32,10 @@ def tally(groups: int):
 @pytest.mark.parametrize("lines", [1, 1000, 100_000])
 def test_sums_are_those_of_whole_numbers(kind, groups, lines, random):
     """In several launches, most lines in few slots, some lanes without a line."""
-    engine, types = tally(groups), choose("cpu").types
+    hits, types = tally(groups), choose("cpu").types
     arrivals = np.arange(SLOTS, dtype=np.uint64)
     received = np.arange(SLOTS * groups, dtype=np.uint64).reshape(SLOTS, groups)
-    landed = kind(engine, True)
+    landed = kind(hits, True)
     for _ in range(3):
         slot = (random.random(lines) ** 4 * (SLOTS - 1)).astype(np.uint32)
         power = random.integers(0, 2**31, (lines, groups), dtype=np.uint32)
@@ -47,10 +47,10 @@ def test_sums_are_those_of_whole_numbers(kind, groups, lines, random):
         for g in range(groups):
             np.add.at(received[:, g], slot[active], power[active, g].astype(np.uint64))
     landed.settle()
-    assert np.array_equal(frozen(engine.arrivals), arrivals)
-    assert np.array_equal(frozen(engine.touched), arrivals > np.arange(SLOTS))
+    assert np.array_equal(frozen(hits.arrivals), arrivals)
+    assert np.array_equal(frozen(hits.touched), arrivals > np.arange(SLOTS))
     if groups:
-        assert np.array_equal(frozen(engine.bands.received).reshape(SLOTS, groups), received)
+        assert np.array_equal(frozen(hits.bands.received).reshape(SLOTS, groups), received)
 
 
 @pytest.mark.parametrize("name", ["room", "cornell-box"])

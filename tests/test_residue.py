@@ -79,11 +79,11 @@ def limit() -> float:
     return float(norm.ppf(1 - ALPHA / 2))
 
 
-def not_sent(engine, problem, state, begun) -> residue_walks.Sent:
+def not_sent(counters, problem, state, begun) -> residue_walks.Sent:
     """A wrong implementation."""
     groups = problem.groups.n_groups
     received = state["received"] if "received" in state else state["arrivals"][..., None] * np.int64(QUANTUM)
-    missed = np.zeros((2, engine.replicates, groups), np.int64)
+    missed = np.zeros((2, counters.tracer.replicates, groups), np.int64)
     return residue_walks.Sent(received.astype(np.int64), missed, [0] * groups, 0)
 
 
@@ -142,7 +142,7 @@ def test_less_than_a_line_is_left_up_to_any_group(quanta):
     patches = rd.subdivide(rd.load_scene("room"), cells=12)
     process = process_of(patches, 2, seed=3)
     state, phase = advanced(process, quanta), phases(3, 2, len(patches))
-    starts = residue_walks.starts(process.engine, process.problem, state)
+    starts = residue_walks.starts(process.counters, process.problem, state)
     groups = residue.Groups.of(patches, quanta)
     begins = np.arange(len(patches)) if groups.begins is None else groups.begins
     assert (groups.begins is None) == (residue.group_size(len(patches), quanta) == 1)
@@ -254,7 +254,7 @@ def test_books_close_with_what_the_residue_brings():
         for quanta in (30, 300, 3_000):
             state = advanced(process, quanta)
             sent = process.tally.sent(state)
-            landed = sent.received - not_sent(process.engine, process.problem, state, process.tally.begun(state)).received
+            landed = sent.received - not_sent(process.counters, process.problem, state, process.tally.begun(state)).received
             assert landed.any()
             assert [int(landed[..., g].sum() + sent.missed[..., g].sum()) for g in range(len(sent.fired))] == sent.fired
             for group in range(process.problem.groups.n_groups):
@@ -285,9 +285,9 @@ def test_residue_lines_count_as_rays(rays):
 def test_intermediate_stages_send_nothing(monkeypatch):
     taken, send = [], firing_process.send
 
-    def counted(engine, problem, state, begun):
+    def counted(counters, problem, state, begun):
         taken.append(int(state["quanta"]))
-        return send(engine, problem, state, begun)
+        return send(counters, problem, state, begun)
 
     monkeypatch.setattr(firing_process, "send", counted)
     patches = cavity()
@@ -323,10 +323,10 @@ def test_weights_fall_with_the_reflectance_and_chance_keeps_their_mean():
     """In a cube of reflectance 0.75 all that a walk brings is 1 / (1 - 0.75) in the mean, line by line less."""
     patches = rd.subdivide(cube(0.75, 0.25), cells=1)
     process = process_of(patches, 1)
-    m, types = 20_000, process.engine.types
+    m, types = 20_000, process.counters.types
     starts = residue.Starts(np.zeros(m, np.int64), np.zeros(m, np.int64), np.arange(m, dtype=np.uint32), np.full((m, 1), QUANTUM))
     tally = upload(types.Int64, np.zeros(8, np.int64))
-    fired, lines = residue_walks._walk(process.engine, starts, tally)
+    fired, lines = residue_walks._walk(process.counters, starts, tally)
     brought = np.array(tally)[:6].sum() / QUANTUM / m
     assert fired == [int(np.array(tally).sum())]
     exact = float(Fraction(1) / (1 - Fraction(3, 4)))

@@ -2,6 +2,7 @@
 
 from importlib import import_module
 
+from ..errors import MethodError
 from ..method import Baseline, Method
 from ..problem.model import Problem
 from ..tracing.geometry import Geometry
@@ -21,8 +22,17 @@ PROCESSES = {
 }
 
 
+LIGHTS = ("firing",)  # those that fire all source rows
+
+
 def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: int, replicates: int) -> AbstractProcess:
-    """The process that runs a method."""
+    """The process that runs a method.
+
+    Raises:
+        MethodError: the method knows nothing of lights without area, and there are some.
+    """
+    if problem.lights is not None and method.machine not in LIGHTS:
+        raise MethodError(f"{method} sends light from patches only, and there are lights without area; take --method random-walk")
     geometry.prepare()
     module, cls = PROCESSES[method.machine].split(":")
     return getattr(import_module(f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)

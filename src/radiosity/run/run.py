@@ -8,7 +8,6 @@ from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
-from ..algorithms.firing.state import check_same
 from ..algorithms.process import AbstractMeanTally, AbstractProcess, State
 from ..algorithms.table import make
 from ..device.backend import choose, give_back_memory
@@ -26,6 +25,7 @@ from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .progress import Interrupted, Listener, Stop, Teller
+from .same import check_same
 from .shortfall import warn_of_more, warn_of_target
 from .snapshot import Snapshot
 from .target import Target, nothing_before_lights

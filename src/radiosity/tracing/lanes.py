@@ -23,7 +23,7 @@ class Sweep:
         numbers: UInt32, patch numbers; None where they are those from ``low`` on.
         low, size: the first of them, and how many they are.
         total: lines of all.
-        counts: UInt32, those of each; None where bands keep what they follow from, see `Engine.batches`.
+        counts: UInt32, those of each; None where bands keep what they follow from, see `FiringCounters.batches`.
     """
 
     numbers: Any

@@ -36,6 +36,10 @@ class Tree:
     scale: float
     vertices: np.ndarray
 
+    def place(self, points: np.ndarray) -> np.ndarray:
+        """Points in metres, (..., 3), as the caster has them: float32."""
+        return ((points - self.centre) * self.scale).astype(np.float32)
+
 
 def tree(scene: Scene, device: Device) -> Tree:
     """The scene's tree on a device; built once."""

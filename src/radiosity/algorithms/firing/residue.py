@@ -55,7 +55,7 @@ class Starts:
             phase: (replicates, n_patches) uint32.
         """
         residue, found = Residue.of(problem, state, phase), []
-        groups = Groups.of(problem.patches, residue.quanta)
+        groups = Groups.of(problem.patches, residue.quanta, problem.rows.n_lights)
         for replicate in range(len(phase)):
             random = np.random.Generator(np.random.Philox(stream(seed, replicate, Purpose.RESIDUE)))
             patch, power = _lines(residue, replicate, groups, random)
@@ -100,30 +100,31 @@ class Residue:
         owed = self.problem.source.rho[part].astype(np.uint64) * arrivals + self.emitted[part]
         if "received" not in self.state:
             return owed, (((owed + phase) % ONE).astype(np.int64) - phase)[:, None]
-        groups, received = self.problem.groups, self.state["received"][replicate, part]
-        share = groups.emission[part] * (self.problem.patches.area[part] / self.problem.source.power)[:, None]
-        owed_of_each = share * (self.quanta * QUANTUM) + Source.fixed(groups.reflectance[part]) * 2.0**-32 * received
+        rows, received = self.problem.rows, self.state["received"][replicate, part]
+        share = rows.emission[part] * (rows.area[part] / self.problem.source.power)[:, None]
+        owed_of_each = share * (self.quanta * QUANTUM) + Source.fixed(rows.reflectance[part]) * 2.0**-32 * received
         return owed, 2 * np.round(owed_of_each - self.state["sent"][replicate, part]).astype(np.int64)
 
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """Consecutive patches whose residues are summed.
+    """Consecutive rows whose residues are summed.
 
     Attributes:
-        n_patches: in all.
-        begins: (k,) int64, the first patch of each, increasing; None where each patch is alone.
+        n: rows in all.
+        begins: (k,) int64, the first row of each, increasing; None where each row is alone.
     """
 
-    n_patches: int
+    n: int
     begins: np.ndarray | None
 
     @staticmethod
-    def of(patches: Patches, quanta: int) -> "Groups":
-        """At N quanta. None reaches over the end of a face, or else of a surface, where these are no more than groups."""
+    def of(patches: Patches, quanta: int, n_lights: int = 0) -> "Groups":
+        """At N quanta. None reaches over the end of a face, or else of a surface, where these are no more than groups. Lights
+        are alone."""
         n, size = len(patches), group_size(len(patches), quanta)
         if size == 1:
-            return Groups(n, None)
+            return Groups(n + n_lights, None)
         faces, surface = patches.first[:-1].astype(np.int64), patches.scene.surface
         surfaces = faces[np.concatenate([[True], surface[1:] != surface[:-1]])]
         runs = next((runs for runs in (faces, surfaces) if len(runs) * size <= n), np.zeros(1, np.int64))
@@ -131,15 +132,16 @@ class Groups:
         count = -(-length // size)
         of = np.repeat(np.arange(len(runs)), count)
         turn = np.arange(len(of)) - (np.cumsum(count) - count)[of]
-        return Groups(n, runs[of] + turn * length[of] // count[of])
+        begins = runs[of] + turn * length[of] // count[of]
+        return Groups(n + n_lights, np.append(begins, n + np.arange(n_lights)))
 
     def parts(self) -> Iterator[tuple[slice, np.ndarray]]:
         """Whole groups, some `PIECE` patches at a time, and where groups begin in them."""
         if self.begins is None:
-            yield from ((part, np.arange(part.stop - part.start)) for part in pieces(self.n_patches))
+            yield from ((part, np.arange(part.stop - part.start)) for part in pieces(self.n))
             return
-        step = max(PIECE * len(self.begins) // self.n_patches, 1)
-        ends = np.append(self.begins, self.n_patches)
+        step = max(PIECE * len(self.begins) // self.n, 1)
+        ends = np.append(self.begins, self.n)
         for group in range(0, len(self.begins), step):
             part = slice(int(ends[group]), int(ends[min(group + step, len(self.begins))]))
             yield part, self.begins[group : group + step] - part.start

@@ -8,7 +8,7 @@ from ...device.backend import upload
 from ...problem.model import Problem
 from ...problem.quanta import Source, owed, phases
 from ...tracing.lanes import Batch
-from ..firing.counters import Engine
+from ...tracing.line_tracer import LineTracer
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +42,12 @@ class Births:
             return np.zeros(self.phase.shape, np.uint32)
         return owed(self.source, quanta, np.zeros(self.phase.shape[1], np.uint32), self.phase).astype(np.uint32)
 
-    def batch(self, engine: Engine, before: int, quanta: int) -> tuple[Batch | None, int]:
+    def batch(self, tracer: LineTracer, before: int, quanta: int) -> tuple[Batch | None, int]:
         """Walks that N = quanta has and N = before had not, and the largest index among them."""
         old, now = self.count(before).ravel(), self.count(quanta).ravel()
         rows = np.flatnonzero(now > old)
         if not len(rows):
             return None, 0
         columns = (rows.astype(np.uint32), (now - old)[rows], old[rows])
-        numbers, counts, fired = (upload(engine.types.UInt32, column) for column in columns)
-        return Batch.of(engine.types, numbers, counts, fired, engine.record), int(now.max())
+        numbers, counts, fired = (upload(tracer.types.UInt32, column) for column in columns)
+        return Batch.of(tracer.types, numbers, counts, fired, tracer.record), int(now.max())

@@ -8,14 +8,13 @@ from dataclasses import replace
 from typing import Any
 
 import drjit as dr
-import numpy as np
 
-from ...device.backend import upload
 from ...device.recorded import loop
 from ...errors import MethodError
+from ...tally.hits import HitCounts
 from ...tally.landings import DENSE
 from ...tracing.lanes import Batch, Chunk
-from ..firing.counters import Engine
+from ...tracing.line_tracer import LineTracer
 from ..process import AbstractTally, State
 from .births import Births
 from .density import DensityTally
@@ -35,12 +34,13 @@ class Walks(AbstractLaunches):
         method = self.method
         if method.absorption == "fractional":  # walk n takes point n, its birth patch too: patches have no points of their own
             method = replace(method, randomisation="shared")
-        self.engine = Engine(self.geometry, self.problem.source, method, self.seed, self.replicates)
-        self.types = self.engine.types
-        self.legs = Legs(self.engine, continuous=self.method.equation == "continuous")
+        self.tracer = LineTracer.of(self.geometry, method.numbers, method.randomisation, self.seed, self.replicates)
+        self.hits = HitCounts(self.tracer)
+        self.types = self.tracer.types
+        self.legs = Legs(self.tracer, continuous=self.method.equation == "continuous")
         self.births = Births.of_power(self.problem, self.seed, self.replicates)
-        self.fractions = Fractions.of(self.engine, self.problem) if self.method.absorption == "fractional" else None
-        self.scores = Scores(self.engine, self.problem, self.method)
+        self.fractions = Fractions.of(self.tracer, self.problem) if self.method.absorption == "fractional" else None
+        self.scores = Scores(self.tracer, self.problem, self.method)
 
     @property
     def nested(self) -> bool:
@@ -49,10 +49,10 @@ class Walks(AbstractLaunches):
     def _births(self, before: int, quanta: int) -> tuple[Batch | None, int]:
         if self.fractions is not None:
             return self.fractions.batch(before, quanta)
-        return self.births.batch(self.engine, before, quanta)
+        return self.births.batch(self.tracer, before, quanta)
 
     def _follow(self, chunk: Chunk, largest: int) -> int:
-        types, leg, lines, bits = self.types, 1, chunk.lanes, self.engine.numbers.bits_for(largest)
+        types, leg, lines, bits = self.types, 1, chunk.lanes, self.tracer.numbers.bits_for(largest)
         number, index, record = chunk.read(types)
         if self.fractions is not None:
             number, record = self.fractions.birthplace(number, index, bits)
@@ -76,21 +76,21 @@ class Walks(AbstractLaunches):
 
     def _settle(self, flock: Flock, step, real, leg: int, width: int) -> tuple[Flock, Any]:
         """Score landings and decide who goes on, in a kernel of its own."""
-        mode = dr.ReduceMode.Expand if width > DENSE * self.engine.total else dr.ReduceMode.Direct
+        mode = dr.ReduceMode.Expand if width > DENSE * self.tracer.total else dr.ReduceMode.Direct
         after, alive = self._landed(flock, step, real, leg, mode)
-        dr.eval(self.engine.arrivals, *self.scores.arrays(), alive, after.columns())
+        dr.eval(self.hits.arrivals, *self.scores.arrays(), alive, after.columns())
         return after, alive
 
     def _landed(self, flock: Flock, step, real, leg, mode) -> tuple[Flock, Any]:
-        engine, types = self.engine, self.types
-        on = real & (step.landed < engine.total)
-        patch = step.landed - engine.replicate(flock.walk) * engine.n_opaque
+        tracer, types = self.tracer, self.types
+        on = real & (step.landed < tracer.total)
+        patch = step.landed - tracer.replicate(flock.walk) * tracer.n_opaque
         probability = dr.gather(types.Float, self.scores.survival, patch, on)
         if self.fractions is None:
             alive = on & (step.numbers[4] < probability)
         else:
             alive = on & (probability > 0) & self.fractions.go_on(flock.index, leg)
-        dr.scatter_add(engine.arrivals, types.UInt32(1), step.landed, active=real, mode=mode)
+        self.hits.add(step.landed, real, mode)
         self.scores.deposit(flock.weights, step.landed, patch, probability, alive, real, mode)
         factor = None if self.fractions is None else self.fractions.factor(leg)
         weights = self.scores.reflected(flock.weights, patch, on, factor)
@@ -117,7 +117,7 @@ class Walks(AbstractLaunches):
         _, _, lines, sums, _ = loop(state, lambda columns, leg, lines, sums, going: going, body)
         total = dr.sum(types.UInt64(lines))
         parts = [dr.sum(s) for s in sums]
-        dr.eval(self.engine.arrivals, *self.scores.arrays(), total, parts)
+        dr.eval(self.hits.arrivals, *self.scores.arrays(), total, parts)
         took = int(total[0])
         if self.scores.carries:
             self.scores.add_fired([int(part[0]) for part in parts])
@@ -126,14 +126,13 @@ class Walks(AbstractLaunches):
         return took
 
     def _counts(self) -> State:
-        arrivals, _, missed = self.engine.counters()
+        arrivals, missed = self.hits.read()
         return {"arrivals": arrivals, "missed": missed} | self.scores.capture()
 
     def _put_back(self, state: State) -> None:
-        if not {"quanta", "arrivals", "missed"} <= set(state) or state["arrivals"].shape != (self.replicates, self.engine.n):
+        if not {"quanta", "arrivals", "missed"} <= set(state) or state["arrivals"].shape != (self.replicates, self.tracer.n):
             raise MethodError("the solution to go on from lacks the counts of its run; start anew")
-        counts = np.concatenate([state["arrivals"].ravel(), state["missed"].ravel()])
-        self.engine.arrivals = upload(self.types.UInt32, counts)
+        self.hits.write(state["arrivals"], state["missed"])
         self.scores.restore(state)
 
     @property
