@@ -11,11 +11,10 @@ import numpy as np
 from iterations import open_room
 
 import radiosity as rd
-from radiosity.algorithms.process import AbstractProcess, State
+from radiosity.algorithms.process import AbstractProcess, Interrupted, State
 from radiosity.algorithms.table import make
 from radiosity.device.backend import choose
 from radiosity.problem.model import Problem
-from radiosity.run.progress import Interrupted
 from radiosity.tracing.geometry import Geometry
 
 STAGES = (1_000, 6_000)  # quanta; the first stage of a run is short

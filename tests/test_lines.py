@@ -8,7 +8,8 @@ import radiosity as rd
 from radiosity.device.backend import choose, upload
 from radiosity.patches import cells
 from radiosity.tracing.caster import first_hits
-from radiosity.tracing.geometry import OFFSET, Geometry
+from radiosity.tracing.faces import OFFSET
+from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.lines import land, local_line, patch_of
 
 ALPHA = 1e-4

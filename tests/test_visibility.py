@@ -8,7 +8,8 @@ import radiosity as rd
 from radiosity.device.backend import choose
 from radiosity.errors import MethodError
 from radiosity.scene.shapes import quad
-from radiosity.tracing.geometry import INSET, OFFSET, Geometry
+from radiosity.tracing.faces import OFFSET
+from radiosity.tracing.geometry import INSET, Geometry
 from radiosity.tracing.visibility import Polygons, _records, visible_share
 from validation.closed_forms.rectangles import parallel
 

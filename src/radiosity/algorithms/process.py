@@ -14,6 +14,10 @@ State = dict[str, np.ndarray]
 Swept = Callable[[int], None]
 
 
+class Interrupted(Exception):
+    """The run was asked to stop where its state is whole."""
+
+
 @dataclass(eq=False)
 class AbstractProcess(ABC):
     """The counters of all replicates of a method, on the device or the host.

@@ -88,7 +88,7 @@ class Hemicube:
         angle = self._angles(patches)[numbers] if self.turned else np.zeros(len(numbers))
         cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
         origin = (patches.centroid[numbers] - tree.centre) * tree.scale
-        origin += normal * geometry.offset(face, origin)[:, None]
+        origin += normal * geometry.faces.offset(face, origin)[:, None]
         return np.concatenate([origin, cosine * tangent + sine * across, cosine * across - sine * tangent, normal], axis=1)
 
     def _angles(self, patches: Patches) -> np.ndarray:

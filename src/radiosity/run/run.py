@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
-from ..algorithms.process import AbstractMeanTally, AbstractProcess, State
+from ..algorithms.process import AbstractMeanTally, AbstractProcess, Interrupted, State
 from ..algorithms.table import make
 from ..device.backend import choose, give_back_memory
 from ..device.turn import turn
@@ -24,7 +24,7 @@ from . import demand
 from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
-from .progress import Interrupted, Listener, Stop, Teller
+from .progress import Listener, Stop, Teller
 from .same import check_same
 from .shortfall import warn_of_more, warn_of_target
 from .snapshot import Snapshot
@@ -247,7 +247,10 @@ class Run:
             if self.resume is None:
                 warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
             if status == NOT_REACHED:
-                warn_of_target(self, snapshot)
+                full = (
+                    snapshot.lines / self.replicates >= self.most / 2
+                )  # a stage that full counters forbid would have doubled the lines
+                warn_of_target(snapshot, self.budget, self.target, self.teller.bound, self.error_of, full=full)
             if isinstance(snapshot.tally, AbstractMeanTally):
                 unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
             ends = snapshot.lines / self.replicates / len(self.patches)

@@ -58,7 +58,7 @@ def first_hits(scene: Scene, origins: np.ndarray, directions: np.ndarray, device
         rows = slice(at, at + CHUNK)
         rays = [types.Array3f(*(upload(types.Float, a[rows, i]) for i in range(3))) for a in (start, unit)]
         hit = land(geometry, *rays)
-        face = dr.gather(types.UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
+        face = dr.gather(types.UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid)
         outputs = (face, hit.u, hit.v, hit.front, hit.distance, hit.valid)
         dr.eval(outputs)
         face, u, v, front, distance, valid = (np.array(x) for x in outputs)

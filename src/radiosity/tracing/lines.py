@@ -9,7 +9,8 @@ from ..device.backend import classes
 from ..device.recorded import loop
 from ..scene.model import Back
 from .departure import BACK, MASK, before, local_line, local_lines
-from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, TIED, Geometry
+from .faces import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF
+from .geometry import TIED, Geometry
 
 NORMAL_MASK = (1 << NORMAL_BITS) - 1
 
@@ -54,7 +55,9 @@ def land(geometry: Geometry, origin, direction, *, coherent: bool = False, activ
         travelled = dr.select(going, hit[5] + new.distance, hit[5])
         kept = [dr.select(done, value, old) for value, old in zip(_fields(new), hit, strict=True)]
         # go on in front of the face just passed, on the side that the line leads to
-        least = dr.gather(Float, geometry.offsets, dr.gather(UInt32, geometry.primitive_faces, new.primitive, passes), passes)
+        least = dr.gather(
+            Float, geometry.faces.offsets, dr.gather(UInt32, geometry.faces.primitive_faces, new.primitive, passes), passes
+        )
         onward = normal * dr.select(new.front, Float(-1.0 / NORMAL_ONE), Float(1.0 / NORMAL_ONE))
         step = before(origin + direction * new.distance, onward, least)
         return dr.select(passes, step, origin), passes, (*kept[:5], travelled, *kept[6:])
@@ -148,7 +151,7 @@ def place_of(geometry: Geometry, hit: Landing):
     them."""
     types = geometry.device.types
     Float, UInt32 = types.Float, types.UInt32
-    face = dr.gather(UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
+    face = dr.gather(UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid)
     if geometry.some_backs_radiate:
         face = dr.select(hit.back(Back.RADIATES), face | BACK, face)
     s, t = dr.clip(hit.u, 0, 1), dr.clip(hit.v, 0, 1)

@@ -8,8 +8,7 @@ import numpy as np
 from ...errors import MethodError
 from ...factors.counts import PairCounts
 from ...factors.lines import GlobalLines, LocalLines
-from ...run.progress import Interrupted
-from ..process import AbstractProcess, State, Swept
+from ..process import AbstractProcess, Interrupted, State, Swept
 from .tally import MatrixTally
 
 LIMIT = 1 << 28  # pairs that are kept: 3 GiB, and as much again while they are merged

@@ -13,7 +13,7 @@ import numpy as np
 from ...device.backend import upload
 from ...scene.model import Back
 from ..departure import before
-from ..geometry import COLUMN_BITS, QUAD
+from ..faces import COLUMN_BITS, QUAD
 from ..lines import Landing, patch_of
 from .crossing import ESCAPED, LOST, Crossings
 
@@ -39,8 +39,8 @@ class Entrance:
     def faces(self) -> np.ndarray:
         """(6, CELLS, CELLS) uint32: for each axis the low and the high side, the face that holds a cell's centre."""
         geometry = self.crossings.geometry
-        origin, first, second = geometry.frames
-        offset = geometry.offset(np.arange(len(origin)), origin)
+        origin, first, second = geometry.faces.frames
+        offset = geometry.faces.offset(np.arange(len(origin)), origin)
         quad, back = geometry.scene.is_quad, geometry.scene.back
         table = np.full((6, CELLS, CELLS), NONE, np.uint32)
         inward = np.cross(first, second)

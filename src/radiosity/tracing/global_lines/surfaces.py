@@ -15,7 +15,8 @@ from ...device.recorded import loop
 from ...sampling.hemisphere import triangle
 from ...scene.model import Back
 from ..departure import BACK, MASK, Frame
-from ..geometry import COLUMN_BITS, QUAD, Geometry
+from ..faces import COLUMN_BITS, QUAD
+from ..geometry import Geometry
 from ..lines import Landing, land, patch_of
 from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 
