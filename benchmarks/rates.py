@@ -48,18 +48,18 @@ def _rays(counters: FiringCounters, lines: int):
     """The rays of the first sweep, in memory, in the order in which they are fired."""
     types = counters.types
     counters.set_quanta(lines)
-    sweep, largest = counters.due()
+    wavefront, largest = counters.due()
     bits = counters.tracer.numbers.bits_for(largest)
     parts, total = [], 0
-    for chunk in (chunk for batch in counters.batches(sweep) for chunk in batch.chunks(types)):
-        number, index, record = chunk.read(types)
-        points = counters.tracer.points(number, index, dr.zeros(types.UInt32, chunk.width), record, bits)
+    for launch in (launch for batch in counters.batches(wavefront) for launch in batch.launches(types)):
+        number, index, record = launch.read(types)
+        points = counters.tracer.points(number, index, dr.zeros(types.UInt32, launch.width), record, bits)
         ray = counters.tracer.leave(record)(points)
         dr.eval(ray)
         parts.append(ray)
-        total += chunk.width
+        total += launch.width
     dr.sync_thread()
-    counters.fire(sweep, largest)
+    counters.fire(wavefront, largest)
     return parts, total
 
 
@@ -67,7 +67,7 @@ def _bare(geometry: Geometry, rays) -> None:
     with entered(geometry.device) as mi:
         for origin, direction in rays:
             ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
-            hit = geometry.tree.caster.ray_intersect_preliminary(ray, coherent=False)
+            hit = geometry.bvh.scene.ray_intersect_preliminary(ray, coherent=False)
             dr.eval(hit.t, hit.prim_index, hit.prim_uv)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.algorithms.process import AbstractProcess
+from radiosity.algorithms.base import AbstractAlgorithm
 from radiosity.algorithms.table import make
 from radiosity.problem.model import Problem
 from radiosity.scene.shapes import box, join
@@ -50,17 +50,17 @@ def denominator(one, two, three) -> float:
     return float(np.prod(lengths) + one @ two * lengths[2] + two @ three * lengths[0] + three @ one * lengths[1])
 
 
-def run(skeleton, patches, power, position=MIDDLE, geometry_of=None, quanta=QUANTA, **choices) -> AbstractProcess:
+def run(skeleton, patches, power, position=MIDDLE, geometry_of=None, quanta=QUANTA, **choices) -> AbstractAlgorithm:
     lights = skeleton.PointLights(position, np.atleast_2d(power))
     assert geometry_of is not None
-    process = make(geometry_of(patches), Problem.of(patches, lights), rd.Method(**choices), 3, REPLICATES)
-    process.advance(quanta, lambda lines: None)
-    return process
+    algorithm = make(geometry_of(patches), Problem.of(patches, lights), rd.Method(**choices), 3, REPLICATES)
+    algorithm.advance(quanta, lambda lines: None)
+    return algorithm
 
 
-def received(process, group: int = 0) -> tuple[np.ndarray, np.ndarray]:
+def received(algorithm, group: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """W of each patch and their standard errors."""
-    values, unit = process.tally.irradiance(process.problem, process.capture(), group)
+    values, unit = algorithm.tally.irradiance(algorithm.problem, algorithm.capture(), group)
     mean, error = mean_and_error(values)
     return mean * unit, error * unit
 
@@ -85,8 +85,8 @@ def patch_corners(patches) -> np.ndarray:
 
 def test_black_walls_receive_by_solid_angle(skeleton, geometry_of):
     patches = room(0.0)
-    process = run(skeleton, patches, 40.0, geometry_of=geometry_of)
-    mean, error = received(process)
+    algorithm = run(skeleton, patches, 40.0, geometry_of=geometry_of)
+    mean, error = received(algorithm)
     wanted = expected(patches, 40.0)
     assert wanted.sum() == pytest.approx(40)
     assert mean.sum() == pytest.approx(40, rel=1e-12)
@@ -113,10 +113,10 @@ def test_a_wrong_light_is_rejected(skeleton, geometry_of, monkeypatch):
 def test_a_furnace_of_walls_and_lights(skeleton, geometry_of):
     """Reflectance 1/2 everywhere: all that is sent lands twice over, wherever the lights are; and the books close."""
     patches = room(0.5, 0.1)
-    process = run(skeleton, patches, np.array([[3.0], [1.5]]), np.array([[0.2, 0.3, 0.4], [0.7, 0.7, 0.9]]), geometry_of)
-    mean, _ = received(process)
+    algorithm = run(skeleton, patches, np.array([[3.0], [1.5]]), np.array([[0.2, 0.3, 0.4], [0.7, 0.7, 0.9]]), geometry_of)
+    mean, _ = received(algorithm)
     assert mean.sum() == pytest.approx(2 * (3 + 1.5 + 0.6), rel=2e-3)
-    book = process.tally.books(process.problem, process.capture(), 0)
+    book = algorithm.tally.books(algorithm.problem, algorithm.capture(), 0)
     assert book["closes"]
     assert book["emitted"] == pytest.approx(3 + 1.5 + 0.6, rel=1e-5)
     assert book["absorbed"] == pytest.approx(3 + 1.5 + 0.6, rel=2e-3)
@@ -137,8 +137,8 @@ def test_integers_do_not_depend_on_the_order(skeleton, geometry_of, order):
 
 
 def test_stages_and_a_restored_state_end_in_the_same_integers(skeleton, geometry_of):
-    process = run(skeleton, room(0.7), 2.0, geometry_of=geometry_of, quanta=1 << 12)
-    state = process.capture()
+    algorithm = run(skeleton, room(0.7), 2.0, geometry_of=geometry_of, quanta=1 << 12)
+    state = algorithm.capture()
     again = run(skeleton, room(0.7), 2.0, geometry_of=geometry_of, quanta=1)
     again.restore(state)
     again.advance(QUANTA, lambda lines: None)
@@ -149,12 +149,12 @@ def test_stages_and_a_restored_state_end_in_the_same_integers(skeleton, geometry
 def test_bands_of_lights_and_walls(skeleton, geometry_of):
     """Each band is a furnace of its own; a light's colour differs from that of the walls' emission."""
     reflectance, emission, power = np.array([0.5, 0.2]), np.array([0.1, 0.4]), np.array([[2.0, 1.0]])
-    process = run(skeleton, room(reflectance, emission), power, geometry_of=geometry_of)
-    assert process.problem.groups.n_groups == 2
+    algorithm = run(skeleton, room(reflectance, emission), power, geometry_of=geometry_of)
+    assert algorithm.problem.groups.n_groups == 2
     for band in (0, 1):
-        mean, _ = received(process, band)
+        mean, _ = received(algorithm, band)
         assert mean.sum() == pytest.approx((power[0, band] + 6 * emission[band]) / (1 - reflectance[band]), rel=5e-3)
-        assert process.tally.books(process.problem, process.capture(), band)["closes"]
+        assert algorithm.tally.books(algorithm.problem, algorithm.capture(), band)["closes"]
 
 
 def test_proportional_bands_are_one_group_only_with_proportional_lights(skeleton):

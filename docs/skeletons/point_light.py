@@ -33,7 +33,7 @@ class PointLights(AbstractLights):
 
     def prepare(self, geometry: Any) -> None:
         types = geometry.device.types
-        self._point, self._places = types.Array3f, upload(types.Float, geometry.tree.place(self.position))
+        self._point, self._places = types.Array3f, upload(types.Float, geometry.bvh.place(self.position))
 
     def leave(self, light: Any, numbers: Any) -> tuple[Any, Any]:
         origin = dr.gather(self._point, self._places, light)

@@ -20,7 +20,7 @@ class AbstractLights(ABC):
         """Make on the device what `leave` reads: in a loop that is recorded nothing can be made.
 
         Args:
-            geometry: a `tracing.geometry.Geometry`. Kernels see points p of the scene at ``geometry.tree.place(p)``.
+            geometry: a `tracing.geometry.Geometry`. Kernels see points p of the scene at ``geometry.bvh.place(p)``.
         """
 
     @abstractmethod

@@ -6,8 +6,8 @@ import warnings
 from ..errors import RadiosityWarning
 from ..patches import Patches
 from .budget import Budget
+from .error_target import Target
 from .snapshot import Snapshot
-from .target import Target
 
 MORE = 2.0  # times the lines asked for
 

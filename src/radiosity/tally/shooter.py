@@ -17,10 +17,10 @@ from ..device.backend import frozen, upload
 from ..method import Method
 from ..sampling.streams import Purpose, stream
 from ..tracing.geometry import Geometry
-from ..tracing.lanes import Batch, Chunk
+from ..tracing.lanes import Batch, Launch
 from ..tracing.line_tracer import LineTracer
-from .hits import HitCounts
-from .landings import DENSE
+from .hit_counts import HitCounts
+from .hit_tally import DENSE
 
 FEW = 1 << 13  # lines of a launch that shares its kernel with others of so few
 
@@ -91,17 +91,17 @@ class Shooter:
         # launches of few lines share one kernel, whatever their indices
         bits = tracer.numbers.bits_for(int(largest[0]))
         mode = dr.ReduceMode.Expand if batch.total > DENSE * self.total else dr.ReduceMode.Direct
-        for chunk in batch.chunks(types):
-            self._fire(chunk, 32 if batch.total <= FEW else bits, weights, ends, pairs, mode)
+        for launch in batch.launches(types):
+            self._fire(launch, 32 if batch.total <= FEW else bits, weights, ends, pairs, mode)
         dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
         dr.eval(self.fired)
         return batch.total
 
-    def _fire(self, chunk: Chunk, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode) -> None:
+    def _fire(self, launch: Launch, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode) -> None:
         types, tracer = self.types, self.tracer
-        number, index, record = chunk.read(types)
+        number, index, record = launch.read(types)
         landed = tracer.trace(number, index, record, bits)
-        real = chunk.mask(types)
+        real = launch.mask(types)
         self.hits.add(landed, real, mode)
         for g in range(self.groups):
             here, there = number * self.groups + g, landed * self.groups + g
@@ -116,7 +116,7 @@ class Shooter:
             dr.schedule(number, landed)
         dr.eval(self.hits.arrivals, self.received)
         if pairs is not None:
-            pairs(frozen(number)[: chunk.lanes], frozen(landed)[: chunk.lanes])
+            pairs(frozen(number)[: launch.lanes], frozen(landed)[: launch.lanes])
 
     def _add(self, value, index, real, mode) -> None:
         dr.scatter_add(self.received, value, index, active=real, mode=mode)

@@ -9,7 +9,7 @@ from ..device.backend import Device, upload
 from ..patches.model import Patches
 from ..scene.model import Scene, unit_normals
 from ..scene.precision import EPSILON, plane_reach
-from .tree import Tree, primitives, tree
+from .bvh import Bvh, bvh, primitives
 
 OFFSET = 8 * EPSILON  # of the largest number that places a point or its plane: lines begin this far in front of it
 NEAR = 1.0  # of 2^20 that the scene reaches to: smaller numbers count as this, or lines would stay where all are zero
@@ -33,13 +33,13 @@ class Faces:
         return self.patches.scene
 
     @cached_property
-    def tree(self) -> Tree:
-        return tree(self.scene, self.device)
+    def bvh(self) -> Bvh:
+        return bvh(self.scene, self.device)
 
     @cached_property
     def frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Origin and edges of the faces in the caster's coordinates, float64 from its own vertices."""
-        scene, vertices = self.scene, self.tree.vertices.astype(np.float64)
+        scene, vertices = self.scene, self.bvh.vertices.astype(np.float64)
         origin = vertices[scene.faces[:, 0]]
         first = vertices[scene.faces[:, 1]] - origin
         second = vertices[np.where(scene.is_quad, scene.faces[:, 3], scene.faces[:, 2])] - origin

@@ -13,9 +13,9 @@ from ..patches import cells
 from ..patches.model import Patches
 from ..pieces import pieces
 from ..scene.model import Back, Scene
+from .bvh import Bvh, primitives
 from .faces import COLUMN_BITS, INVERTED, NORMAL_BITS, NORMAL_ONE, OFFSET, QUAD, SECOND_HALF, Faces
 from .ties import Ties
-from .tree import Tree, primitives
 
 INSET = 4 * OFFSET  # of a face's largest coordinate: and this far from its edges, so that the offset leads through no neighbour
 
@@ -42,8 +42,8 @@ class Geometry:
         return Faces(self.patches, self.device)
 
     @property
-    def tree(self) -> Tree:
-        return self.faces.tree
+    def bvh(self) -> Bvh:
+        return self.faces.bvh
 
     def prepare(self) -> None:
         """Make what kernels read, before any loop is recorded (`recorded.not_recorded`)."""
@@ -52,7 +52,7 @@ class Geometry:
 
     def prepare_hits(self) -> None:
         """Of that, what hits are read from."""
-        _ = self.tree, self.hit_records, self.faces.primitive_faces, self.faces.offsets
+        _ = self.bvh, self.hit_records, self.faces.primitive_faces, self.faces.offsets
         if self.ties is not None:
             self.ties.prepare()
 

@@ -14,9 +14,9 @@ from ..problem.lights import AbstractLights
 from ..problem.quanta import LIMIT
 from ..sampling.numbers import AbstractNumbers, ready
 from ..sampling.streams import Purpose, stream
-from .departure import BACK, local_lines, place_number
 from .geometry import Geometry
-from .lines import land, patch_of
+from .hits import first_hit, patch_of
+from .ray_generation import BACK, local_lines, place_number
 
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
 LIGHTS = 1 << 30  # from here on the first word of a row's record is no face: a light's number follows
@@ -173,7 +173,7 @@ class LineTracer:
 
     def land_in(self, line, replicate, coherent: bool = False, active: Any = True):
         """The slot where lines land, from their origins and directions."""
-        return self.slot(land(self.geometry, *line, coherent=coherent, active=active), replicate)
+        return self.slot(first_hit(self.geometry, *line, coherent=coherent, active=active), replicate)
 
     def slot(self, hit, replicate):
         """The slot of lines of a replicate, from where they land."""

@@ -18,7 +18,7 @@ from ...problem.model import Problem
 from ...sampling.numbers import WORDS
 from ...sampling.numbers.random import philox
 from ...sampling.streams import Purpose, stream
-from ..process import State
+from ..base import State
 from .counters import FiringCounters
 from .residue import Starts
 

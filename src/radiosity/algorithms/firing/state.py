@@ -25,7 +25,7 @@ def capture(counters: FiringCounters) -> dict[str, np.ndarray]:
     state["received_missed"] = received[split:].reshape(2, counters.tracer.replicates, bands.n)
     state["sent"] = frozen(bands.sent).reshape(*shape, bands.n)
     state["fired_power"] = frozen(bands.fired).reshape(bands.n, counters.tracer.replicates)
-    if counters.owes:
+    if counters.has_due:
         state["within"] = np.array(True)
     return state
 

@@ -12,10 +12,10 @@ from ...method.model import Method
 from ...problem.bands import QUANTUM
 from ...problem.model import Problem
 from ...tracing.geometry import Geometry
+from ..base import State, Swept
 from ..firing import state as firing_state
 from ..firing.counters import FiringCounters
 from ..firing.orders import fire_all
-from ..process import State, Swept
 
 PREFIX = "shot_"
 APART = 1 << 64  # added to the seed: local lines do not repeat the numbers of global ones

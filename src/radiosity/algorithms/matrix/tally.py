@@ -6,7 +6,7 @@ from ...factors.counted import CountedPairs, Received
 from ...problem.model import Problem
 from ...solution.books import by_difference
 from ...tally.unmet import bias
-from ..process import AbstractMeanTally, State
+from ..base import AbstractMeanTally, State
 
 
 class MatrixTally(AbstractMeanTally):

@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from ...process import Swept
+from ...base import Swept
 from ..counters import FiringCounters
 from .base import AbstractOrder
 

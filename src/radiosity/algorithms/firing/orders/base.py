@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 
-from ...process import Swept
+from ...base import Swept
 from ..counters import FiringCounters
 
 

@@ -1,6 +1,6 @@
 """Breadth-first: sweep after sweep, every row fires all it owes (Shirley 1991)."""
 
-from ...process import Swept
+from ...base import Swept
 from ..counters import FiringCounters
 from .base import AbstractOrder
 from .depth_first import walk_all
@@ -13,12 +13,12 @@ class BreadthFirst(AbstractOrder):
 
     def run(self, counters: FiringCounters, swept: Swept) -> None:
         while True:
-            sweep, largest = counters.due()
-            if sweep is None:
+            wavefront, largest = counters.due()
+            if wavefront is None:
                 return
-            if sweep.total < TAIL and counters.bands is None:
-                walk_all(counters, sweep, swept)
+            if wavefront.total < TAIL and counters.bands is None:
+                walk_all(counters, wavefront, swept)
                 return
-            counters.fire(sweep, largest)
-            swept(sweep.total)
-            del sweep  # and the memory it holds
+            counters.fire(wavefront, largest)
+            swept(wavefront.total)
+            del wavefront  # and the memory it holds

@@ -9,8 +9,8 @@ from typing import Any
 import drjit as dr
 
 from ....device.recorded import loop
-from ....tracing.lanes import Chunk, Sweep
-from ...process import Swept
+from ....tracing.lanes import Launch, Wavefront
+from ...base import Swept
 from ..counters import FiringCounters
 from .base import AbstractOrder
 
@@ -19,31 +19,31 @@ class DepthFirst(AbstractOrder):
     """Follows all walks to their ends."""
 
     def run(self, counters: FiringCounters, swept: Swept) -> None:
-        sweep, _ = counters.due()
-        if sweep is not None:
-            walk_all(counters, sweep, swept)
+        wavefront, _ = counters.due()
+        if wavefront is not None:
+            walk_all(counters, wavefront, swept)
 
 
-def walk_all(counters: FiringCounters, sweep: Sweep, swept: Swept) -> None:
+def walk_all(counters: FiringCounters, wavefront: Wavefront, swept: Swept) -> None:
     """From the lines of a sweep, a launch at a time."""
-    for batch in list(counters.batches(sweep)):  # made before walks fire lines of patches that are still to come
-        for chunk in batch.chunks(counters.types):
+    for batch in list(counters.batches(wavefront)):  # made before walks fire lines of patches that are still to come
+        for launch in batch.launches(counters.types):
             before = counters.lines
-            walk(counters, chunk)
+            walk(counters, launch)
             swept(counters.lines - before)
 
 
-def walk(counters: FiringCounters, chunk: Chunk) -> None:
+def walk(counters: FiringCounters, launch: Launch) -> None:
     """One lane for each line owed at the start."""
     types, tracer = counters.types, counters.tracer
-    number, _, _ = chunk.read(types)
+    number, _, _ = launch.read(types)
 
     def body(number, going):
         taken: Any = dr.scatter_inc(counters.fired, number, going)
         landed = tracer.trace(number, taken + 1, tracer.record(number), 32)
         before = dr.scatter_inc(counters.hits.arrivals, landed, going)
         going = going & (landed < counters.total)
-        return landed, going & counters.owes_more(landed, before, going)
+        return landed, going & counters.is_due_after(landed, before, going)
 
-    loop((number, chunk.real(types)), lambda number, going: going, body)
+    loop((number, launch.real(types)), lambda number, going: going, body)
     dr.eval(counters.hits.arrivals, counters.fired)

@@ -5,7 +5,7 @@ A block of rows fires at a time; light that lands ahead leaves in the same pass,
 The set of lines is the same as in any other order.
 """
 
-from ...process import Swept
+from ...base import Swept
 from ..counters import FiringCounters
 from .base import AbstractOrder
 from .breadth_first import TAIL, BreadthFirst
@@ -29,9 +29,9 @@ class WellDistributed(AbstractOrder):
         """Lines of a pass."""
         fired = 0
         for block in range(BLOCKS):
-            sweep, largest = counters.due_between(counters.total * block // BLOCKS, counters.total * (block + 1) // BLOCKS)
-            if sweep is not None:
-                counters.fire(sweep, largest)
-                swept(sweep.total)
-                fired += sweep.total
+            wavefront, largest = counters.due_between(counters.total * block // BLOCKS, counters.total * (block + 1) // BLOCKS)
+            if wavefront is not None:
+                counters.fire(wavefront, largest)
+                swept(wavefront.total)
+                fired += wavefront.total
         return fired
