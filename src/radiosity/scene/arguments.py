@@ -3,7 +3,8 @@
 import numpy as np
 
 from ..errors import SceneError
-from .model import Back, Camera
+from .back import Back
+from .camera import Camera
 
 LARGEST = 1e30  # of emission, colours and texture coordinates: products and single precision copies of them are finite
 

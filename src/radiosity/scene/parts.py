@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import SceneError
-from .model import Back
+from .back import Back
 from .sampler import DEFAULT_SAMPLER, Sampler
 from .texture_memory import TextureMemory
 
