@@ -214,7 +214,7 @@ MISTAKES = (
     ),
     Mistake(
         "scene/formats/obj/tables.py",
-        '                if key == "o":\n                    name["g"] = ""\n',
+        '                    name["g"] = ""\n',
         "",
         ("test_formats_obj.py",),
         "a group goes on in the next object",
