@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -88,6 +89,7 @@ class ReadOptions:
         root: the folder outside which no file is read, resolved; None: any file may be.
         unit: metres, what the user's own .toml takes a length of 1 for.
         textures: how large images may be; it is used up while files are read.
+        read: reads another scene file by its suffix, for a file that names some; `scene.formats.read` hands itself over here.
     """
 
     max_reflectance: float = 0.95
@@ -96,6 +98,7 @@ class ReadOptions:
     root: Path | None = None
     unit: float = 1.0
     textures: TextureMemory = field(default_factory=TextureMemory)
+    read: Callable[[Path, "ReadOptions"], Any] | None = None
 
     def __post_init__(self):
         if not 0 < self.max_reflectance < 1:
