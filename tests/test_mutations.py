@@ -59,13 +59,12 @@ def missing(test: str) -> bool:
 
 
 def test_each_row_makes_one_mistake_in_its_file():
-    wrong = {}
+    wrong = []
     for mistake in MISTAKES:
         path = SOURCE / mistake.file
         found = faults(mistake, path.read_text(encoding="utf-8")) if path.is_file() else ["its file is not there"]
-        if found:
-            wrong[f"{mistake.file}: {mistake.why}"] = found
-    assert wrong == {}
+        wrong += [f"{mistake.file}: {mistake.why}: {fault}" for fault in found]
+    assert not wrong, "\n".join(wrong)
 
 
 def test_each_row_names_tests_that_there_are():
