@@ -1,4 +1,4 @@
-"""Parts with materials become one scene, and strangers' habits are named aloud."""
+"""Parts with materials become one scene; what is taken differently from the file is told."""
 
 from dataclasses import replace
 

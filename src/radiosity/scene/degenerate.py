@@ -1,4 +1,4 @@
-"""Faces without area."""
+"""Faces without area are found and left out."""
 
 import warnings
 

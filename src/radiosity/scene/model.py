@@ -154,7 +154,7 @@ class Scene:
 
     @cached_property
     def area(self) -> np.ndarray:
-        """(n_faces,) m², of one side."""
+        """(n_faces,) m²: area of one side."""
         _, first, second = self.frames
         return np.linalg.norm(np.cross(first, second), axis=1) * np.where(self.is_quad, 1.0, 0.5)
 
@@ -172,8 +172,10 @@ class Scene:
 
     @cached_property
     def centre(self) -> np.ndarray:
-        """(3,) float64 metres: where coordinates are measured from in single precision, see `scene.precision`. Of a scene without
-        area it is the middle of its box."""
+        """(3,) float64 metres: the origin of coordinates in single precision, see `scene.precision`.
+
+        The middle of the box where the scene has no area.
+        """
         if not self.area.sum() > 0:
             return self.bounds.mean(axis=0)
         origin, first, second = self.frames
@@ -181,18 +183,18 @@ class Scene:
 
     @cached_property
     def reach(self) -> float:
-        """Metres: the largest coordinate of a face about the centre."""
+        """The largest coordinate of a face about the centre, metres."""
         return float(np.abs(self.bounds - self.centre).max())
 
     @cached_property
     def plane_reach(self) -> np.ndarray:
-        """(n_faces,) metres, see `scene.precision.plane_reach`."""
+        """(n_faces,) metres: the size of the numbers that place each face's plane, see `scene.precision.plane_reach`."""
         corners = self.vertices[np.where(self.faces < 0, self.faces[:, :1], self.faces)] - self.centre
         return plane_reach(self.normal, corners)
 
     @cached_property
     def hash(self) -> str:
-        """SHA-256 over everything that a solution depends on."""
+        """SHA-256 of everything that a solution depends on."""
         digest = hashlib.sha256()
         for array in (
             self.vertices,
@@ -242,6 +244,6 @@ class Scene:
 
 
 def unit_normals(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n, 3) of faces with these edges, (n, 3) each."""
+    """(n, 3) unit normals of faces with these edges, (n, 3) each."""
     cross = np.cross(first, second)
     return cross / np.linalg.norm(cross, axis=1, keepdims=True)

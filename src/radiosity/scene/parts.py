@@ -1,4 +1,4 @@
-"""What the readers of files hand over: parts of surfaces with materials, and how to take them."""
+"""Parts of surfaces with materials, which readers of files make, and the options of reading."""
 
 import os
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from .texture_memory import TextureMemory
 
 @dataclass(frozen=True)
 class Material:
-    """Of one side, or of both. Bands are 1 (grey) or 3 numbers.
+    """What a face does to light. Bands are 1 (grey) or 3 numbers.
 
     Attributes:
         reflectance: diffuse reflectance, or None where the file gives no material.
@@ -72,6 +72,7 @@ class Part:
 
     @property
     def n_bands(self) -> int:
+        """Number of bands, 1 or 3."""
         m = self.material
         values = [m.reflectance, m.emission, m.back_reflectance, m.back_emission]
         arrays = [self.color, self.emission_color, self.texture, self.emission_texture]
@@ -80,7 +81,7 @@ class Part:
 
 @dataclass(frozen=True)
 class ReadOptions:
-    """How to take a file.
+    """The options of reading a file.
 
     Attributes:
         max_reflectance: larger reflectances are brought down to this, with a warning; but not those of the user's own .toml.
@@ -105,8 +106,9 @@ class ReadOptions:
             raise SceneError(f"max_reflectance is {self.max_reflectance}; it must be above 0 and strictly below 1, such as 0.95")
 
     def admit(self, file: Path, source) -> Path:
-        """A file that the scene file ``source`` asks for, if it lies in the scene's folder: a scene of strangers is not to read
-        what else there is on this machine. Links are followed first.
+        """A file that the scene file ``source`` asks for, if it lies in the scene's folder. Links are followed first.
+
+        A scene of a stranger must not read other files of this machine.
 
         Raises:
             SceneError: it lies outside.

@@ -1,4 +1,4 @@
-"""What single precision holds apart where a point lies: the centre of coordinates, and the size of an ulp about it.
+"""The resolution of single precision: the centre of coordinates, and the size of an ulp about it.
 
 Lines are traced in single precision, about the scene's centre. The centre is a median, so that an object far away leaves the
 precision of all others as it was; and what is rounded at a point depends on the numbers near it, not on how far the scene
@@ -27,7 +27,7 @@ def median_centre(centroid: np.ndarray, area: np.ndarray) -> np.ndarray:
 
 
 def plane_reach(normal: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(m,) float64: the size of the numbers that place a face's plane: what their rounding moves it by, over an ulp of one.
+    """(m,) float64: the size of the numbers that place a face's plane: its shift by their rounding, over an ulp of one.
 
     Of a face that stands across an axis it is the distance along that axis, however far the face reaches.
 
