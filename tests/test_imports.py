@@ -13,7 +13,7 @@ import radiosity
 
 # Being mended: this set goes.
 KNOWN_UP = {
-    ("algorithms.matrix.process", "run.progress"),
+    ("algorithms.matrix.algorithm", "run.progress"),
     ("factors.line_rows", "algorithms.iterations.shooter"),
     ("factors.lines", "algorithms.iterations.shooter"),
 }
@@ -55,7 +55,7 @@ def test_every_floor_is_there_and_every_folder_has_one(ours):
 TABLES = {  # modules that are imported by name: a table of their names and, where they stand in its keys, a word about it
     "": ("_HOMES", "keys"),
     "algorithms.firing.orders": ("FIRED", "values"),
-    "algorithms.table": ("PROCESSES", "values"),
+    "algorithms.table": ("ALGORITHMS", "values"),
     "factors.solvers": ("SOLVERS", "keys"),
     "factors.sources": ("ROWS", "values"),
     "image": ("FORMATS", "values"),
