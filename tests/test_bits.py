@@ -51,6 +51,13 @@ def test_patches_owe_what_the_contract_says(patches):
     assert missed[0].min() > 0  # through the opening
 
 
+def test_replicates_and_patches_have_independent_phases():
+    phase = phases(5, 3, 10_000) * 2.0**-32
+    # correlations of independent numbers have a standard error of 0.01; 5 of them
+    assert np.abs(np.corrcoef(phase) - np.eye(3)).max() < 0.05
+    assert np.abs([np.corrcoef(row[1:], row[:-1])[0, 1] for row in phase]).max() < 0.05
+
+
 def test_quanta_replay_a_run_bit_for_bit():
     for scene in ("room", "cornell-box"):
         patches = rd.subdivide(rd.load_scene(scene), cells=5)

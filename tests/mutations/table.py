@@ -102,17 +102,19 @@ MISTAKES = (
         ("test_intervals.py::test_a_target_means_the_surface_of_that_name_or_else_a_pattern",),
         "a surface's name is taken for a pattern",
     ),
-    Mistake("solution/store.py", '    "patch_size",\n', "", ("test_round_trip.py",), "a field of the scene is not saved"),
-    Mistake("solution/store.py", 'scale=described["scale"], ', "", ("test_round_trip.py",), "a field of the scene is not loaded"),
+    Mistake("solution/npz.py", '    "patch_size",\n', "", ("test_round_trip.py",), "a field of the scene is not saved"),
     Mistake(
-        "solution/store.py",
+        "solution/loading.py", 'scale=described["scale"],', "", ("test_round_trip.py",), "a field of the scene is not loaded"
+    ),
+    Mistake(
+        "solution/loading.py",
         "Camera(tuple(origin), tuple(target), tuple(up), **rest)",
         'Camera(tuple(origin), tuple(target), tuple(up), rest["fov"])',
         ("test_round_trip.py",),
         "a camera loses its size",
     ),
     Mistake(
-        "solution/store.py",
+        "solution/loading.py",
         "limit = np.inf if facts",
         "limit = np.inf if True or facts",
         ("test_round_trip.py",),
@@ -212,7 +214,7 @@ MISTAKES = (
     ),
     Mistake(
         "scene/formats/obj/tables.py",
-        '                if key == "o":\n                    name["g"] = ""\n',
+        '                    name["g"] = ""\n',
         "",
         ("test_formats_obj.py",),
         "a group goes on in the next object",
@@ -449,8 +451,8 @@ MISTAKES = (
     ),
     Mistake(
         "problem/quanta.py",
-        "np.random.Philox(stream(seed, replicate, 0))",
-        "np.random.Philox(stream(seed, 0, 0))",
+        "stream(seed, replicate, Purpose.PHASE)",
+        "stream(seed, 0, Purpose.PHASE)",
         ("test_bits.py", "test_solve.py"),
         "replicates share their phases",
     ),
@@ -1433,8 +1435,8 @@ MISTAKES = (
     ),
     Mistake(
         "factors/hemicube.py",
-        "stream(self.seed, self.replicate, TURN)",
-        "stream(self.seed, 0, TURN)",
+        "stream(self.seed, self.replicate, Purpose.HEMICUBE)",
+        "stream(self.seed, 0, Purpose.HEMICUBE)",
         ("test_hemicube.py", "test_baselines.py"),
         "hemicubes of all replicates are turned alike",
     ),
@@ -1454,8 +1456,8 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/walks/particles.py",
-        "contract.stream(engine.seed, replicate, LATER)",
-        "contract.stream(engine.seed, 0, LATER)",
+        "stream(engine.seed, replicate, Purpose.LATER_SEGMENTS)",
+        "stream(engine.seed, 0, Purpose.LATER_SEGMENTS)",
         ("test_walks_bits.py", "test_walks_unbiased.py"),
         "later legs of all replicates share their randomisation",
     ),

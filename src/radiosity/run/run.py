@@ -16,7 +16,8 @@ from ..errors import DeviceError, MethodError, RadiosityWarning, result_kept
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..problem.model import Problem
-from ..solution.model import NOT_REACHED, Solution
+from ..solution.model import Solution
+from ..solution.status import NOT_REACHED
 from ..solution.without_results import without_results
 from ..tally import unmet
 from ..tracing.geometry import TRACING, Geometry
