@@ -528,8 +528,8 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/walks/fractions.py",
-        "self._count(leg - 1) / after",
-        "self._count(leg - 1) / self.counts[0]",
+        "self._count(segment - 1) / after",
+        "self._count(segment - 1) / self.counts[0]",
         ("test_axis_estimator.py",),
         "a share is taken of all walks",
     ),
@@ -953,7 +953,7 @@ MISTAKES = (
         "kibibytes are bytes",
     ),
     Mistake(
-        "algorithms/firing/state.py",
+        "run/same.py",
         'SAME = ("scene", "cut", "seed"',
         'SAME = ("scene", "seed"',
         ("test_checkpoint.py", "test_solve.py"),
@@ -1003,7 +1003,7 @@ MISTAKES = (
     ),
     Mistake(
         "factors/line_rows.py",
-        "            self.shooter.engine.fired = upload(types.UInt32, np.zeros(total, np.uint32))",
+        "            self.shooter.fired = upload(types.UInt32, np.zeros(total, np.uint32))",
         "            pass",
         ("test_baselines.py::test_rows_that_are_forgotten_change_nothing",),
         "rows made again have other lines",
@@ -1215,15 +1215,15 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/firing/residue.py",
-        "return owed, 2 * np.round(",
-        "return owed, np.round(",
+        "return target_counts, 2 * np.round(",
+        "return target_counts, np.round(",
         ("test_residue.py",),
         "of bands half the residue is sent",
     ),
     Mistake(
         "algorithms/firing/residue.py",
-        "np.cumsum(np.minimum(owed, ONE), dtype=np.uint64)",
-        "np.cumsum(owed, dtype=np.uint64)",
+        "np.cumsum(np.minimum(target_counts, ONE), dtype=np.uint64)",
+        "np.cumsum(target_counts, dtype=np.uint64)",
         ("test_residue.py",),
         "lines begin where most was sent already",
     ),
@@ -1243,7 +1243,7 @@ MISTAKES = (
     ),
     Mistake(
         "run/shortfall.py",
-        "landed = int(snapshot.arrivals[run.error_target.rows].sum())",
+        "landed = int(snapshot.arrivals[target.rows].sum())",
         "landed = int(snapshot.arrivals.sum())",
         ("test_targets.py",),
         "lines that landed elsewhere are counted",
@@ -1421,8 +1421,8 @@ MISTAKES = (
     ),
     Mistake(
         "tracing/first_hits.py",
-        "distance / tree.scale, np.inf",
-        "distance * tree.scale, np.inf",
+        "distance / bvh.scale, np.inf",
+        "distance * bvh.scale, np.inf",
         ("test_check.py", "test_image_camera.py", "test_far_away.py"),
         "distances are in the caster's units, squared",
     ),
@@ -1456,8 +1456,8 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/walks/particles.py",
-        "stream(engine.seed, replicate, Purpose.LATER_SEGMENTS)",
-        "stream(engine.seed, 0, Purpose.LATER_SEGMENTS)",
+        "stream(tracer.seed, replicate, Purpose.LATER_SEGMENTS)",
+        "stream(tracer.seed, 0, Purpose.LATER_SEGMENTS)",
         ("test_walks_bits.py", "test_walks_unbiased.py"),
         "later legs of all replicates share their randomisation",
     ),
@@ -1504,7 +1504,7 @@ MISTAKES = (
         "a few far vertices decide that nothing lies beyond a face",
     ),
     Mistake(
-        "algorithms/iterations/shooter.py",
+        "tally/shooter.py",
         'column) for column in state.get("fired_apart", state["fired"][None])]',
         'state["fired"]) for _ in self._fired]',
         ("test_iteration_bits.py", "test_iteration.py"),
