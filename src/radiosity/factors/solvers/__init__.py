@@ -5,16 +5,10 @@ from importlib import import_module
 import numpy as np
 
 from ...errors import MethodError
+from ...method.schemes import SOLVERS
 from .model import Solved, System
 
 __all__ = ["SOLVERS", "Solved", "System", "solve"]
-
-SOLVERS = {
-    "jacobi": "all patches at once from the last iterate",
-    "gauss-seidel": "patch after patch, from the newest values",
-    "southwell": "always the patch with the most unshot power, which is shot to all others",
-    "conjugate-gradients": "conjugate gradients on the symmetric form of the equation; reciprocal form factors only",
-}
 
 
 def solve(name: str, system: System) -> Solved:
