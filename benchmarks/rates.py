@@ -12,7 +12,7 @@ from radiosity.algorithms.firing.counters import Engine
 from radiosity.device.backend import choose, entered
 from radiosity.problem.quanta import Source
 from radiosity.tracing.geometry import Geometry
-from radiosity.tracing.lines import local_line
+from radiosity.tracing.hits import local_line
 
 LINES = 1 << 22  # of a sweep
 TURNS = 7
@@ -50,18 +50,18 @@ def _rays(engine: Engine, lines: int):
     """The rays of the first sweep, in memory, in the order in which they are fired."""
     types = engine.types
     engine.set_quanta(lines)
-    sweep, largest = engine.due()
+    wavefront, largest = engine.due()
     bits = engine.numbers.bits_for(largest)
     parts, total = [], 0
-    for chunk in (chunk for batch in engine.batches(sweep) for chunk in batch.chunks(types)):
-        number, index, record = chunk.read(types)
-        points = engine.points(number, index, dr.zeros(types.UInt32, chunk.width), record, bits)
+    for launch in (launch for batch in engine.batches(wavefront) for launch in batch.launches(types)):
+        number, index, record = launch.read(types)
+        points = engine.points(number, index, dr.zeros(types.UInt32, launch.width), record, bits)
         ray = local_line(engine.geometry, record, points)
         dr.eval(ray)
         parts.append(ray)
-        total += chunk.width
+        total += launch.width
     dr.sync_thread()
-    engine.fire(sweep, largest)
+    engine.fire(wavefront, largest)
     return parts, total
 
 
@@ -69,7 +69,7 @@ def _bare(geometry: Geometry, rays) -> None:
     with entered(geometry.device) as mi:
         for origin, direction in rays:
             ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
-            hit = geometry.tree.caster.ray_intersect_preliminary(ray, coherent=False)
+            hit = geometry.bvh.scene.ray_intersect_preliminary(ray, coherent=False)
             dr.eval(hit.t, hit.prim_index, hit.prim_uv)
 
 

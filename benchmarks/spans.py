@@ -64,9 +64,9 @@ def measure(patches: rd.Patches, turns: int = TURNS, lines: int = LINES) -> tupl
     local, rates, each = [], {kind: [] for kind in KINDS}, {}
     for turn in range(turns + 1):
         engine.set_quanta((turn + 1) * lines)
-        sweep, largest = engine.due()
-        assert sweep is not None
-        seconds, _ = _time(lambda sweep=sweep, largest=largest: engine.fire(sweep, largest))
+        wavefront, largest = engine.due()
+        assert wavefront is not None
+        seconds, _ = _time(lambda wavefront=wavefront, largest=largest: engine.fire(wavefront, largest))
         found = {}
         for kind, source in kinds.items():
             took, pairs = _time(lambda source=source, turn=turn: source.draw(0, turn * lines, lines))

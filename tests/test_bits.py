@@ -6,7 +6,7 @@ import pytest
 import radiosity as rd
 from radiosity.algorithms.firing import counters as firing
 from radiosity.device.backend import choose, upload
-from radiosity.problem.quanta import Source, owed, phases
+from radiosity.problem.quanta import Source, phases, target_counts
 from radiosity.run.budget import first_stage
 from radiosity.tracing import lanes
 
@@ -46,7 +46,7 @@ def test_seed_matters_and_replicates_do_not(patches):
 def test_patches_owe_what_the_contract_says(patches):
     arrivals, fired, missed = counters(patches)
     source = Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0])
-    assert np.array_equal(fired, owed(source, QUANTA, arrivals, phases(5, 3, len(patches))))
+    assert np.array_equal(fired, target_counts(source, QUANTA, arrivals, phases(5, 3, len(patches))))
     assert np.array_equal(fired.sum(axis=1), arrivals.sum(axis=1) + missed.sum(axis=0))
     assert missed[0].min() > 0  # through the opening
 

@@ -133,7 +133,7 @@ def test_counts_are_those_of_a_dictionary(random):
 
 
 def test_too_many_pairs_are_refused_or_end_the_run(monkeypatch):
-    from radiosity.algorithms.matrix import process as matrix
+    from radiosity.algorithms.matrix import algorithm as matrix
 
     patches = rd.subdivide(rd.load_scene("room"), cells=6)
     monkeypatch.setattr(matrix, "LIMIT", 1000)

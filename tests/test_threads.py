@@ -17,7 +17,7 @@ from radiosity.diagnostics.leaks import follow
 from radiosity.factors.missed import missed
 from radiosity.image import render
 from radiosity.run.run import Run
-from radiosity.tracing.caster import first_hits
+from radiosity.tracing.first_hits import first_hits
 from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.global_lines.spans import Spans
 from radiosity.tracing.visibility import Polygons, visible_share

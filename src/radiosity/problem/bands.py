@@ -116,11 +116,11 @@ class BandTally:
         patch = numbers - engine.replicate(numbers) * engine.n_opaque
         quanta, fired = dr.opaque(wide, float(engine.quanta)), dr.gather(types.UInt32, engine.fired, numbers)
         emitted = [dr.gather(wide, share, patch) for share in self.shares]
-        owed = dr.fma(functools.reduce(dr.maximum, emitted), quanta, fraction(engine.rho) * wide(arrivals)) - wide(fired)
+        target_counts = dr.fma(functools.reduce(dr.maximum, emitted), quanta, fraction(engine.rho) * wide(arrivals)) - wide(fired)
         for g, (share, rho) in enumerate(zip(emitted, self.rhos, strict=True)):
             received, sent = (dr.gather(types.UInt64, column, numbers * self.n + g) for column in (self.received, self.sent))
             power = dr.fma(share, quanta * QUANTUM, fraction(rho) * wide(received)) - wide(sent)
-            carried = dr.select(owed > 0, dr.clip(power / owed, 0, QUANTUM), 0)
+            carried = dr.select(target_counts > 0, dr.clip(power / target_counts, 0, QUANTUM), 0)
             dr.scatter(self.weights, types.UInt32(dr.floor(carried + 0.5)), places * self.n + g)
 
     def carried(self, types, chunk) -> list:

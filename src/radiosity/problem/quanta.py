@@ -90,7 +90,7 @@ def phases(seed: int, replicates: int, n_patches: int) -> np.ndarray:
     return result
 
 
-def owed(source: Source, quanta: int, arrivals: np.ndarray, phase: np.ndarray) -> np.ndarray:
+def target_counts(source: Source, quanta: int, arrivals: np.ndarray, phase: np.ndarray) -> np.ndarray:
     """Contract 2 on the host, (..., n_patches) uint64: for the books and for tests."""
     whole, fraction = source.emitted(quanta)
     low = source.rho.astype(np.uint64) * arrivals.astype(np.uint64) + fraction.astype(np.uint64) + phase.astype(np.uint64)

@@ -31,7 +31,7 @@ def warn_of_target(run: "Run", snapshot: Snapshot) -> None:
     """Tell of an error that was not reached: what is known of it, and what ended the run."""
     budget, whose = run.budget, run.error_of or "the scene"
     if math.isnan(run.teller.bound):
-        landed = int(snapshot.arrivals[run.target.rows].sum())
+        landed = int(snapshot.arrivals[run.error_target.rows].sum())
         known = f"after {snapshot.lines:,} lines it cannot be told yet ({landed:,} lines landed there)"
     else:
         known = f"after {snapshot.lines:,} lines it is {run.teller.bound:.2%} or less in 95 % of runs"

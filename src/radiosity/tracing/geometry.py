@@ -14,8 +14,8 @@ from ..patches.model import Patches
 from ..pieces import pieces
 from ..scene.model import Back, Scene, unit_normals
 from ..scene.precision import EPSILON, plane_reach
+from .bvh import Bvh, bvh, primitives
 from .ties import Ties
-from .tree import Tree, primitives, tree
 
 OFFSET = 8 * EPSILON  # of the largest number that places a point or its plane: lines begin this far in front of it
 NEAR = 1.0  # of 2^20 that the scene reaches to: smaller numbers count as this, or lines would stay where all are zero
@@ -51,13 +51,13 @@ class Geometry:
 
     def prepare_hits(self) -> None:
         """Of that, what hits are read from."""
-        _ = self.tree, self.hit_records, self.primitive_faces, self.offsets
+        _ = self.bvh, self.hit_records, self.primitive_faces, self.offsets
         if self.ties is not None:
             self.ties.prepare()
 
     @cached_property
-    def tree(self) -> Tree:
-        return tree(self.scene, self.device)
+    def bvh(self) -> Bvh:
+        return bvh(self.scene, self.device)
 
     @cached_property
     def ties(self) -> Ties | None:
@@ -86,7 +86,7 @@ class Geometry:
     @cached_property
     def frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Origin and edges of the faces in the caster's coordinates, float64 from its own vertices."""
-        scene, vertices = self.scene, self.tree.vertices.astype(np.float64)
+        scene, vertices = self.scene, self.bvh.vertices.astype(np.float64)
         origin = vertices[scene.faces[:, 0]]
         first = vertices[scene.faces[:, 1]] - origin
         second = vertices[np.where(scene.is_quad, scene.faces[:, 3], scene.faces[:, 2])] - origin

@@ -152,7 +152,7 @@ class Ties:
         """In a kernel: what lines meet where the caster has found a face that shares its plane.
 
         Args:
-            hit: a `lines.Landing`, of whose faces those ``flagged`` share a plane.
+            hit: a `lines.Hit`, of whose faces those ``flagged`` share a plane.
             beyond: also what a line that came from the other side would meet there.
 
         Returns:

@@ -18,11 +18,11 @@ from ...problem.bands import BandGroups, BandTally
 from ...problem.quanta import LIMIT, Source, phases
 from ...sampling.numbers import ready
 from ...sampling.streams import Purpose, stream
-from ...tally.landings import DENSE, AbstractLandings, landings
-from ...tracing.departure import place_number
+from ...tally.hit_tally import DENSE, AbstractHitTally, hit_tally
 from ...tracing.geometry import Geometry
-from ...tracing.lanes import PIECE, Batch, Chunk, Sweep, boxes_for, sums
-from ...tracing.lines import land, local_line, local_lines, patch_of
+from ...tracing.hits import first_hit, local_line, local_lines, patch_of
+from ...tracing.lanes import PIECE, Batch, Launch, Wavefront, boxes_for, sums
+from ...tracing.ray_generation import place_number
 
 MANY = 4  # at least one in so many patches was landed on: all are looked through
 FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
@@ -54,7 +54,7 @@ class Engine:
         self.n_opaque, self.magic = dr.opaque(u32, self.n), dr.opaque(u32, (2**32 - 1) // self.n)
         self.by_patch, self.own_lines = method.randomisation == "by-patch", dr.opaque(u32, own_lines(self.n))
         self.quanta = 0
-        self.everywhere, self.owes = True, False
+        self.everywhere, self.has_due = True, False
         self.swept = 0  # lines of the sweeps so far
         self.bands = BandTally(self, groups) if groups is not None and groups.n_groups > 1 else None
 
@@ -64,7 +64,7 @@ class Engine:
             raise MethodError(f"quanta may only grow within a run ({self.quanta} to {quanta})")
         whole, fraction = self.source.emitted(quanta)
         self.whole, self.fraction = (upload(self.types.UInt32, a) for a in (whole, fraction))
-        self.quanta, self.everywhere, self.owes = quanta, True, True
+        self.quanta, self.everywhere, self.has_due = quanta, True, True
 
     def counters(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Arrivals and fired lines, (replicates, n_patches) uint32, and escaped and lost lines, (2, replicates)."""
@@ -95,7 +95,7 @@ class Engine:
         self.everywhere, self.landed = False, None
         return numbers
 
-    def owed(self, numbers, arrivals):
+    def target_counts(self, numbers, arrivals):
         """UInt32: lines that each of the patch numbers (None: all of them) owes in all after so many arrivals."""
         u32, wide = self.types.UInt32, self.types.UInt64
         if numbers is None and self.replicates == 1:
@@ -114,20 +114,20 @@ class Engine:
             return dr.gather(self.types.UInt32, column, numbers)
         return column if dr.width(column) == self.total else dr.reshape(self.types.UInt32, column, self.total, shrink=True)
 
-    def due(self) -> tuple[Sweep | None, int]:
+    def due(self) -> tuple[Wavefront | None, int]:
         """What is owed now, and the largest line number among it."""
         numbers = self.candidates()
-        sweep, largest = self._sweep(numbers, 0, self.total if numbers is None else dr.width(numbers))
-        self.owes = sweep is not None
-        if not self.owes and self.bands is not None:
+        wavefront, largest = self._sweep(numbers, 0, self.total if numbers is None else dr.width(numbers))
+        self.has_due = wavefront is not None
+        if not self.has_due and self.bands is not None:
             self.bands.rest()
-        return sweep, largest
+        return wavefront, largest
 
-    def due_between(self, low: int, high: int) -> tuple[Sweep | None, int]:
+    def due_between(self, low: int, high: int) -> tuple[Wavefront | None, int]:
         """As `due`, of the patch numbers from ``low`` to below ``high`` alone; in grey scenes only."""
         return self._sweep(None, low, high - low)
 
-    def _sweep(self, numbers, low: int, size: int) -> tuple[Sweep | None, int]:
+    def _sweep(self, numbers, low: int, size: int) -> tuple[Wavefront | None, int]:
         """Of patch numbers, or of so many from ``low`` on. Bands go through all of them in pieces, for the sake of memory, and
         keep arrivals in place of counts."""
         u32, counts = self.types.UInt32, None
@@ -145,14 +145,14 @@ class Engine:
             if self.bands is not None:
                 self.bands.weigh(self, piece, places, arrivals, counts)
         lines = int(total[0])
-        return (Sweep(numbers, low, size, lines, counts if keep else None), int(largest[0])) if lines else (None, 0)
+        return (Wavefront(numbers, low, size, lines, counts if keep else None), int(largest[0])) if lines else (None, 0)
 
     def _count(self, numbers, arrivals, total, largest):
         """In a kernel: what patch numbers owe now; its sum, and the largest line number."""
-        types, owed = self.types, self.owed(numbers, arrivals)
-        counts, none = owed - self._read(self.fired, numbers), dr.zeros(types.UInt32, dr.width(arrivals))
+        types, target_counts = self.types, self.target_counts(numbers, arrivals)
+        counts, none = target_counts - self._read(self.fired, numbers), dr.zeros(types.UInt32, dr.width(arrivals))
         dr.scatter_add(total, types.UInt64(counts), none, mode=dr.ReduceMode.Expand)
-        dr.scatter_reduce(dr.ReduceOp.Max, largest, owed, none, mode=dr.ReduceMode.Expand)
+        dr.scatter_reduce(dr.ReduceOp.Max, largest, target_counts, none, mode=dr.ReduceMode.Expand)
         return counts
 
     def record(self, number):
@@ -169,49 +169,49 @@ class Engine:
 
     # ---- firing ----------------------------------------------------------------------------------------------------
 
-    def fire(self, sweep: Sweep, largest: int) -> None:
+    def fire(self, wavefront: Wavefront, largest: int) -> None:
         """Trace all lines of a sweep and count where they land."""
         types = self.types
         bits = self.numbers.bits_for(largest)
-        few, everywhere = sweep.total <= FEW, sweep.total > DENSE * self.total
-        tally, landed = landings(self, sweep.total, flags=not few and not everywhere), []
-        for batch in self.batches(sweep, () if few else self._shifts(sweep)):
+        few, everywhere = wavefront.total <= FEW, wavefront.total > DENSE * self.total
+        tally, landed = hit_tally(self, wavefront.total, flags=not few and not everywhere), []
+        for batch in self.batches(wavefront, () if few else self._shifts(wavefront)):
             boxes = boxes_for(types, batch.counts) if self.method.coherent else None
-            for chunk in batch.chunks(types):
-                places = self._fire(chunk, 32 if few else bits, boxes, few, tally)
+            for launch in batch.launches(types):
+                places = self._fire(launch, 32 if few else bits, boxes, few, tally)
                 if few:
-                    landed.append(frozen(places)[: chunk.lanes])
+                    landed.append(frozen(places)[: launch.lanes])
             dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
             if self.bands is not None:
                 self.bands.count_fired(self, batch)
             dr.eval(self.fired)
         tally.settle()
-        self.swept += sweep.total
+        self.swept += wavefront.total
         self.everywhere, self.landed = everywhere, np.concatenate(landed) if few else None
 
-    def batches(self, sweep: Sweep, shifts: tuple[int, ...] = ()) -> Iterator[Batch]:
+    def batches(self, wavefront: Wavefront, shifts: tuple[int, ...] = ()) -> Iterator[Batch]:
         """Of a sweep, of 2^shift lines a lane."""
-        return sweep.batches(self.types, self._owed_before, self.fired, self.record, shifts)
+        return wavefront.batches(self.types, self._target_counts_before, self.fired, self.record, shifts)
 
-    def _owed_before(self, numbers):
+    def _target_counts_before(self, numbers):
         """Lines that patch numbers owed in all when the sweep was fixed, where it keeps no counts: bands know."""
         assert self.bands is not None
-        return self.owed(numbers, dr.gather(self.types.UInt32, self.bands.arrivals_before, numbers))
+        return self.target_counts(numbers, dr.gather(self.types.UInt32, self.bands.arrivals_before, numbers))
 
-    def _shifts(self, sweep: Sweep) -> tuple[int, ...]:
+    def _shifts(self, wavefront: Wavefront) -> tuple[int, ...]:
         """Lines of a lane: what those of a patch have in common is found once for all of them. It takes a kernel more to compile,
         which short runs do without; many threads, and a GPU more so, want more lanes than that would leave."""
         cpu = self.geometry.device.name == "cpu"
-        many = cpu and not self.method.coherent and min(sweep.total, self.swept) >= MUCH * dr.thread_count()
+        many = cpu and not self.method.coherent and min(wavefront.total, self.swept) >= MUCH * dr.thread_count()
         return SHIFTS if many else ()
 
-    def _fire(self, chunk: Chunk, bits: int, boxes, few: bool, tally: AbstractLandings):
+    def _fire(self, launch: Launch, bits: int, boxes, few: bool, tally: AbstractHitTally):
         """One launch. Of few lines, the slots they land in."""
         types = self.types
-        number, first, record = chunk.read(types, boxes)
+        number, first, record = launch.read(types, boxes)
         replicate = self._replicate(number)
         lines = local_lines(self.geometry, record)
-        powers = [] if self.bands is None else self.bands.carried(types, chunk)
+        powers = [] if self.bands is None else self.bands.carried(types, launch)
 
         def fire(numbers, active):
             landed = self._land(*lines(numbers), replicate, boxes is not None, active)
@@ -223,15 +223,15 @@ class Engine:
             return (turn + 1,)
 
         landed = None
-        if not chunk.batch.several:
-            landed = fire(self.points(number, first, replicate, record, bits), chunk.mask(types, always=few))
+        if not launch.batch.several:
+            landed = fire(self.points(number, first, replicate, record, bits), launch.mask(types, always=few))
         else:
             points = self.numbers.in_turn(first, *self._stream(number, replicate, record), bits, 1 << max(SHIFTS))
-            count = chunk.lines(types, first)
+            count = launch.lines(types, first)
             loop((types.UInt32(0),), lambda turn: turn < count, turn_by_turn)
         if few:
             dr.schedule(landed)
-        with shared(chunk.lanes):
+        with shared(launch.lanes):
             dr.eval(*tally.arrays())
         return landed
 
@@ -242,7 +242,7 @@ class Engine:
         return self._land(*local_line(self.geometry, record, points), replicate, False, True)
 
     def _land(self, origin, direction, replicate, coherent: bool, active):
-        return self.slot(land(self.geometry, origin, direction, coherent=coherent, active=active), replicate)
+        return self.slot(first_hit(self.geometry, origin, direction, coherent=coherent, active=active), replicate)
 
     def land_in(self, line, replicate, active):
         """The slot of ``arrivals`` where lines land, from their origins and directions."""

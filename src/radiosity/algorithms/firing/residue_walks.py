@@ -18,8 +18,8 @@ from ...problem.model import Problem
 from ...sampling.numbers import WORDS
 from ...sampling.numbers.random import philox
 from ...sampling.streams import Purpose, stream
-from ...tracing.lines import local_line
-from ..process import State
+from ...tracing.hits import local_line
+from ..base import State
 from .residue import Starts
 
 LEAST = QUANTUM // 2  # 2^30

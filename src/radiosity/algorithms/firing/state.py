@@ -27,7 +27,7 @@ def capture(engine) -> dict[str, np.ndarray]:
     state["received_missed"] = received[split:].reshape(2, engine.replicates, bands.n)
     state["sent"] = frozen(bands.sent).reshape(*shape, bands.n)
     state["fired_power"] = frozen(bands.fired).reshape(bands.n, engine.replicates)
-    if engine.owes:
+    if engine.has_due:
         state["within"] = np.array(True)
     return state
 

@@ -12,10 +12,10 @@ from ...method.model import Method
 from ...problem.bands import QUANTUM, BandGroups
 from ...problem.model import Problem
 from ...tracing.geometry import Geometry
+from ..base import State, Swept
 from ..firing import state as counters
 from ..firing.counters import Engine
 from ..firing.orders import run as fire_all
-from ..process import State, Swept
 
 PREFIX = "shot_"
 APART = 1 << 64  # added to the seed: local lines do not repeat the numbers of global ones

@@ -17,9 +17,9 @@ from ...device.backend import frozen, upload
 from ...method import Method
 from ...problem.quanta import Source
 from ...sampling.streams import Purpose, stream
-from ...tally.landings import DENSE
+from ...tally.hit_tally import DENSE
 from ...tracing.geometry import Geometry
-from ...tracing.lanes import Batch, Chunk
+from ...tracing.lanes import Batch, Launch
 from ..firing.counters import FEW, Engine
 
 Pairs = Callable[[np.ndarray, np.ndarray], None]
@@ -89,17 +89,17 @@ class Shooter:
         # launches of few lines share one kernel, whatever their indices
         bits = engine.numbers.bits_for(int(largest[0]))
         mode = dr.ReduceMode.Expand if batch.total > DENSE * self.total else dr.ReduceMode.Direct
-        for chunk in batch.chunks(types):
-            self._fire(chunk, 32 if batch.total <= FEW else bits, weights, ends, pairs, mode)
+        for launch in batch.launches(types):
+            self._fire(launch, 32 if batch.total <= FEW else bits, weights, ends, pairs, mode)
         dr.scatter(engine.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
         dr.eval(engine.fired)
         return batch.total
 
-    def _fire(self, chunk: Chunk, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode) -> None:
+    def _fire(self, launch: Launch, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode) -> None:
         types, engine = self.types, self.engine
-        number, index, record = chunk.read(types)
+        number, index, record = launch.read(types)
         landed = engine.trace(number, index, record, bits)
-        real = chunk.mask(types)
+        real = launch.mask(types)
         dr.scatter_add(engine.arrivals, types.UInt32(1), landed, active=real, mode=mode)
         for g in range(self.groups):
             here, there = number * self.groups + g, landed * self.groups + g
@@ -114,7 +114,7 @@ class Shooter:
             dr.schedule(number, landed)
         dr.eval(engine.arrivals, self.received)
         if pairs is not None:
-            pairs(frozen(number)[: chunk.lanes], frozen(landed)[: chunk.lanes])
+            pairs(frozen(number)[: launch.lanes], frozen(landed)[: launch.lanes])
 
     def _add(self, value, index, real, mode) -> None:
         dr.scatter_add(self.received, value, index, active=real, mode=mode)

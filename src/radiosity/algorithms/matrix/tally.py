@@ -11,7 +11,7 @@ from ...factors.solve import irradiance, of_both_ways, of_own_light, of_rows
 from ...problem.model import Problem
 from ...solution.books import by_difference
 from ...tally.unmet import bias, means, sides
-from ..process import AbstractMeanTally, State
+from ..base import AbstractMeanTally, State
 
 
 class MatrixTally(AbstractMeanTally):

@@ -72,14 +72,16 @@ class Fractions:
         here = replicate * engine.n_opaque + patch
         return here, engine.record(here)
 
-    def go_on(self, index, leg: int):
+    def go_on(self, index, segment: int):
         """Mask: walks that go on at their ``leg``-th landing."""
-        return index - dr.opaque(self.engine.types.UInt32, self.begun) <= dr.opaque(self.engine.types.UInt32, self._count(leg))
+        return index - dr.opaque(self.engine.types.UInt32, self.begun) <= dr.opaque(
+            self.engine.types.UInt32, self._count(segment)
+        )
 
-    def factor(self, leg: int):
+    def factor(self, segment: int):
         """Float: how many walks each of those stands for."""
-        after = self._count(leg)
-        return dr.opaque(self.engine.types.Float, self._count(leg - 1) / after if after else 0.0)
+        after = self._count(segment)
+        return dr.opaque(self.engine.types.Float, self._count(segment - 1) / after if after else 0.0)
 
-    def _count(self, leg: int) -> int:
-        return self.counts[leg] if leg < len(self.counts) else 0
+    def _count(self, segment: int) -> int:
+        return self.counts[segment] if segment < len(self.counts) else 0

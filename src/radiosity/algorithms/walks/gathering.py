@@ -18,12 +18,12 @@ from ...errors import MethodError
 from ...problem.model import Problem
 from ...solution.books import by_difference, exact_sum
 from ...tally.unmet import bias, means, sides
-from ...tracing.lanes import Batch, Chunk
+from ...tracing.lanes import Batch, Launch
+from ..base import AbstractMeanTally, State
 from ..firing.counters import Engine
-from ..process import AbstractMeanTally, State
-from .births import Births
-from .flock import Flock, Legs
-from .launches import AbstractLaunches
+from .launches import AbstractWalks
+from .particles import ParticleBank, PathSegments
+from .source_sampling import SourceSampling
 
 UNIT = 2.0**24  # fixed point units of the largest emission of a group
 
@@ -39,14 +39,14 @@ class Visit:
     alive: Any
 
 
-class Gathering(AbstractLaunches):
+class Gathering(AbstractWalks):
     """Sums of the radiosity met, and numbers of lines that left each patch."""
 
     def _prepare(self) -> None:
         self.engine = Engine(self.geometry, self.problem.source, self.method, self.seed, self.replicates)
         self.types = types = self.engine.types
-        self.legs = Legs(self.engine, continuous=self.method.equation == "continuous")
-        self.births = Births.of_area(self.problem, self.seed, self.replicates)
+        self.segments = PathSegments(self.engine, continuous=self.method.equation == "continuous")
+        self.source_sampling = SourceSampling.of_area(self.problem, self.seed, self.replicates)
         groups = self.problem.groups
         self.n, top = groups.n_groups, groups.reflectance.max(axis=1)
         self.survival = upload(types.Float, top.astype(np.float32))
@@ -56,47 +56,47 @@ class Gathering(AbstractLaunches):
         self.met = dr.opaque(types.UInt64, 0, self.engine.total * self.n)
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return True
 
-    def _births(self, before: int, quanta: int) -> tuple[Batch | None, int]:
-        return self.births.batch(self.engine, before, quanta)
+    def _sources(self, before: int, quanta: int) -> tuple[Batch | None, int]:
+        return self.source_sampling.batch(self.engine, before, quanta)
 
-    def _follow(self, chunk: Chunk, largest: int) -> int:
+    def _follow(self, launch: Launch, largest: int) -> int:
         types, visits = self.types, []
-        number, index, record = chunk.read(types)
-        step = self.legs.first(number, index, record, self.engine.numbers.bits_for(largest))
-        lane, flock = dr.arange(types.UInt32, chunk.width), Flock(number, index, (), ())
-        flock, visit = self._land(flock, lane, number, step, chunk.real(types))
+        number, index, record = launch.read(types)
+        step = self.segments.first(number, index, record, self.engine.numbers.bits_for(largest))
+        lane, particles = dr.arange(types.UInt32, launch.width), ParticleBank(number, index, (), ())
+        particles, visit = self._land(particles, lane, number, step, launch.real(types))
         while True:
             visits.append(visit)
             rows: Any = dr.compress(visit.alive)
             if dr.width(rows) == 0:
                 break
             lane, left = (dr.gather(types.UInt32, column, rows) for column in (visit.lane, visit.landed))
-            flock = flock.at(rows)
-            leg = dr.opaque(types.UInt32, len(visits), flock.size)
-            flock, visit = self._land(flock, lane, left, self.legs.later(flock, leg), True)
-        self._score(visits, chunk)
-        return chunk.lanes + sum(dr.width(visit.lane) for visit in visits[1:])
+            particles = particles.at(rows)
+            segment = dr.opaque(types.UInt32, len(visits), particles.size)
+            particles, visit = self._land(particles, lane, left, self.segments.later(particles, segment), True)
+        self._score(visits, launch)
+        return launch.lanes + sum(dr.width(visit.lane) for visit in visits[1:])
 
-    def _land(self, flock: Flock, lane, left, step, real) -> tuple[Flock, Visit]:
+    def _land(self, particles: ParticleBank, lane, left, step, real) -> tuple[ParticleBank, Visit]:
         engine, types = self.engine, self.types
         on = real & (step.landed < engine.total)
-        patch = step.landed - engine.replicate(flock.walk) * engine.n_opaque
+        patch = step.landed - engine.replicate(particles.walk) * engine.n_opaque
         alive = on & (step.numbers[4] < dr.gather(types.Float, self.survival, patch, on))
         dr.scatter_add(engine.arrivals, types.UInt32(1), step.landed, active=real)
         dr.scatter_add(engine.fired, types.UInt32(1), left, active=real)
-        after = Flock(flock.walk, flock.index, step.place, ())
+        after = ParticleBank(particles.walk, particles.index, step.place, ())
         dr.eval(engine.arrivals, engine.fired, alive, step.landed, left, lane, after.columns())
         return after, Visit(lane, left, step.landed, alive)
 
-    def _score(self, visits: list[Visit], chunk: Chunk) -> None:
+    def _score(self, visits: list[Visit], launch: Launch) -> None:
         """From the last legs back to the first: what each line met."""
         engine, types = self.engine, self.types
-        met = [dr.opaque(types.Float, 0.0, chunk.width) for _ in range(self.n)]
+        met = [dr.opaque(types.Float, 0.0, launch.width) for _ in range(self.n)]
         for at, visit in reversed(list(enumerate(visits))):
-            real = chunk.real(types) if at == 0 else True
+            real = launch.real(types) if at == 0 else True
             on = real & (visit.landed < engine.total)
             patch = visit.landed - engine.replicate(visit.left) * engine.n_opaque
             for g in range(self.n):

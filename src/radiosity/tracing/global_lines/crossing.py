@@ -9,9 +9,9 @@ import numpy as np
 
 from ...device.backend import upload
 from ...scene.model import Back
-from ..departure import before
 from ..geometry import Geometry
-from ..lines import both_sides, patch_of
+from ..hits import both_sides, patch_of
+from ..ray_generation import before
 from .hull import nothing_beyond
 
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `firing`: no patch has these numbers

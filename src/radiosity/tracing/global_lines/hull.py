@@ -13,7 +13,7 @@ BESIDE = 4 * EPSILON  # of a vertex's largest coordinate: vertices this little i
 
 def nothing_beyond(geometry: Geometry) -> np.ndarray:
     """(n_faces, 2) bool: no vertex of the scene lies in front of the face; or behind it."""
-    vertices = geometry.tree.vertices.astype(np.float64)
+    vertices = geometry.bvh.vertices.astype(np.float64)
     vertices = vertices[np.unique(geometry.scene.faces[geometry.scene.faces >= 0])]
     origin, normal = geometry.frames[0], geometry.normals
     free = np.zeros((len(origin), 2), bool)

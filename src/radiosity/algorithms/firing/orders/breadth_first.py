@@ -6,14 +6,14 @@ TAIL = 1 << 13  # fewer lines than this are followed to their ends at once: the 
 
 
 def run(engine, progress) -> None:
-    """Sweep until no patch owes a line. ``progress(lines)`` is called after each sweep."""
+    """Wavefront until no patch owes a line. ``progress(lines)`` is called after each sweep."""
     while True:
-        sweep, largest = engine.due()
-        if sweep is None:
+        wavefront, largest = engine.due()
+        if wavefront is None:
             return
-        if sweep.total < TAIL and engine.bands is None:
-            depth_first.walk_all(engine, sweep, progress)
+        if wavefront.total < TAIL and engine.bands is None:
+            depth_first.walk_all(engine, wavefront, progress)
             return
-        engine.fire(sweep, largest)
-        progress(sweep.total)
-        del sweep  # and the memory it holds
+        engine.fire(wavefront, largest)
+        progress(wavefront.total)
+        del wavefront  # and the memory it holds

@@ -13,24 +13,24 @@ from ....device.recorded import loop
 
 def run(engine, progress) -> None:
     """Follow all walks to their ends. ``progress(lines)`` is called after each launch."""
-    sweep, _ = engine.due()
-    if sweep is not None:
-        walk_all(engine, sweep, progress)
+    wavefront, _ = engine.due()
+    if wavefront is not None:
+        walk_all(engine, wavefront, progress)
 
 
-def walk_all(engine, sweep, progress) -> None:
+def walk_all(engine, wavefront, progress) -> None:
     """From the lines of a sweep, a launch at a time."""
-    for batch in list(engine.batches(sweep)):  # made before walks fire lines of patches that are still to come
-        for chunk in batch.chunks(engine.types):
+    for batch in list(engine.batches(wavefront)):  # made before walks fire lines of patches that are still to come
+        for launch in batch.launches(engine.types):
             before = engine.lines
-            walk(engine, chunk)
+            walk(engine, launch)
             progress(engine.lines - before)
 
 
-def walk(engine, chunk) -> None:
+def walk(engine, launch) -> None:
     """One lane for each line owed at the start."""
     types = engine.types
-    number, _, _ = chunk.read(types)
+    number, _, _ = launch.read(types)
 
     def body(number, going):
         taken: Any = dr.scatter_inc(engine.fired, number, going)
@@ -48,6 +48,6 @@ def walk(engine, chunk) -> None:
         going &= ((low + rho) >> 32) > (low >> 32)
         return landed, going
 
-    going = chunk.real(types)
+    going = launch.real(types)
     loop((number, going), lambda number, going: going, body)
     dr.eval(engine.arrivals, engine.fired)

@@ -18,11 +18,11 @@ def run(engine, progress) -> None:
     while True:
         fired = 0
         for block in range(BLOCKS):
-            sweep, largest = engine.due_between(engine.total * block // BLOCKS, engine.total * (block + 1) // BLOCKS)
-            if sweep is not None:
-                engine.fire(sweep, largest)
-                progress(sweep.total)
-                fired += sweep.total
+            wavefront, largest = engine.due_between(engine.total * block // BLOCKS, engine.total * (block + 1) // BLOCKS)
+            if wavefront is not None:
+                engine.fire(wavefront, largest)
+                progress(wavefront.total)
+                fired += wavefront.total
         if fired < breadth_first.TAIL:
             engine.everywhere, engine.landed = True, None  # blocks kept no account of where lines landed
             breadth_first.run(engine, progress)  # the last few, and none where none are left

@@ -15,7 +15,7 @@ MOST = 6 << 20  # bytes of a copy: larger ones gain little
 WORDS = 4  # of a packet of counts and powers
 
 
-class AbstractLandings(ABC):
+class AbstractHitTally(ABC):
     """Of the lines of a sweep, which may take several launches."""
 
     @abstractmethod
@@ -31,7 +31,7 @@ class AbstractLandings(ABC):
         """After the last launch: all is in the engine's counters."""
 
 
-class Atomic(AbstractLandings):
+class Atomic(AbstractHitTally):
     """Added to the engine's counters at once. With ``flags`` it is remembered where lines landed."""
 
     def __init__(self, engine, flags: bool, mode: dr.ReduceMode = dr.ReduceMode.Direct):
@@ -52,7 +52,7 @@ class Atomic(AbstractLandings):
         pass
 
 
-class Copied(AbstractLandings):
+class Copied(AbstractHitTally):
     """Added to a copy of each thread, on a CPU.
 
     Dr.Jit adds packets of two or four words one lane after the other. Single words it compares with those of all other lanes
@@ -103,7 +103,7 @@ def packets(groups: int) -> int:
     return -(-(1 + groups) // WORDS)
 
 
-def landings(engine, lines: int, flags: bool) -> AbstractLandings:
+def hit_tally(engine, lines: int, flags: bool) -> AbstractHitTally:
     """For a sweep of so many lines."""
     groups = groups_of(engine)
     each = 2 * 4 if groups == 0 else packets(groups) * WORDS * 8  # bytes

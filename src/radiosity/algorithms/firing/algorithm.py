@@ -8,7 +8,7 @@ from ...problem.bands import QUANTUM
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...solution.books import Books, exact_sum, signed_totals
-from ..process import AbstractProcess, AbstractTally, State, Swept
+from ..base import AbstractAlgorithm, AbstractTally, State, Swept
 from . import state as counters
 from .counters import Engine
 from .orders import run as fire_all
@@ -16,7 +16,7 @@ from .residue import Starts
 from .residue_walks import LONGER, Sent, send, starts
 
 
-class Firing(AbstractProcess):
+class Firing(AbstractAlgorithm):
     """Integers that do not depend on order (contract 2), or powers of bands that travel with sweeps (contract 3)."""
 
     def __init__(self, *arguments):
@@ -28,7 +28,7 @@ class Firing(AbstractProcess):
         return self.engine.quanta
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return self.engine.bands is None
 
     def advance(self, quanta: int, swept: Swept) -> None:

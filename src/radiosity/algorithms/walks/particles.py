@@ -14,17 +14,17 @@ import numpy as np
 from ...device.backend import upload
 from ...sampling.numbers.shuffle import key, mix, shuffled
 from ...sampling.streams import Purpose, stream
-from ...tracing.departure import Frame
-from ...tracing.lines import land, local_line, place_of
+from ...tracing.hits import first_hit, local_line, place_of
+from ...tracing.ray_generation import Frame
 from ..firing.counters import Engine
 
-LEGS = 64  # randomisations; the orders of later legs still differ
+SEGMENTS = 64  # randomisations; the orders of later legs still differ
 INDEX_BITS = 32
 GOLDEN = 0x9E3779B9  # (sqrt(5) - 1) / 2 times 2^32
 
 
 @dataclass(frozen=True)
-class Flock:
+class ParticleBank:
     """Particles about to leave: columns of Dr.Jit arrays, one entry each.
 
     Attributes:
@@ -46,13 +46,13 @@ class Flock:
     def columns(self) -> tuple:
         return self.walk, self.index, *self.place, *self.weights
 
-    def having(self, columns) -> "Flock":
+    def having(self, columns) -> "ParticleBank":
         """The same, with other columns."""
         walk, index, *rest = columns
         n = len(self.place)
-        return Flock(walk, index, tuple(rest[:n]), tuple(rest[n:]))
+        return ParticleBank(walk, index, tuple(rest[:n]), tuple(rest[n:]))
 
-    def at(self, rows) -> "Flock":
+    def at(self, rows) -> "ParticleBank":
         """Those at some indices."""
         chosen = self.having([dr.gather(type(column), column, rows) for column in self.columns()])
         dr.eval(chosen.columns())
@@ -68,14 +68,14 @@ class Step:
     place: tuple
 
 
-class Legs:
+class PathSegments:
     """Traces legs of walks in kernels."""
 
     def __init__(self, engine: Engine, *, continuous: bool):
         self.engine, self.continuous = engine, continuous
         drawn = []
         for replicate in range(engine.replicates):
-            streams = stream(engine.seed, replicate, Purpose.LATER_LEGS).spawn(LEGS)
+            streams = stream(engine.seed, replicate, Purpose.LATER_SEGMENTS).spawn(SEGMENTS)
             drawn += [engine.numbers.randomisation(stream) for stream in streams]
         self.randomisations = upload(engine.types.UInt32, np.array(drawn, np.uint32))
 
@@ -87,21 +87,21 @@ class Legs:
         numbers[4:] = self._moved(numbers[4:], number - replicate * engine.n_opaque)
         return self._land(local_line(engine.geometry, record, numbers), replicate, numbers)
 
-    def later(self, flock: Flock, leg) -> Step:
+    def later(self, particles: ParticleBank, segment) -> Step:
         """Leg number ``leg`` (UInt32, 1 and up), from where the particles are."""
         engine, types = self.engine, self.engine.types
-        replicate = engine.replicate(flock.walk)
-        patch = flock.walk - replicate * engine.n_opaque
-        row = (replicate * LEGS + (leg & (LEGS - 1))) * 2
+        replicate = engine.replicate(particles.walk)
+        patch = particles.walk - replicate * engine.n_opaque
+        row = (replicate * SEGMENTS + (segment & (SEGMENTS - 1))) * 2
         randomisation = [word for half in (0, 1) for word in dr.gather(types.Array4u, self.randomisations, row + half)]
-        index = shuffled(flock.index, key(randomisation, leg))
-        numbers = engine.numbers.points(index, patch + leg * engine.n_opaque, randomisation, INDEX_BITS)
-        numbers = self._moved(numbers, patch + leg * engine.n_opaque)
+        index = shuffled(particles.index, key(randomisation, segment))
+        numbers = engine.numbers.points(index, patch + segment * engine.n_opaque, randomisation, INDEX_BITS)
+        numbers = self._moved(numbers, patch + segment * engine.n_opaque)
         if self.continuous:
-            face, s, t = flock.place
+            face, s, t = particles.place
             line = Frame.of(engine.geometry, face).leave(s, t, numbers)
         else:
-            line = local_line(engine.geometry, engine.record(flock.place[0]), numbers)
+            line = local_line(engine.geometry, engine.record(particles.place[0]), numbers)
         return self._land(line, replicate, numbers)
 
     def _moved(self, numbers, stream):
@@ -116,6 +116,6 @@ class Legs:
 
     def _land(self, line, replicate, numbers) -> Step:
         engine = self.engine
-        hit = land(engine.geometry, *line)
+        hit = first_hit(engine.geometry, *line)
         landed = engine.slot(hit, replicate)
         return Step(landed, numbers, place_of(engine.geometry, hit) if self.continuous else (landed,))
