@@ -13,6 +13,7 @@ import radiosity as rd
 from radiosity.algorithms import estimate
 from radiosity.algorithms.progressive import recent
 from radiosity.device import memory
+from radiosity.method.schemes import SOLVERS
 
 # coarse hemicubes and few samples say that they are off; one test looks for it
 pytestmark = pytest.mark.filterwarnings("ignore:.*out of balance:radiosity.RadiosityWarning")
@@ -63,7 +64,7 @@ def test_furnace(scheme, factors, mean_reflectance):
         assert mean == pytest.approx(1, abs=0.02 + 10 * rest)
 
 
-@pytest.mark.parametrize("solver", rd.method.baseline.SOLVERS)
+@pytest.mark.parametrize("solver", SOLVERS)
 def test_three_surface_enclosure(solver):
     """A cube of a bright floor, a grey ceiling and four walls, a patch a side: floor, ceiling and walls are three surfaces with
     exact view factors (opposite squares and adjoining ones, by closed form)."""

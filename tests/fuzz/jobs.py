@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from random import Random
 
 import radiosity as rd
-from radiosity.method.baseline import FACTORS, REFINEMENTS, SOLVERS
 from radiosity.method.model import CHOICES
+from radiosity.method.schemes import FACTORS, REFINEMENTS, SOLVERS
 
 FACES = {
     "low": "0 0 0, 1 0 0, 1 1 0, 0 1 0",

@@ -1616,11 +1616,21 @@ MISTAKES = (
         "centroids of inverted cells are those of upright ones",
     ),
     Mistake(
-        "method/combinations.py",
-        "if not 0 <= method.first_shot < 1:",
-        "if not 0 <= method.first_shot <= 1:",
-        ("test_method.py",),
+        "method/option.py",
+        "(0 < value < 1 or (self.zero and value == 0))",
+        "(0 < value <= 1 or (self.zero and value == 0))",
+        ("test_method.py", "test_options.py"),
         "all lines may be a first shot's",
+    ),
+    Mistake(
+        "method/option.py", "1 <= value <= self.most", "1 <= value < self.most", ("test_options.py",), "the most is too many"
+    ),
+    Mistake(
+        "cli/solve_options.py",
+        '"flag": Chosen',
+        '"flag": bool | None',
+        ("test_options.py",),
+        "--no-reciprocal, which is no option",
     ),
     Mistake(
         "sampling/numbers/halton.py",

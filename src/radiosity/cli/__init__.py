@@ -14,7 +14,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         from . import interrupts
 
-        with interrupts.heard(last=arguments is None):
+        with interrupts.heard(main.__code__, last=arguments is None):
             from .app import run
 
             return run(sys.argv[1:] if arguments is None else list(arguments))

@@ -10,6 +10,7 @@ import stat
 import threading
 import time
 from contextlib import contextmanager, suppress
+from types import CodeType
 
 from .streams import silence
 
@@ -21,14 +22,15 @@ ENDS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(
 class _Ears:
     """The handler of SIGINT and `ENDS`: raises KeyboardInterrupt, but never through an import."""
 
-    def __init__(self):
+    def __init__(self, top: CodeType | None = None):
+        self.top = top
         self.raised = False
         self.number = int(signal.SIGINT)
         self.heard = -TOGETHER
         self.timer: threading.Timer | None = None
 
     def __call__(self, number, frame) -> None:
-        if not _importing(frame):
+        if not _importing(frame, self.top):
             self.raised = True
             raise KeyboardInterrupt
         self.cancel()
@@ -66,15 +68,16 @@ def answer() -> None:
 
 
 @contextmanager
-def heard(*, last: bool):
+def heard(top: CodeType, *, last: bool):
     """Take over SIGINT and `ENDS` in the main thread, each unless another handler is set (in the background of a shell SIGINT is
     ignored, by ``nohup`` SIGHUP).
 
     Args:
+        top: of the function that calls this, the first of the program: imports that callers of it have under way do not count.
         last: nothing but the end of the process follows: SIGINT is then ignored, so that the exit status stays.
     """
     global _ears
-    _ears = _Ears()
+    _ears = _Ears(top)
     here = threading.current_thread() is threading.main_thread()
     interrupts = here and signal.getsignal(signal.SIGINT) is signal.default_int_handler
     ends = [number for number in ENDS if here and signal.getsignal(number) is signal.SIG_DFL]
@@ -116,11 +119,9 @@ def _speak_to_nobody() -> None:
                 silence(number)
 
 
-def _importing(frame) -> bool:
-    """Is an import under way, in or below ``main``?"""
-    from . import main
-
-    while frame is not None and frame.f_code is not main.__code__:
+def _importing(frame, top: CodeType | None) -> bool:
+    """Is an import under way, in or below the function of code ``top``?"""
+    while frame is not None and frame.f_code is not top:
         if frame.f_code.co_filename.startswith("<frozen importlib"):
             return True
         frame = frame.f_back

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from cyclopts import Group, Parameter
+from cyclopts import Parameter
 
 from . import amounts
 
@@ -44,11 +44,3 @@ Outputs = Annotated[
     tuple[Path, ...], Parameter(name=["--output", "-o"], consume_multiple=(1, None), negative=(), show_default=False)
 ]
 Folder = Annotated[Path, Parameter(name=["--output", "-o"])]
-
-# groups of the options of `solve`, in the order in which --help shows them
-LENGTH = Parameter(group=Group("How long to trace: one of these, or --error with a limit", sort_key=1))
-METHOD = Parameter(group=Group("The method", sort_key=2))
-BASELINE = Parameter(group=Group("Methods that form the matrix (baselines)", sort_key=3))
-PATCHES = Parameter(group=Group("Patches", sort_key=4))
-RUN = Parameter(group=Group("The run", sort_key=5))
-SCENE = Parameter(group=Group("The scene", sort_key=6))

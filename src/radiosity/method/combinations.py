@@ -5,7 +5,6 @@ from ..errors import MethodError
 FIRING_ORDERS = ("depth-first", "breadth-first", "staged", "well-distributed")
 WALK_ORDERS = ("depth-first", "breadth-first", "staged")
 ITERATIONS = ("incremental", "regular")
-RECONSTRUCTIONS = ("patches", "local-linear")
 
 
 def machine(method) -> str:
@@ -95,20 +94,14 @@ def _refuse_options(method, found: str) -> None:
             f"absorption '{method.absorption}': nothing is absorbed on the way in {method.lines}/{method.order}, "
             "power is weighed instead; leave it out"
         )
-    if isinstance(method.first_shot, bool) or not isinstance(method.first_shot, int | float):
-        raise MethodError(f"first_shot is {method.first_shot!r}; it is the share of all lines, a number at least 0 and below 1")
     if method.first_shot and found not in ("multipath", "pooling"):
         raise MethodError("a first shot is for global lines of order multipath or regular: other methods begin at the lights")
-    if not 0 <= method.first_shot < 1:
-        raise MethodError(f"first_shot is {method.first_shot:g}; it is the share of all lines, at least 0 and below 1")
     if method.control_variate and found != "iteration":
         raise MethodError("a constant control variate is taken out of what iterations send; take --order incremental or regular")
     if method.warm_up and method.order != "regular":
         raise MethodError("only regular iterations can begin with incremental ones (warm_up)")
     if method.warm_up and found != "iteration":
         raise MethodError("iterations by global lines have a warm-up of their own; leave warm_up out, or take --lines local")
-    if method.reconstruction not in RECONSTRUCTIONS:
-        raise MethodError(f"reconstruction '{method.reconstruction}' does not exist; known are {', '.join(RECONSTRUCTIONS)}")
     if method.reconstruction == "local-linear" and (
         found != "walks" or method.equation != "continuous" or method.estimator == "gathering"
     ):

@@ -2,42 +2,18 @@
 
 from dataclasses import dataclass
 
-from ..errors import MethodError
-from ..sampling.numbers import NUMBERS
 from .combinations import machine
-from .equation import EQUATIONS
-from .estimator import ABSORPTIONS, ESTIMATORS
-from .lines import LINES
-from .order import ORDERS
-from .randomisation import RANDOMISATIONS
+from .option import documented
+from .options import METHOD, choices
 
-AXES = {"equation": tuple(EQUATIONS), "lines": tuple(LINES), "order": tuple(ORDERS), "numbers": tuple(NUMBERS)}
-CHOICES = AXES | {
-    "randomisation": tuple(RANDOMISATIONS),
-    "estimator": tuple(ESTIMATORS),
-    "absorption": ("auto", *ABSORPTIONS),
-}
+CHOICES = choices(METHOD)
+AXES = {axis: CHOICES[axis] for axis in ("equation", "lines", "order", "numbers")}
 
 
+@documented(METHOD)
 @dataclass(frozen=True)
 class Method:
-    """One algorithm.
-
-    Attributes:
-        equation: where does a particle leave a patch it hit?
-        lines: what carries it?
-        order: which line is fired next?
-        numbers: which points of the unit cube?
-        randomisation: "by-patch" or "shared": do patches share the shift that moves a sequence? Random numbers have none: each
-            patch has its own in any case. What does not begin at patches (global lines, fractional absorption) shares it, too.
-        estimator: what is scored?
-        absorption: how does a walk end? "auto" is "rounded" where patches can round, else "drawn".
-        first_shot: global lines: the share of all lines that sends the lights' own power by local lines first; 0 is none.
-        control_variate: iterations: a constant radiosity is taken out of what lines carry, and put back exactly.
-        warm_up: regular iterations: begin with incremental ones, whose bias is small.
-        reconstruction: "patches" counts what lands on each; "local-linear" fits planes to the landings about each point.
-        coherent: trace lines in packets of like directions with Embree's coherent flag. Faster where a patch fires 50 000 lines
-            and more in a sweep, but at an exact tie of two faces the winner depends on the packet: outside contract 2.
+    """One algorithm that traces lines.
 
     Raises:
         MethodError: a value that does not exist, or a combination that makes no sense.
@@ -62,10 +38,8 @@ class Method:
     coherent: bool = False
 
     def __post_init__(self):
-        for choice, known in CHOICES.items():
-            value = getattr(self, choice)
-            if value not in known:
-                raise MethodError(f"{choice} '{value}' does not exist; known are {', '.join(known)}")
+        for name, option in METHOD.items():
+            option.check(getattr(self, name))
         machine(self)
 
     @property

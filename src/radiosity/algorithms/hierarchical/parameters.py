@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import MethodError
+from ...method import schemes
 
-REFINEMENTS = ("brightness-factor", "error-radiance", "error-power")
+REFINEMENTS = tuple(schemes.REFINEMENTS)
 
 
 @dataclass(frozen=True)

@@ -5,15 +5,16 @@ from importlib import import_module
 import numpy as np
 
 from ...errors import MethodError
+from ...method.schemes import SOLVERS
 from .model import Solved, System
 
 __all__ = ["SOLVERS", "Solved", "System", "solve"]
 
-SOLVERS = {
-    "jacobi": "all patches at once from the last iterate",
-    "gauss-seidel": "patch after patch, from the newest values",
-    "southwell": "always the patch with the most unshot power, which is shot to all others",
-    "conjugate-gradients": "conjugate gradients on the symmetric form of the equation; reciprocal form factors only",
+FILES = {
+    "jacobi": "jacobi",
+    "gauss-seidel": "gauss_seidel",
+    "southwell": "southwell",
+    "conjugate-gradients": "conjugate_gradients",
 }
 
 
@@ -27,4 +28,4 @@ def solve(name: str, system: System) -> Solved:
         raise MethodError(f"solver '{name}' does not exist; known are {', '.join(SOLVERS)}")
     if not np.isfinite(system.factors.data).all():
         raise MethodError("some form factors are not finite numbers")
-    return import_module(f".{name.replace('-', '_')}", __package__).solve(system)
+    return import_module(f".{FILES[name]}", __package__).solve(system)

@@ -43,5 +43,6 @@ def resolve(method: "str | Method | Baseline" = "random-walk", **choices) -> "Me
     if isinstance(method, Method) and any(given.get(c, getattr(method, c)) != getattr(method, c) for c in ("order", "lines")):
         given = {"warm_up": False} | given  # belongs to what was replaced
     if isinstance(method, Baseline) and given.get("factors", method.factors) != method.factors:
-        given = {"samples": None, "resolution": 64, "rotated": True} | given  # belong to the factors that were replaced
+        belonging = ("samples", "resolution", "rotated")  # to the factors that were replaced
+        given = {field.name: field.default for field in fields(method) if field.name in belonging} | given
     return replace(method, **given)

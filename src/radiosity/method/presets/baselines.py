@@ -3,10 +3,6 @@
 from ..baseline import Baseline
 from .model import Preset
 
-FACTORS = ("factors", "polygons (exact, with the visible share), hemicube, or lines")
-HEMICUBE = (("resolution", "pixels along an edge of a hemicube's top"), ("rotated", "hemicubes turned by random angles"))
-SAMPLES = ("samples", "lines of a pair of patches (polygons), or of a patch (lines)")
-
 BASELINES = {
     "full-matrix": Preset(
         Baseline("full-matrix"),
@@ -15,11 +11,12 @@ BASELINES = {
         "Small scenes as an oracle; scenes whose emission or reflectance changes often.",
         "goral1984",
         (
-            FACTORS,
-            *HEMICUBE,
-            SAMPLES,
-            ("solver", "jacobi, gauss-seidel, southwell or conjugate-gradients"),
-            ("reciprocal", "make A_i F_ij symmetric, and rows sum to what does not escape"),
+            "factors",
+            "resolution",
+            "rotated",
+            "samples",
+            "solver",
+            "reciprocal",
         ),
     ),
     "full-matrix-hemicube": Preset(
@@ -28,10 +25,11 @@ BASELINES = {
         "To compare; near and small things alias, docs/baselines.md shows how much.",
         "cohen1985",
         (
-            FACTORS,
-            *HEMICUBE,
-            ("solver", "jacobi, gauss-seidel, southwell or conjugate-gradients"),
-            ("reciprocal", "make A_i F_ij symmetric, and rows sum to what does not escape"),
+            "factors",
+            "resolution",
+            "rotated",
+            "solver",
+            "reciprocal",
         ),
     ),
     "progressive-refinement": Preset(
@@ -41,11 +39,12 @@ BASELINES = {
         "To compare; a first picture after few shots. With ambient, it is as bright as the last one from the start.",
         "cohen1988",
         (
-            FACTORS,
-            *HEMICUBE,
-            SAMPLES,
-            ("ambient", "add an estimate of the light not shot yet"),
-            ("overshooting", "shoot a part of the light that is still to come, too"),
+            "factors",
+            "resolution",
+            "rotated",
+            "samples",
+            "ambient",
+            "overshooting",
         ),
     ),
     "hierarchical": Preset(
@@ -55,9 +54,9 @@ BASELINES = {
         "Few large faces: it keeps some links for each patch, not one for each pair. First more samples, then a smaller epsilon.",
         "hanrahan1991",
         (
-            ("epsilon", "refine links whose error exceeds this share of what the scene emits"),
-            ("samples", "lines of a link, to find how much of one element the other sees"),
-            ("refinement", "brightness-factor, error-radiance or error-power"),
+            "epsilon",
+            "samples",
+            "refinement",
         ),
     ),
     "hierarchical-error-control": Preset(
@@ -66,9 +65,9 @@ BASELINES = {
         "As hierarchical, where shadows and contacts need finer links and smooth exchange coarser ones.",
         "bekaert1996",
         (
-            ("epsilon", "refine links whose error exceeds this share of what the scene emits"),
-            ("samples", "lines of a link, to find how much of one element the other sees"),
-            ("refinement", "brightness-factor, error-radiance or error-power"),
+            "epsilon",
+            "samples",
+            "refinement",
         ),
     ),
 }

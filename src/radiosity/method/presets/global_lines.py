@@ -3,9 +3,6 @@
 from ..model import Method
 from .model import Preset
 
-SHOT = ("first_shot", "share of all lines that first sends the lights' own power by local lines")
-LINES = ("lines", "global (two points of a sphere), global-disc (direction and disc), spans (drawn one by one) or bundles")
-
 GLOBAL = {
     "transillumination": Preset(
         Method(lines="bundles", order="regular"),
@@ -15,7 +12,7 @@ GLOBAL = {
         "lines is from memory.",
         "Large lights and evenly lit rooms; small lights need a first shot.",
         "neumann1995",
-        (SHOT, LINES),
+        ("first_shot", "lines"),
     ),
     "global-multipath": Preset(
         Method(lines="global", order="multipath"),
@@ -23,20 +20,20 @@ GLOBAL = {
         "on a patch goes on with the next line through it.",
         "Scenes where emission is spread over most of the area.",
         "sbert1996",
-        (LINES,),
+        ("lines",),
     ),
     "global-multipath-first-shot": Preset(
         Method(lines="global", order="multipath", first_shot=0.25),
         "Global multipath after the lights' own power was sent by local lines, a quarter of all.",
         "Global lines in scenes with small lights.",
         "sbert1996",
-        (SHOT, LINES),
+        ("first_shot", "lines"),
     ),
     "global-form-factors": Preset(
         Method(lines="global", order="matrix"),
         "Counts of spans between patches give form factors by integral geometry; the equation is solved with them.",
         "Small scenes whose emission or reflectance is to be changed later. Memory grows with pairs of patches.",
         "sbert1993",
-        (LINES,),
+        ("lines",),
     ),
 }

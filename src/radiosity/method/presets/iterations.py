@@ -3,8 +3,6 @@
 from ..model import Method
 from .model import Preset
 
-VARIATE = ("control_variate", "take a constant radiosity out of what lines carry (closed scenes)")
-
 ITERATIONS = {
     "stochastic-ray": Preset(
         Method(order="regular"),
@@ -12,34 +10,34 @@ ITERATIONS = {
         "by their lines.",
         "To compare; early iterates are remembered, which costs accuracy at few lines.",
         "neumann1995ray",
-        (VARIATE,),
+        ("control_variate",),
     ),
     "stochastic-jacobi": Preset(
         Method(order="regular", warm_up=True),
         "Stochastic Jacobi radiosity: incremental iterations first, then regular ones that are averaged.",
         "The iterative method to take; the first iterate is complete and nearly unbiased.",
         "bekaert1999",
-        (VARIATE, ("estimator", "collision or bidirectional")),
+        ("control_variate", "estimator"),
     ),
     "stochastic-jacobi-incremental": Preset(
         Method(order="incremental"),
         "Iterations send only the power not sent yet, with ever fewer lines of about equal power.",
         "Unbiased and simple; close to shirley, with powers of lines that vary.",
         "bekaert1999",
-        (VARIATE, ("estimator", "collision or bidirectional")),
+        ("control_variate", "estimator"),
     ),
     "stochastic-jacobi-bidirectional": Preset(
         Method(order="regular", warm_up=True, estimator="bidirectional"),
         "Both ends of every line exchange power, each weighted by its share of the density that the line was drawn with.",
         "Where many patches are about as bright as each other.",
         "bekaert1999",
-        (VARIATE,),
+        ("control_variate",),
     ),
     "stochastic-jacobi-control-variate": Preset(
         Method(order="regular", warm_up=True, control_variate=True),
         "A constant radiosity is taken out of what the lines carry and put back exactly, so that lines only carry what differs.",
         "Rooms, together with estimator bidirectional: less error at equal lines than random-walk, but no exact books.",
         "bekaert1999",
-        (("estimator", "collision or bidirectional"),),
+        ("estimator",),
     ),
 }

@@ -3,9 +3,6 @@
 from ..model import Method
 from .model import Preset
 
-ESTIMATOR = ("estimator", "collision, absorption, survival or gathering: what is scored of a walk")
-ABSORPTION = ("absorption", "rounded (each patch rounds what it re-emits), drawn or fractional")
-
 WALKS = {
     "random-walk": Preset(
         Method(),
@@ -14,7 +11,7 @@ WALKS = {
         "no number is drawn for absorption and the counts do not depend on the order of firing.",
         "The default: fast, little error at equal lines, exact books, and the same bits on any number of threads.",
         "sbert1997",
-        (ESTIMATOR, ABSORPTION, ("coherent", "packets of like lines: faster where patches fire some million lines")),
+        ("estimator", "absorption", "coherent"),
     ),
     "particle-tracing": Preset(
         Method(equation="continuous"),
@@ -22,7 +19,7 @@ WALKS = {
         "the continuous equation: the result is the mean over each patch of the exact solution.",
         "Where patches are large: there is no discretisation error in the light itself. More noise than random-walk.",
         "pattanaik1992",
-        (ESTIMATOR, ABSORPTION),
+        ("estimator", "absorption"),
     ),
     "shirley": Preset(
         Method(order="breadth-first"),

@@ -3,11 +3,12 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from ...errors import MethodError
+
+if TYPE_CHECKING:
+    import numpy as np  # names of methods are told without it
 
 DIMENSIONS = 5
 WORDS = 8  # of randomisation, for a scene and replicate
@@ -25,7 +26,7 @@ class AbstractNumbers(ABC):
     """
 
     @abstractmethod
-    def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
+    def randomisation(self, stream: "np.random.SeedSequence") -> "np.ndarray":
         """(8,) uint32 drawn on the host from a strong generator: one for the scene and replicate."""
 
     def of_patch(self, randomisation: list, place: Any) -> list:

@@ -1,0 +1,89 @@
+"""What an option of a method is: its name, what it takes and what it means, said once for every place that needs it."""
+
+import inspect
+import textwrap
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal, TypeVar
+
+from ..errors import MethodError
+
+Kind = Literal["choice", "switch", "flag", "whole", "share"]
+Described = TypeVar("Described")
+WIDTH = 120
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option of `Method` or `Baseline`, which have a field of its name. The default is that of the field.
+
+    Attributes:
+        name: of the field; on the command line with hyphens.
+        about: what it means, as ``radiosity solve --help`` says it.
+        kind: what it takes. A "choice" takes a named value, a "switch" True or False, a "flag" likewise, but no option of the
+            command line turns it off; "whole" is a whole number, a "share" a number between 0 and 1.
+        values: of a choice, each with its meaning.
+        most: the largest whole number; the smallest is 1.
+        zero: the share is of all lines, and may be 0.
+        optional: it may be None.
+        schemes: of `Baseline`: those that make use of it.
+        tuning: it changes the speed alone, and is shown with what concerns the run.
+        details: more, for those who read the reference.
+    """
+
+    name: str
+    about: str
+    kind: Kind = "choice"
+    values: Mapping[str, str] = field(default_factory=dict)
+    most: int = 0
+    zero: bool = False
+    optional: bool = False
+    schemes: tuple[str, ...] = ()
+    tuning: bool = False
+    details: str = ""
+
+    def check(self, value) -> None:
+        """Refuse what the option does not take.
+
+        Raises:
+            MethodError: the value, and what is taken.
+        """
+        if self.optional and value is None:
+            return
+        if self.kind == "choice" and value not in tuple(self.values):
+            raise MethodError(f"{self.name} '{value}' does not exist; known are {', '.join(self.values)}")
+        if self.kind in ("switch", "flag") and not isinstance(value, bool):
+            raise MethodError(f"{self.name} is {value!r}; it must be True or False")
+        if self.kind == "whole" and not (_is(int, value) and 1 <= value <= self.most):
+            raise MethodError(f"{self.name} is {value!r}; it must be a whole number from 1 to {self.most}")
+        if self.kind == "share" and not (_is(int | float, value) and (0 < value < 1 or (self.zero and value == 0))):
+            taken = "it is the share of all lines, a number at least 0" if self.zero else "it must be a number above 0"
+            raise MethodError(f"{self.name} is {value!r}; {taken} and below 1")
+
+    @property
+    def entry(self) -> str:
+        """Its line of a docstring."""
+        return f"{self.name}: {' '.join(filter(None, (self.about, self.details)))}".replace("`", "``")
+
+
+def _is(kind, value) -> bool:
+    return isinstance(value, kind) and not isinstance(value, bool)
+
+
+def table(*options: Option) -> dict[str, Option]:
+    """Options by their names."""
+    return {option.name: option for option in options}
+
+
+def documented(options: Mapping[str, Option]) -> Callable[[type[Described]], type[Described]]:
+    """Put what each option means into the docstring of a class, as its attributes."""
+
+    def change(cls: type[Described]) -> type[Described]:
+        if cls.__doc__:  # python -OO leaves none
+            first, *rest = inspect.cleandoc(cls.__doc__).split("\n\n", 1)
+            entries = (textwrap.fill(option.entry, WIDTH, subsequent_indent="    ") for option in options.values())
+            attributes = "Attributes:\n" + textwrap.indent("\n".join(entries), "    ")
+            cls.__doc__ = "\n\n".join([first, attributes, *rest])
+        return cls
+
+    return change

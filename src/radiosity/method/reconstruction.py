@@ -1,0 +1,6 @@
+"""What becomes of hits: counts, or a fit?"""
+
+RECONSTRUCTIONS = {
+    "patches": "hits are counted on each patch",
+    "local-linear": "planes are fitted to the hits about each point",
+}
