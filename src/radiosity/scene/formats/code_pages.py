@@ -26,7 +26,7 @@ KOREAN = frozenset(
 
 @dataclass(frozen=True)
 class CodePage:
-    """A code page: its name in Python and its usual name, the weight (log of a share) of a non-ASCII character between two others,
+    """A code page: its name in Python, its usual name, the weight (log of a share) of a non-ASCII character between two others,
     and what Python does with bytes that the code page leaves free, where that is not an error."""
 
     codec: str
