@@ -116,7 +116,7 @@ def _places(scene: Scene, face: np.ndarray, generator) -> tuple[np.ndarray, np.n
 
 
 def _trace(scene: Scene, face, back, place, generator, device: str):
-    """The fates of cosine lines, and of each hit whether it is on the front, and its (u, v)."""
+    """Fates of cosine lines, and for each hit whether it is of the front, and its (u, v)."""
     from ..tracing.caster import first_hits  # the tracer stands later in the walk, and takes a while to start
 
     radius, turn = np.sqrt(generator.random(len(face))), 2 * np.pi * generator.random(len(face))
