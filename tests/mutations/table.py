@@ -1660,4 +1660,25 @@ MISTAKES = (
         ("test_baselines.py", "test_checkpoint.py"),
         "lines before an interruption are forgotten",
     ),
+    Mistake(
+        "solution/csv_rows.py",
+        "rows[0] if titles is None else titles",
+        "rows[0]",
+        ("test_export_csv.py",),
+        "columns of surfaces lose their units",
+    ),
+    Mistake(
+        "scene/model.py",
+        "np.where(self.is_quad, 2.0, 3.0)",
+        "np.where(self.is_quad, 2.0, 2.0)",
+        ("test_far_away.py",),
+        "centroids of triangles are those of parallelograms",
+    ),
+    Mistake(
+        "scene/arrays.py",
+        "back_reflectance, back_emission = (value[rows] for value in values)",
+        "back_reflectance, back_emission = values",
+        ("test_scene_arrays.py",),
+        "halves of quadrilaterals take the values of other faces",
+    ),
 )

@@ -1,4 +1,4 @@
-"""`check`: what a scene holds, and what in it is probably not meant."""
+"""The findings of `check`: what a scene holds, and what in it is probably not meant."""
 
 import warnings
 

@@ -1,4 +1,4 @@
-"""What `check` and `solve` have to say of faces that lie on each other, or are too near or too small to be told apart."""
+"""Findings of `check` and `solve` about faces that lie on each other, or are too near or too small to be told apart."""
 
 import warnings
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ DUPLICATES, TOO_NEAR, TOO_SMALL = "duplicates", "too near", "too small"
 
 
 def findings(scene: Scene) -> Iterator[Finding]:
-    """All of them."""
+    """The findings about faces that lie on each other, one for each kind."""
     found = contacts(scene)
     found = found.take(found.share > LITTLE)
     doubled = found.doubled(scene)
@@ -93,7 +93,7 @@ def _tiny(scene: Scene, small: np.ndarray, held: np.ndarray) -> str:
 
 
 def _with_copies(scene: Scene, found: Contacts) -> tuple[np.ndarray, np.ndarray]:
-    """Also pairs with the same corners that lie a little further apart, and look the same way or radiate to both sides."""
+    """The pairs, and pairs of copies a little further apart that look the same way or radiate to both sides."""
     one, two, same_way = coincident(scene)
     radiates = np.asarray(scene.back) == Back.RADIATES
     copies = same_way | radiates[one] | radiates[two]

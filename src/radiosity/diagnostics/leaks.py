@@ -1,4 +1,4 @@
-"""Where lines go: light that leaves the scene or lands on absorbing backs, and light sources that face the wrong way."""
+"""Leaks: light that leaves the scene or hits absorbing backs, and light sources that face the wrong way."""
 
 from dataclasses import dataclass, fields
 from functools import cached_property
@@ -39,7 +39,7 @@ class Fates:
     back: np.ndarray
 
     def of(self, keep: np.ndarray) -> "Fates":
-        """Of some lines."""
+        """The fates of some lines."""
         return Fates(*(getattr(self, field.name)[keep] for field in fields(Fates)))
 
     @cached_property
@@ -54,7 +54,7 @@ class Fates:
 
 
 def follow(scene: Scene, power: np.ndarray, walks: int = WALKS, *, seed: int = 0, device: str = "auto") -> Fates:
-    """Trace cosine lines from where light is emitted, and on from where they land, so that only lit places are judged.
+    """Trace cosine lines from where light is emitted, and on from where they hit, so that only lit places are judged.
 
     Args:
         power: (2, n_faces), emitted by front and back; where all is zero, lines begin anywhere on the radiating sides.

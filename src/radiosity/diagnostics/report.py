@@ -1,4 +1,4 @@
-"""What `check` has to say: findings, and a table of surfaces."""
+"""The report of `check`: findings, and a table of surfaces."""
 
 from dataclasses import dataclass
 
@@ -43,7 +43,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Report:
-    """What `check` found. ``scene`` is None where it could not be loaded."""
+    """The findings and the table of `check`. ``scene`` is None where it could not be loaded."""
 
     source: str
     scene: Scene | None
@@ -52,7 +52,7 @@ class Report:
 
     @property
     def serious(self) -> bool:
-        """Something was found with which a solution would be worthless or impossible."""
+        """Whether a solution would be worthless or impossible."""
         return any(finding.severity == SERIOUS for finding in self.findings)
 
 

@@ -1,4 +1,4 @@
-"""tally -> radiosity, irradiance, errors; save and load"""
+"""Solutions: radiosity, irradiance and their errors, energy balance and reports; save and load."""
 
 from .loading import load_solution
 from .model import Solution

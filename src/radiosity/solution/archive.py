@@ -1,4 +1,4 @@
-"""NPZ files of strangers: what they announce is compared with what they hold, before memory is taken."""
+"""Checks of an NPZ file before its arrays take memory: its headers must agree with what it holds."""
 
 import math
 import zipfile
@@ -14,7 +14,7 @@ MOST_MEMBERS = 10_000
 
 
 def check_sizes(opened: BinaryIO, path: Path) -> None:
-    """Look at the headers of all members of an open file, which is then at its begin again.
+    """Check the headers of all members of an open file, and go back to its beginning.
 
     Raises:
         SceneError: a member is no plain array, announces more numbers than it holds, or unpacks to very much more than the file.

@@ -1,4 +1,4 @@
-"""The books of a run in whole numbers: emitted + rounding = absorbed + escaped + lost, exactly (contract 8)."""
+"""The energy balance of a run in whole numbers: emitted + rounding = absorbed + escaped + lost, exactly (contract 8)."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -10,7 +10,7 @@ from ..pieces import pieces
 
 @dataclass(frozen=True)
 class Books:
-    """Sums over replicates, in units of 2^-32 of the unit that powers are counted in (a quantum, or its 2^-31).
+    """The energy balance: sums over replicates, in units of 2^-32 of the unit of powers (a quantum, or 2^-31 of it).
 
     Attributes:
         emitted, absorbed, escaped, lost: whole numbers.
@@ -31,11 +31,12 @@ class Books:
 
     @property
     def rounding(self) -> int:
-        """What rounding to whole lines added: fired less emitted less reflected."""
+        """The energy that rounding to whole lines added: fired less emitted less reflected."""
         return self.fired - self.emitted - self.reflected
 
     @property
     def closes(self) -> bool:
+        """Whether both sides are equal."""
         return self.emitted + self.rounding == self.absorbed + self.escaped + self.lost
 
     def powers(self) -> dict:
@@ -44,8 +45,10 @@ class Books:
 
 
 def by_difference(emitted: float, absorbed: float, escaped: float, lost: float) -> dict:
-    """The books of a method that does not carry power line by line: what does not balance is its error (of form factors, or
-    statistical), shown as rounding, and ``closes`` is None."""
+    """The energy balance of a method that does not carry power line by line.
+
+    The residual is the error of the method (of form factors, or statistical). It is shown as rounding, and ``closes`` is None.
+    """
     rounding = absorbed + escaped + lost - emitted
     return {"emitted": emitted, "rounding": rounding, "absorbed": absorbed, "escaped": escaped, "lost": lost, "closes": None}
 
@@ -61,7 +64,7 @@ def exact_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
 
 
 def signed_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
-    """As `exact_totals`, of signed integers of 64 bits."""
+    """The totals of `exact_totals`, of signed integers of 64 bits."""
     total = weighted = 0
     for part in pieces(rows.shape[1]):
         columns = np.zeros((2, part.stop - part.start), np.int64)  # of low and of high halves

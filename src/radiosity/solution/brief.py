@@ -7,7 +7,7 @@ from .percent import number, percent
 
 
 def brief(solution) -> str:
-    """What was solved, how, and what came out; five lines."""
+    """Five lines: what was solved, how, and the results."""
     scene, unit = solution.patches.scene, solution.unit
     solved = solution.quanta > 0
     mean = "unknown (no stage is complete yet)"

@@ -30,7 +30,7 @@ def _mean_and_error(values: np.ndarray) -> tuple[np.ndarray, np.ndarray | float]
 
 
 def margin(spread: np.ndarray, replicates: int) -> float:
-    """How many times the stated RMS error of many patches the true one may be, with probability `SURE`.
+    """The factor by which the true RMS error of many patches may exceed the stated one, with probability `SURE`.
 
     Patches of a run share its numbers, so their errors go together: they are worth as many independent ones as
     nu = (tr C)^2 / tr C^2, C the covariance of the patches' values. Then the true mean square over the stated one follows
@@ -64,8 +64,9 @@ def inner_products(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 
 def relative_error(reflectance: np.ndarray, irradiance: np.ndarray, error: np.ndarray, area: np.ndarray) -> float:
-    """Area-weighted RMS of the error of B - E over that of B - E, the largest of the bands, of the irradiance where nothing
-    reflects; NaN where unknown, as where nothing landed in a band that has an error.
+    """Area-weighted RMS of the error of B - E over that of B - E, the largest of the bands.
+
+    That of the irradiance where nothing reflects. NaN where it is unknown, as where no line hit in a band that has an error.
 
     Args:
         reflectance, irradiance, error: (n_patches, n_bands), the last one of the irradiance.

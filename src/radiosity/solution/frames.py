@@ -33,7 +33,7 @@ def html(solution) -> str:
 
 
 def to_dataframe(solution):
-    """See `Solution.to_dataframe`."""
+    """The data frame of `Solution.to_dataframe`."""
     _require("pandas")
     import pandas
 
@@ -43,7 +43,7 @@ def to_dataframe(solution):
 
 
 def to_xarray(solution):
-    """See `Solution.to_xarray`."""
+    """The dataset of `Solution.to_xarray`."""
     _require("xarray")
     import xarray
 

@@ -33,7 +33,7 @@ def student(level: float, replicates: int) -> float:
 
 
 def power_of_a_line(emission: np.ndarray, area: np.ndarray, lines: float) -> np.ndarray:
-    """(n_bands,) W or lm that each of ``lines`` lines from the lights carries at most, to the mean of replicates.
+    """(n_bands,) W or lm: the largest power of each of ``lines`` lines from the lights, in the mean of replicates.
 
     Args:
         emission: (n_patches, n_bands). area: (n_patches,) m².
@@ -48,8 +48,9 @@ def power_of_a_line(emission: np.ndarray, area: np.ndarray, lines: float) -> np.
 
 
 def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, usual=None) -> np.ndarray:
-    """(n_patches, n_bands) W or lm that a line brings to a patch, in the mean of replicates: of its own lines, or the usual one
-    where none brought any.
+    """(n_patches, n_bands) W or lm: the power that a line brings to a patch, in the mean of replicates.
+
+    It is that of the patch's own lines, or the usual one where no line brought any.
 
     Args:
         irradiance: (n_patches, n_bands). arrivals: (n_patches,), replicates together. area: (n_patches,) m².
@@ -62,8 +63,11 @@ def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.n
 
 
 def usual_power(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, line: np.ndarray | float = 0.0) -> np.ndarray:
-    """(n_bands,) W or lm that a line brings to any patch; at least ``line``, the power of a line, (n_bands,) or (n_patches,
-    n_bands), which is known where none landed. Shaped as the larger of both."""
+    """(n_bands,) W or lm: the power that a line brings to any patch.
+
+    At least ``line``, the power of a line, (n_bands,) or (n_patches, n_bands), which is known where no line hit. The result has
+    the larger shape of both.
+    """
     total = np.zeros(irradiance.shape[1])
     for part in pieces(len(area)):
         total += (irradiance[part] * area[part, None]).sum(axis=0)
@@ -71,8 +75,10 @@ def usual_power(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, 
 
 
 def cluster(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """(n_bands,) lines that come together: the variance of arrivals over their number, on patches that few reached; 1 at
-    least."""
+    """(n_bands,) the number of lines that come together, 1 at least.
+
+    It is the variance of hits over their number, on patches that few lines hit.
+    """
     here = (arrivals > 0) & (arrivals < FEW)
     power, count = irradiance[here] * area[here, None], arrivals[here, None]
     relative = np.divide(error[here] * area[here, None] * count, power, out=np.zeros_like(power), where=power > 0)
@@ -80,8 +86,10 @@ def cluster(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, are
 
 
 def count_bounds(count: np.ndarray, level: float, cluster: np.ndarray | float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-    """Garwood's lower and upper limit of the mean of a number of arrivals, each held with a probability of ``level``: of no
-    arrivals 0 and -ln(1 - level)."""
+    """Garwood's lower and upper limit of the mean of a number of hits, each held with a probability of ``level``.
+
+    Without hits they are 0 and -ln(1 - level).
+    """
     from scipy.stats import chi2
 
     groups = np.asarray(count / cluster, np.float64)
@@ -97,16 +105,19 @@ def irradiance_bounds(
     cluster: np.ndarray | float = 1.0,
     usual: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(n_patches, n_bands) each: what the irradiance does not fall below and does not exceed, each with a probability of
-    ``level``, by the distribution of arrivals alone: rough where many landed, and all that is known where none did. Where lines
-    brought nothing they count as none. Arguments as of `power_of_an_arrival`; ``usual`` may have a row for each patch."""
+    """(n_patches, n_bands) each: a lower and an upper bound of the irradiance, each held with a probability of ``level``.
+
+    They follow from the distribution of hits alone. They are rough where there are many hits, and all that is known where there
+    are none. Lines that brought nothing do not count. Arguments are those of `power_of_an_arrival`; ``usual`` may have a row for
+    each patch.
+    """
     power = power_of_an_arrival(irradiance, arrivals, area, usual) / area[:, None]
     low, high = count_bounds(np.where(irradiance > 0, arrivals[:, None], 0), level, cluster)
     return low * power, high * power
 
 
 def by_luck(mean: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """Where all replicates agree, up to rounding, or what lines brought adds up to nothing (the residue's have signs)."""
+    """Whether all replicates agree, up to rounding, or the powers of lines add up to nothing (the residue has signs)."""
     return (error <= ROUNDING * np.abs(mean)) | ((mean == 0) & (error > 0))
 
 
@@ -118,12 +129,12 @@ def least_error(
     usual: np.ndarray | None = None,
     replicates: int = 1,
 ) -> np.ndarray:
-    """(n_patches, n_bands) standard error, where it is zero since all replicates agree by chance, or since signed lines of the
-    residue cancel. It is written over.
+    """(n_patches, n_bands) standard error, with a least value where it is zero by chance. ``error`` is written over.
 
-    Where few lines landed it is that of Poisson's arrivals, and of one arrival where none landed or brought anything. Where many
-    did it is what whole lines leave open: R replicates of equal counts know each of them to a line, uniformly, and their mean to
-    a line over sqrt(12 R).
+    It is zero by chance where all replicates agree, or where signed lines of the residue cancel. Where few lines hit, the least
+    value is the error of a Poisson count, and that of one hit where no line hit or brought anything. Where many lines hit, it is
+    the error of whole numbers: R replicates of equal counts know each of them to a line, uniformly, and their mean to a line
+    over sqrt(12 R).
 
     Args:
         usual: see `usual_power`; (n_bands,) or (n_patches, n_bands).
@@ -144,7 +155,7 @@ def least_error(
 
 
 def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """See `Solution.interval`."""
+    """The intervals of `Solution.interval`."""
     check(quantity)
     mean, error, area = solution.irradiance, solution.irradiance_standard_error, solution.patches.area
     shown = np.where(error > 0, error, np.nan) if solution.by_baseline else error  # factors that agree say nothing of their error
@@ -163,9 +174,11 @@ def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.nd
 
 
 def power_of_none(solution) -> np.ndarray:
-    """(n_patches, n_bands) W or lm that a line would have brought to patches that received nothing: what their standard error
-    takes it for, or (files of older versions have a zero there) what the usual one or one from the lights does. Of others no
-    matter what."""
+    """(n_patches, n_bands) W or lm: the power that a line would have brought to patches that received nothing.
+
+    Their standard error is made of it. Files of older versions have a zero there: then it is the power of a usual line, or of
+    one from the lights. Entries of other patches mean nothing.
+    """
     patches, mean = solution.patches, solution.irradiance
     one = solution.irradiance_standard_error * patches.area[:, None]
     line = power_of_a_line(patches.emission, patches.area, solution.quanta * solution.replicates)
@@ -173,16 +186,20 @@ def power_of_none(solution) -> np.ndarray:
 
 
 def widened(low, high, few, least, most, signed=None) -> tuple[np.ndarray, np.ndarray]:
-    """Intervals that go to ``least`` and ``most`` where few lines landed; NaN stays. Where lines take power away as well (the
-    mean is ``signed``) their number bounds how far the mean is off, to both sides."""
+    """Intervals that go to ``least`` and ``most`` where few lines hit; NaN stays.
+
+    Where lines take power away as well (the mean is ``signed``), their number bounds the error of the mean on both sides.
+    """
     if signed is not None:
         least, most = np.maximum(signed - most, 0), signed + most
     return np.where(few, np.minimum(low, least), low), np.where(few, np.maximum(high, most), high)
 
 
 def check(quantity: str) -> None:
-    """Raises:
-    MethodError: no such quantity.
+    """Refuse quantities that have no interval.
+
+    Raises:
+        MethodError: no such quantity.
     """
     if quantity not in QUANTITIES:
         raise MethodError(f"quantity '{quantity}' has no interval; known are {', '.join(QUANTITIES)}")

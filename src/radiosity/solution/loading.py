@@ -1,4 +1,4 @@
-"""NPZ files become solutions."""
+"""Reading of solution files."""
 
 import json
 from pathlib import Path
@@ -54,7 +54,10 @@ def load_solution(path) -> Solution:
 
 
 def _text(value: np.ndarray) -> str:
-    """Of an array of one text. Numpy takes any four bytes for a character; what Python cannot hold breaks out much later."""
+    """The text of an array that holds one.
+
+    Numpy takes any four bytes for a character. Those that Python does not know would fail much later.
+    """
     native = value.astype(value.dtype.newbyteorder("="))
     if value.dtype.kind != "U" or value.ndim or (np.frombuffer(native.tobytes(), np.uint32) > LAST_CHARACTER).any():
         raise ValueError("meta is no text")

@@ -1,4 +1,4 @@
-"""Local linear density estimation: power that landed on cells to irradiance at points (B. Walter, P. M. Hubbard, P. Shirley and
+"""Local linear density estimation: irradiance at points from the power that hits cells (B. Walter, P. M. Hubbard, P. Shirley and
 D. P. Greenberg, "Global illumination using local linear density estimation", ACM Transactions on Graphics 16(3), 1997).
 
 About each point x of a flat region a plane is fitted to power over area, weighted by a kernel K: with t = x_q - x the place of
@@ -35,7 +35,7 @@ class Regions:
 
     @staticmethod
     def find(patches: Patches) -> "Regions":
-        """Compare surfaces, normals and distances to the origin."""
+        """The regions of patches, by their surfaces, normals and distances to the origin."""
         low, high = patches.scene.bounds
         size = float((high - low).max()) or 1.0
         offset = np.einsum("ij,ij->i", patches.normal, patches.centroid - (low + high) / 2) / size
@@ -44,21 +44,22 @@ class Regions:
 
     @property
     def count(self) -> int:
+        """Number of regions."""
         return int(self.of.max()) + 1
 
     @cached_property
     def area(self) -> np.ndarray:
-        """(count,) m²."""
+        """(count,) m²: the area of each region."""
         return np.bincount(self.of, self.patches.area, self.count)
 
     @cached_property
     def members(self) -> list[np.ndarray]:
-        """Patch numbers of each."""
+        """The patches of each region."""
         order = np.argsort(self.of, kind="stable")
         return np.split(order, np.cumsum(np.bincount(self.of, minlength=self.count))[:-1])
 
     def bandwidth(self, arrivals: np.ndarray) -> np.ndarray:
-        """(count,) metres: falls as landings^(-1/6), where bias squared and variance fall alike."""
+        """(count,) metres: the bandwidth of each region. It falls as hits^(-1/6): bias squared and variance fall alike."""
         landed = np.maximum(np.bincount(self.of, arrivals, self.count), 1)
         return WIDTH * np.sqrt(self.area) * landed ** (-1 / 6)
 

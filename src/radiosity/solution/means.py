@@ -14,14 +14,14 @@ from .sides import BACK
 
 
 def of_surfaces(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """See `Solution.surface_interval`."""
+    """The intervals of `Solution.surface_interval`."""
     n, surface = len(solution.patches.scene.names), solution.patches.surface
     ends = _of_sets(solution, level, quantity, np.where(solution.sides.left_out, -1, surface), n, solution.surface_power)
     return ends.low, ends.high
 
 
 def of_scene(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """See `Solution.scene_interval`."""
+    """The interval of `Solution.scene_interval`."""
     power = solution.surface_power
     if power is not None:
         whole = np.zeros((*power.shape[:2], 1, power.shape[3]))
@@ -32,7 +32,7 @@ def of_scene(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndar
 
 
 def of_rows(solution, level: float, quantity: str) -> "Ends":
-    """Of the rows of tables (`Solution.sides`); ``quantity`` may be "absorbed", too."""
+    """Errors and intervals of the rows of tables (`Solution.sides`); ``quantity`` may be "absorbed", too."""
     sides, power = solution.sides, solution.surface_power
     if power is not None:
         power = power[:, :, sides.surface]
@@ -99,8 +99,10 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
 
 
 def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """(k, n_bands) W or lm that a line brings to a set which none reached: the usual power, or the most that one would have
-    brought to its patches that received nothing."""
+    """(k, n_bands) W or lm: the power that a line brings to a set that no line reached.
+
+    It is the usual power, or the most that a line would have brought to its patches that received nothing.
+    """
     mean, area = solution.irradiance, solution.patches.area
     one = np.tile(usual_power(mean, solution.arrivals, area), (shape[0], 1))
     some = key >= 0
@@ -109,5 +111,5 @@ def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 
 def _cluster(solution) -> np.ndarray:
-    """(n_bands,) of patches, which come in larger numbers than sets."""
+    """(n_bands,) the `cluster` of patches, which are more numerous than sets."""
     return cluster(solution.irradiance, solution.irradiance_standard_error, solution.arrivals, solution.patches.area)

@@ -1,4 +1,4 @@
-"""A solution: radiosity, irradiance and their errors for every patch, the books, and where it comes from."""
+"""The model of a solution: radiosity, irradiance and their errors for every patch, energy balance, and provenance."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -17,7 +17,7 @@ from .sides import Sides, sides_of
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution:
-    """What `radiosity.solve` returns.
+    """Radiosity, irradiance and their errors for every patch; `radiosity.solve` returns one.
 
     Attributes:
         patches: the patches solved for.
@@ -71,7 +71,7 @@ class Solution:
 
     @cached_property
     def standard_error(self) -> np.ndarray:
-        """(n_patches, n_bands) float64, of the radiosity; zero on black patches, NaN where unknown."""
+        """(n_patches, n_bands) float64: standard error of the radiosity; zero on black patches, NaN where unknown."""
         error = self.patches.reflectance * self.irradiance_standard_error
         return np.where(self.patches.reflectance == 0, 0.0, error)
 
@@ -92,9 +92,11 @@ class Solution:
 
     @cached_property
     def few(self) -> np.ndarray:
-        """(n_patches,) bool: so few lines landed (fewer than `intervals.FEW`) that the standard error says little, and `interval`
-        goes up to a bound from their number. Not where lines pass on both sides (`Back.OPEN`), and of baselines, which do not
-        count lines, nowhere."""
+        """(n_patches,) bool: so few lines hit the patch (fewer than `intervals.FEW`) that its standard error says little.
+
+        `interval` goes up to a bound from their number. False where lines pass on both sides (`Back.OPEN`), and everywhere for
+        baselines, which do not count lines.
+        """
         passed = self.patches.scene.back[self.patches.face] == Back.OPEN
         return (self.arrivals < intervals.FEW) & ~passed & (not self.by_baseline)
 
@@ -105,18 +107,19 @@ class Solution:
 
     @property
     def signed(self) -> bool:
-        """Lines take power away as well as bring it: there was a control variate."""
+        """Whether lines take power away as well as bring it: there was a control variate."""
         return bool(self.provenance.get("choices", {}).get("control_variate"))
 
     @property
     def by_baseline(self) -> bool:
-        """It was solved by a method that forms the matrix."""
+        """Whether it was solved by a method that forms the matrix."""
         return "scheme" in self.provenance.get("choices", {})
 
     def interval(self, level: float = 0.95, quantity: str = "radiosity") -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper end, (n_patches, n_bands) each, in the solution's unit, of intervals that hold the true value of a
-        patch with probability ``level``: Student's over replicates, and where `few` lines landed up to a bound from their number.
-        NaN where unknown: without replicates.
+        """Lower and upper ends, (n_patches, n_bands) each, of intervals that hold the true value with probability ``level``.
+
+        They are Student's intervals over replicates, in the solution's unit; where `few` lines hit they go up to a bound from
+        their number. NaN where unknown: without replicates.
 
         Args:
             quantity: "radiosity" or "irradiance".
@@ -127,18 +130,23 @@ class Solution:
         return intervals.of_patches(self, level, quantity)
 
     def surface_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
-        """As `interval`, of the area mean over each surface, (n_surfaces, n_bands) each. A side that no line reached, such as the
-        outside of a room, has no part in it (`sides`)."""
+        """Intervals of the area mean over each surface, (n_surfaces, n_bands) each; arguments are those of `interval`.
+
+        A side that no line reached, such as the outside of a room, has no part in it (`sides`).
+        """
         return means.of_surfaces(self, level, quantity)
 
     def scene_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
-        """As `interval`, of the area mean over the whole scene, (n_bands,) each, without sides that no line reached."""
+        """Interval of the area mean over the whole scene, (n_bands,) each, without sides that no line reached."""
         return means.of_scene(self, level, quantity)
 
     @cached_property
     def error(self) -> float:
-        """Relative error of the scene: area-weighted RMS of the standard error of B - E over that of B - E, the largest
-        of the bands (of the irradiance, where nothing reflects); NaN without replicates."""
+        """Relative error of the scene; NaN without replicates.
+
+        It is the area-weighted RMS of the standard error of B - E over that of B - E, the largest of the bands; that of the
+        irradiance where nothing reflects.
+        """
         return self._relative(slice(None))
 
     def _relative(self, rows: np.ndarray | slice) -> float:
@@ -149,9 +157,11 @@ class Solution:
 
     @property
     def history(self) -> np.ndarray:
-        """(k, 2) float64, of baselines: steps, and what was left after them. Full-matrix: iterations, and the largest residual
-        over the largest radiosity; progressive: shots, and unshot over emitted power; hierarchical: passes, and the largest
-        change over the largest radiosity. Empty for methods that do not converge step by step."""
+        """(k, 2) float64: steps of a baseline, and what was left after them. Empty for methods without such steps.
+
+        Full-matrix: iterations, and the largest residual over the largest radiosity. Progressive: shots, and unshot over emitted
+        power. Hierarchical: passes, and the largest change over the largest radiosity.
+        """
         return np.asarray(self.state.get("history", np.zeros((0, 2))))
 
     def surface_table(self) -> list[dict]:
@@ -162,11 +172,11 @@ class Solution:
         return surface_table(self)
 
     def __repr__(self) -> str:
-        """Five lines."""
+        """The solution in five lines."""
         return brief(self)
 
     def _repr_html_(self) -> str:
-        """For notebooks: the same, and the table of surfaces."""
+        """The same for notebooks, with the table of surfaces."""
         from .frames import html
 
         return html(self)

@@ -1,4 +1,4 @@
-"""What two meshes say of a solution's discretisation error."""
+"""The discretisation error of a solution, by comparison with one on finer patches."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +15,7 @@ ORDER = 1.0  # of the change of patch means in the patch size, see docs/errors.m
 
 @dataclass(frozen=True, eq=False)
 class RefineCheck:
-    """What `radiosity.refine_check` returns.
+    """Two solutions, on patches and on patches cut into four; `radiosity.refine_check` returns one.
 
     Attributes:
         coarse: the solution asked for.
@@ -42,7 +42,7 @@ class RefineCheck:
 
     @cached_property
     def change(self) -> np.ndarray:
-        """(n_patches, n_bands) how much a patch's mean radiosity changes when all patches are cut into four, noise included."""
+        """(n_patches, n_bands) the change of a patch's mean radiosity when all patches are cut into four, noise included."""
         return self.fine_mean - self.coarse.radiosity
 
     @cached_property
@@ -52,14 +52,19 @@ class RefineCheck:
 
     @cached_property
     def square_of_means(self) -> np.ndarray:
-        """(n_patches, n_bands) estimate of the squared discretisation error of a patch's mean: that of the change, its noise
-        taken out (so it may be negative where there is little but noise), extrapolated to ever smaller patches."""
+        """(n_patches, n_bands) estimate of the squared discretisation error of a patch's mean.
+
+        It is the square of the change without its noise, extrapolated to ever smaller patches. It may be negative where there is
+        little but noise.
+        """
         return (self.change**2 - self.change_error**2) / (1 - 2.0**-ORDER) ** 2
 
     @cached_property
     def square_within(self) -> np.ndarray:
-        """(n_patches, n_bands) the same of what a constant leaves out within a patch: the mean square of B(x) less the patch's
-        mean. Its four children show three quarters of it, where B is linear."""
+        """(n_patches, n_bands) estimate of the mean square of B(x) less its mean over the patch, which a constant leaves out.
+
+        The four children show three quarters of it, where B is linear.
+        """
         apart = self.fine.radiosity - self.fine_mean[self.parent]
         noise = self._mean(self.fine.standard_error**2) - self.fine_error**2
         return (self._mean(apart**2) - noise) * (4 / 3)

@@ -1,4 +1,4 @@
-"""Files of exporters: they are written by name beside their place, and then take it."""
+"""Files of exporters, which are written beside their place and then take it."""
 
 import os
 from contextlib import contextmanager, suppress

@@ -13,7 +13,7 @@ WIDEST = 32  # letters of a surface's name
 
 
 def report(solution) -> str:
-    """Lines, time, error, books and the surfaces with the largest radiant power."""
+    """Lines, time, error, energy balance and the surfaces with the largest radiant power."""
     scene, unit = solution.patches.scene, solution.patches.scene.power_unit
     rate = solution.rays / solution.seconds / 1e6 if solution.seconds > 0 else math.nan
     error = _error(solution)
@@ -107,7 +107,7 @@ def _called(surface: str, side: str) -> str:
 
 
 def _dark(rows: list[dict]) -> list[str]:
-    """A word of the sides that no line reached, which have no row."""
+    """A line about the sides that no line reached, which have no row."""
     names = list(dict.fromkeys(row["surface"] for row in rows if row["dark"] > 0))
     if not names:
         return []

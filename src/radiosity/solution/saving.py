@@ -1,4 +1,4 @@
-"""Solutions become NPZ files."""
+"""Writing of solution files."""
 
 import json
 from dataclasses import asdict

@@ -42,7 +42,7 @@ class Sides:
 
 
 def sides_of(solution) -> Sides:
-    """Sides by what lines reached (of methods that count none, by what was received)."""
+    """The sides that lines reached (for methods that count none, the sides that received power)."""
     patches = solution.patches
     scene, n = patches.scene, len(patches.scene.names)
     two, surface, place = scene.back == Back.RADIATES, scene.surface, (patches.face, patches.is_back.astype(int))

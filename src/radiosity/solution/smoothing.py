@@ -1,4 +1,4 @@
-"""Landings smoothed patch by patch: local linear fits that keep the power of each flat region, and how far off they are."""
+"""Smoothed hits: local linear fits that keep the power of each flat region, and their bias."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +14,7 @@ ALIKE = 0.5  # of a region's power: a fit that holds less than this of it is no 
 
 @dataclass(frozen=True, eq=False)
 class Smoother:
-    """Fits of a run.
+    """The fits of a run.
 
     Attributes:
         regions: flat regions.
@@ -28,14 +28,16 @@ class Smoother:
 
     @staticmethod
     def of(patches: Patches, arrivals: np.ndarray) -> "Smoother":
-        """With the bandwidths of (n_patches,) landings."""
+        """The fits with the bandwidths that follow from (n_patches,) hits."""
         regions = Regions.find(patches)
         fit, near = (weights(regions, arrivals, patches.centroid, regions.of, planes=planes) for planes in (True, False))
         return Smoother(regions, fit, near)
 
     def smooth(self, power: np.ndarray) -> np.ndarray:
-        """(replicates, n_patches) power that landed, fitted and scaled so that each region has in each replicate what landed
-        on it: sums over regions and surfaces have no bias. A region whose fit holds hardly any of it is left as counted."""
+        """(replicates, n_patches) received power, fitted, and scaled so that each region keeps its own in each replicate.
+
+        So sums over regions and surfaces have no bias. A region whose fit holds hardly any of its power is left as counted.
+        """
         area, of = self.regions.patches.area, self.regions.of
         result = []
         for row in power:

@@ -1,4 +1,4 @@
-"""Per-surface results."""
+"""The table of surfaces."""
 
 import numpy as np
 
@@ -6,8 +6,10 @@ from .means import of_rows
 
 
 def surface_table(solution) -> list[dict]:
-    """A row for each surface. A surface of two sides has two rows, front and back, or only the side that light reached.
-    Sides that no line reached, of the surface or of parts of it, are in no row; ``dark`` tells their area.
+    """The rows of the table, one for each surface.
+
+    A surface of two sides has two rows, front and back, or only the side that light reached. Sides that no line reached, of the
+    surface or of parts of it, are in no row; ``dark`` tells their area.
 
     Keys: surface, side (front, back, lit: fronts of some faces and backs of others, or both: no line met any), patches, area (m²
     of this side), dark (m²); then for each band (suffix " [band]" where there are several): radiosity and irradiance (means),

@@ -1,4 +1,4 @@
-"""Whether what a solution file holds fits together: shapes, kinds, indices and ranges, before anything is computed from it.
+"""The check of a solution file: its arrays must fit together in shapes, kinds, indices and ranges.
 
 A result is believed as it stands; that its numbers were measured cannot be seen from them.
 """
@@ -17,8 +17,10 @@ MOST, MOST_OF_PAINTS = 1e60, 1e30  # of other quantities: squares of powers are 
 
 
 def validate(solution: Solution) -> None:
-    """Raises:
-    ValueError: what does not fit.
+    """Refuse a solution whose parts do not fit together.
+
+    Raises:
+        ValueError: what does not fit.
     """
     scene, patches = solution.patches.scene, solution.patches
     _scene(scene)

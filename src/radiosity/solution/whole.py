@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all, also after a power cut."""
+"""Files that appear whole or not at all, also after a power cut."""
 
 import os
 import re
@@ -44,7 +44,7 @@ def whole_file(path: Path):
 
 
 def check_place(path: Path) -> None:
-    """Find out whether `whole_file` could write there, without leaving a trace; what killed processes left is removed.
+    """Refuse a place where `whole_file` could not write. It leaves no trace, and removes what killed processes left.
 
     Raises:
         OutputError: a folder of that name, or a folder that is read-only. One that is not there is made with the file.
@@ -58,7 +58,7 @@ def check_place(path: Path) -> None:
 
 
 def standing(folder: Path) -> Path:
-    """The folder, or where it is not there yet the one that it is to be made in.
+    """The folder, or where it does not exist the first folder above it that does.
 
     Raises:
         OutputError: a file stands in the way.
@@ -80,7 +80,7 @@ def try_out(trial: Path) -> None:
 
 @contextmanager
 def refused(path):
-    """What the system says against writing ``path``, as an `OutputError`."""
+    """A context in which errors of the system about ``path`` become an `OutputError`."""
     try:
         yield
     except OutputError:  # an OSError itself, which says all already
@@ -90,12 +90,12 @@ def refused(path):
 
 
 def reason(error: Exception) -> str:
-    """Without the file's name and the system's number."""
+    """The text of an error without the file's name and the system's number."""
     return getattr(error, "strerror", None) or str(error)
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove what processes that are no more left of writing ``path``."""
+    """Remove the temporary files of ``path`` that processes left which no longer run."""
     if os.name != "posix":  # elsewhere asking for a process may end it
         return
     place = Path(os.path.realpath(path))
@@ -119,7 +119,7 @@ def _alive(process: int) -> bool:
 
 
 def _settle(folder: Path) -> None:
-    """Have the new name on the disk too, where the system can."""
+    """Write the new name to the disk too, where the system can."""
     with suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
         try:

@@ -1,4 +1,4 @@
-"""A run of which no stage is complete: its integers, to go on from, and no results yet."""
+"""Solutions of runs without a complete stage: they hold integers to go on from, and no results yet."""
 
 import numpy as np
 

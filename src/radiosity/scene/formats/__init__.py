@@ -1,4 +1,4 @@
-"""File formats by suffix. A new one is one new module with ``read(path, options) -> Scene`` and one line here."""
+"""The file formats, by suffix. A new one is one new module with ``read(path, options) -> Scene`` and one line here."""
 
 from dataclasses import replace
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""Files that a scene names in another case than they have: found on systems that tell cases apart, too, and told."""
+"""Files that a scene names in another case than theirs: they are found on all systems, and told."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -24,7 +24,7 @@ def in_any_case(folder: Path, name: str) -> Path | None:
 
 
 def warn_of_case(source, renamed: Iterable[tuple[str, Path]]) -> None:
-    """Tell once which files were found under a name of other case: pairs of the name asked for and the file."""
+    """Tell once which files were found under a name of other case, from pairs of the name asked for and the file."""
     pairs = dict.fromkeys(f"{name} (it is {file.name})" for name, file in renamed)
     if pairs:
         warn(f"{source}: files whose names differ in case: {shown(pairs)}; other systems may not find them")

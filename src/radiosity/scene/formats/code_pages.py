@@ -1,4 +1,4 @@
-"""Code pages of systems, and how likely names are in each: what tells them apart where a file does not."""
+"""Code pages, and how likely names are in each: so they are told apart where a file does not say."""
 
 import codecs
 import math
@@ -26,8 +26,8 @@ KOREAN = frozenset(
 
 @dataclass(frozen=True)
 class CodePage:
-    """A code page: how Python and people call it, the weight (log of a share) of a non-ASCII character between two others, and
-    what Python does with bytes that the code page leaves free, where that is not an error."""
+    """A code page: its name in Python, its usual name, the weight (log of a share) of a non-ASCII character between two others,
+    and what Python does with bytes that the code page leaves free, where that is not an error."""
 
     codec: str
     title: str
@@ -36,7 +36,7 @@ class CodePage:
 
 
 def weight_of(words: list[bytes], page: CodePage) -> float:
-    """Log of the likelihood of the words; minus infinity where one cannot be decoded."""
+    """The logarithm of the likelihood of the words; minus infinity where one cannot be decoded."""
     total = 0.0
     for word in words:
         try:
@@ -49,7 +49,7 @@ def weight_of(words: list[bytes], page: CodePage) -> float:
 
 
 def _lead(character: str, codec: str) -> int:
-    """First byte of a character of two bytes, else 0."""
+    """The first byte of a character of two bytes, else 0."""
     data = character.encode(codec, "ignore")
     return data[0] if len(data) == 2 else 0
 
@@ -61,7 +61,7 @@ def _japanese(before: str, character: str, after: str) -> float:
 
 
 def _of_table(character: str, listed, codec: str, last: int, count: int) -> float:
-    """Of a table of ``count`` characters in rows 0xB0 to ``last`` of a code page; those ``listed`` are frequent."""
+    """The weight of a character in a table of ``count`` characters, rows 0xB0 to ``last``; those ``listed`` are frequent."""
     if character in listed:
         return -math.log(300)
     data = character.encode(codec, "ignore")

@@ -14,5 +14,5 @@ def numbered(name: str, taken: dict[str, int]) -> str:
 
 
 def repeated(names: list[str]) -> list[str]:
-    """Those that come several times, with their number, for a message."""
+    """The names that come several times, with their number, for a message."""
     return [f"{name} ({names.count(name)})" for name in dict.fromkeys(names) if names.count(name) > 1]

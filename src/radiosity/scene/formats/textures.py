@@ -50,7 +50,7 @@ def linear_image(data: bytes, what: str, options: ReadOptions, *, raw: bool = Fa
 
 
 def decode_srgb(value: np.ndarray) -> np.ndarray:
-    """sRGB values in [0, 1] to linear ones (IEC 61966-2-1)."""
+    """Linear values from sRGB values in [0, 1] (IEC 61966-2-1)."""
     value = np.asarray(value, np.float64)
     return np.where(value <= 0.04045, value / 12.92, ((np.maximum(value, 0) + 0.055) / 1.055) ** 2.4)
 

@@ -1,4 +1,4 @@
-"""Where the vertices of a glTF mesh stand: morph targets first, then the joints of a skin, or else the transform of the node.
+"""The places of the vertices of a glTF mesh: morph targets first, then the joints of a skin, or else the transform of the node.
 
 A vertex of a skin is the weighted mean of where its joints take it; the transform of its node is ignored (glTF 2.0, 3.7.3.3).
 """
@@ -66,7 +66,7 @@ class Skins:
         return values
 
     def _matrices(self, index) -> np.ndarray:
-        """(n_joints, 4, 4) from the mesh's own coordinates to the world."""
+        """(n_joints, 4, 4) matrices from the mesh's own coordinates to the world."""
         file, skin = self.file, self.file.item("skins", index)
         if index not in self.made:
             joints = file.items(skin, "joints")
@@ -83,7 +83,7 @@ class Skins:
         return self.made[index]
 
     def _world(self, joint) -> np.ndarray:
-        """(4, 4) of a joint, through all nodes above it."""
+        """(4, 4) matrix of a joint to the world, through all nodes above it."""
         matrix, above, seen = np.eye(4), self._parents(), set()
         while joint is not None:
             info = self.file.item("nodes", joint)

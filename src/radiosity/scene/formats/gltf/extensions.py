@@ -1,4 +1,4 @@
-"""What the extensions of a glTF file mean for its faces: those that are read, those that change nothing here, and the rest."""
+"""The extensions of a glTF file: those that are read, those that change nothing here, and the rest."""
 
 import numpy as np
 
@@ -45,7 +45,11 @@ MOST_INSTANCED = 20_000_000  # faces or vertices of one object
 
 
 def check_required(file: GltfFile) -> None:
-    """Raises: SceneError where the file cannot be understood without an extension that is not read."""
+    """Refuse files that cannot be understood without an extension that is not read.
+
+    Raises:
+        SceneError: it is required.
+    """
     required = [str(name) for name in file.items(file.tree, "extensionsRequired")]
     if packed := [name for name in required if name in COMPRESSED]:
         raise file.fail(f"is compressed with {shown(packed)}, which is not read; {UNPACK}")
@@ -56,7 +60,7 @@ def check_required(file: GltfFile) -> None:
 
 
 def warn_of_unread(file: GltfFile) -> None:
-    """Tell once what the file uses beyond the extensions that are read, and that it moves."""
+    """Tell once of extensions that are not read, and of motion."""
     used = [str(name) for name in file.items(file.tree, "extensionsUsed")]
     known = (*READ, *GLOSSY, *SILENT, *COMPRESSED)
     if unread := [name for name in used if name not in known]:

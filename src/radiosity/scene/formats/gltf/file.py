@@ -22,7 +22,7 @@ UNPACK = "export it without compression (in Blender: untick Compression), or unp
 
 @dataclass(frozen=True, eq=False)
 class GltfFile:
-    """Parsed but not interpreted. Every lookup raises a `SceneError` that names what is wrong."""
+    """A file that is parsed but not interpreted. Every lookup raises a `SceneError` that names what is wrong."""
 
     path: Path
     options: ReadOptions

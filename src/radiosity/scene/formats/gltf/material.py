@@ -30,7 +30,7 @@ class Texture:
     sampler: Sampler = DEFAULT_SAMPLER
 
     def uv(self, given: np.ndarray) -> np.ndarray:
-        """glTF coordinates (origin at the upper left) to those of a paint (lower left)."""
+        """Texture coordinates of a paint (origin at the lower left) from those of glTF (upper left)."""
         c, s = np.cos(self.rotation), np.sin(self.rotation)
         moved = (given * self.scale) @ np.array([[c, -s], [s, c]]) + self.offset
         return np.column_stack([moved[:, 0], 1.0 - moved[:, 1]])
@@ -121,7 +121,7 @@ class Materials:
         return Finish(name, material, self._texture(texture, what), emissive, plain)
 
     def _is_glossy(self, metal: dict, extensions: dict, what: str) -> bool:
-        """Only what the file says explicitly: the defaults (fully metallic) of files that leave it out mean nothing."""
+        """Whether the file says so explicitly: the defaults (fully metallic) of files that leave it out mean nothing."""
         textured = "metallicRoughnessTexture" in metal
         metallic, rough = (
             self.file.numbers({"v": [metal.get(key, default)]}, "v", (0.0,), f"{key} of {what}")[0]
@@ -186,6 +186,6 @@ class Materials:
 
 
 def _unless_grey(values) -> tuple[float, ...]:
-    """Three equal numbers are one: a file without colours is a grey scene."""
+    """One number where three are equal: a file without colours is a grey scene."""
     values = tuple(float(v) for v in values)
     return values[:1] if len(set(values)) == 1 else values

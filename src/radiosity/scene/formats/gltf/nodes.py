@@ -136,7 +136,7 @@ def local_matrix(file: GltfFile, info: dict, what: str) -> np.ndarray:
 
 
 def composed(translation: np.ndarray, rotation: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """(..., 4, 4) of translations (..., 3), quaternions x y z w (..., 4) of any length, and scales (..., 3)."""
+    """(..., 4, 4) matrices of translations (..., 3), quaternions x y z w (..., 4) of any length, and scales (..., 3)."""
     x, y, z, w = np.moveaxis(rotation, -1, 0)
     s = 2 / (rotation**2).sum(axis=-1)
     matrix = np.zeros((*rotation.shape[:-1], 4, 4))

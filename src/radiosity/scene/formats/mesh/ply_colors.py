@@ -63,7 +63,7 @@ def colors_of(path: Path, columns: Columns, element: str) -> np.ndarray | None:
 
 
 def _warn_of_others(path: Path, columns: Columns, element: str, held: dict[str, np.ndarray], used: tuple[str, ...]) -> None:
-    """What is not read and would change the colours: opacity, and other properties of light and colour."""
+    """Tell of properties that are not read and would change the colours: opacity, and other properties of light and colour."""
     for name in (name for name in OPACITIES if name in held and (name != "a" or "r" in used)):
         full = 1.0 if held[name].dtype.kind == "f" and held[name].max(initial=0) <= 1 else FULL
         if (held[name] < full).any():

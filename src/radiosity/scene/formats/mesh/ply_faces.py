@@ -45,7 +45,7 @@ def _indices(path: Path, element: Columns | None) -> Lists | None:
 
 
 def _triangles(strips: Lists) -> Lists:
-    """Every second triangle of a strip turns the other way round; those with a corner twice only lead on."""
+    """The triangles of a strip. Every second one turns the other way round; those with a corner twice only lead on."""
     index, size = strips.values, len(strips.values)
     begins = np.zeros(size + 1, bool)
     begins[np.cumsum(strips.sizes)] = True

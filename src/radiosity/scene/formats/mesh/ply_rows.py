@@ -7,7 +7,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Property:
-    """``dtype`` of the values; ``count`` of their number where they are a list, else None."""
+    """A property: ``dtype`` of its values, and ``count`` of their number where they are a list, else None."""
 
     name: str
     dtype: np.dtype

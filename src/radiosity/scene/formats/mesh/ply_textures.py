@@ -1,4 +1,4 @@
-"""Which texture each face of a PLY file has, and where its corners lie in it."""
+"""The textures of a PLY file: which of them each face has, and where its corners lie in it."""
 
 from pathlib import Path
 

@@ -10,7 +10,7 @@ NEUTRAL = (1 / 3, 1 / 3)
 
 @dataclass(frozen=True)
 class MgfMaterial:
-    """Values and (x, y) colours as the file gives them; the default is a two-sided black absorber."""
+    """A material: values and (x, y) colours as the file gives them; the default is a two-sided black absorber."""
 
     reflectance: float = 0.0
     reflectance_color: tuple[float, float] = NEUTRAL
@@ -67,7 +67,7 @@ class NamedContexts:
         return "unnamed" if self._material is None else decode(self._material)
 
     def _get(self, table: dict, words: list[bytes], default) -> bytes | None:
-        """``v``, ``c`` or ``m`` with ``[name [= [template]]]``: the name that becomes current."""
+        """The name that becomes current by a statement ``v``, ``c`` or ``m`` with ``[name [= [template]]]``."""
         if len(words) == 1:
             table[None] = default
             return None

@@ -1,4 +1,4 @@
-"""From a reduced MGF description to faces: objects name them, transformations place and repeat them."""
+"""Faces of a reduced MGF description: objects name them, transformations place and repeat them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field

@@ -68,7 +68,7 @@ def program(name: str) -> str:
 
 
 def _bound(pid: int) -> None:
-    """Limits on memory and processor time of a program that works on strangers' data, where the system has them."""
+    """Limit the memory and processor time of a program that works on data of others, where the system can."""
     try:
         import resource
 
@@ -79,7 +79,7 @@ def _bound(pid: int) -> None:
 
 
 def _run(data: bytes, source: str) -> tuple[bytes, bytes, int]:
-    """Output, error text and status of one run, with bounds on time and output."""
+    """The output, error text and status of one run, with bounds on time and output."""
     with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as errors:
         given.write(data)
         given.seek(0)

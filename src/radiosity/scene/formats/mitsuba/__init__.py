@@ -52,7 +52,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
 
 
 class Reader:
-    """Collects the parts of a file.
+    """A reader that collects the parts of a file.
 
     Attributes:
         left_out: what does not take part, by name.

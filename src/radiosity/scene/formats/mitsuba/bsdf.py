@@ -24,7 +24,7 @@ OTHERS = ("blendbsdf", "hair", "measured", "measured_polarized", "null", "twosid
 
 @dataclass(frozen=True)
 class Side:
-    """What one side reflects; None where nothing is known."""
+    """The reflectance of one side; None where nothing is known."""
 
     albedo: "Color | Image | VertexColors | None" = None
     diffuse: bool = True

@@ -26,7 +26,7 @@ class Image:
     sampler: Sampler = DEFAULT_SAMPLER
 
     def coordinates(self, uv: np.ndarray) -> np.ndarray:
-        """Mitsuba's texture coordinates (n, 2) to those of a paint, whose v grows from the last row to the first."""
+        """(n, 2) texture coordinates of a paint, whose v grows from the last row to the first, from those of Mitsuba."""
         u, v = (np.column_stack([uv, np.ones(len(uv))]) @ self.to_uv.T).T[:2]
         return np.column_stack([u, 1 - v])
 
@@ -50,7 +50,7 @@ def collapse(color) -> Color:
 
 
 class Colors:
-    """Reads colours; images are found in ``folders`` and read once."""
+    """A reader of colours; images are found in ``folders`` and read once."""
 
     def __init__(self, folders: list[Path], options: ReadOptions):
         self._folders, self._options = folders, options
@@ -119,7 +119,7 @@ class Colors:
 
 
 def _sampler(node: Node) -> Sampler:
-    """How a bitmap is continued."""
+    """The sampler of a bitmap: how it is continued."""
     wrap, kind = node.values.get("wrap_mode", "repeat"), node.values.get("filter_type", "bilinear")
     if wrap not in WRAPS or kind not in FILTERS:
         text = f"{node.place}: wrap_mode {wrap!r} and filter_type {kind!r} of a bitmap"

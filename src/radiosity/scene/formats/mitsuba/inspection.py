@@ -1,4 +1,4 @@
-"""What must hold before Mitsuba's XML parser sees a file: it is XML, not nested so deep that recursion ends the process, declares
+"""Checks of a file before Mitsuba's XML parser sees it: it is XML, not nested so deep that recursion ends the process, declares
 no entities, and includes nothing from outside the scene's folder. Rotations that Mitsuba makes no rotations of are told."""
 
 import math
@@ -83,7 +83,7 @@ def _filled(text: str, defaults: dict[str, str]) -> str:
 
 
 def _length(attributes: dict[str, str]) -> float | None:
-    """Length of the axis of a rotation that turns by an angle, if it is not 1; what is no number is left to Mitsuba's parser."""
+    """The length of the axis of a rotation that turns by an angle, if it is not 1; Mitsuba's parser judges what is no number."""
     words = attributes.get("value", "").replace(",", " ").split() or [attributes.get(axis, "0") for axis in "xyz"]
     try:
         length, angle = math.hypot(*map(float, words)), float(attributes.get("angle", "0"))

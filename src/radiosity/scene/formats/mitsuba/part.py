@@ -80,5 +80,5 @@ def _mean(side: Side, geometry: Geometry, name: str) -> Side:
 
 
 def _base(side: Side) -> Color | None:
-    """What textures and vertex colours multiply, or the reflectance itself."""
+    """The base that textures and vertex colours multiply, or the reflectance itself."""
     return (1.0,) if isinstance(side.albedo, Image | VertexColors) else side.albedo

@@ -1,4 +1,4 @@
-"""Transformations of Mitsuba's shapes, and which side is the front after them."""
+"""Transformations of Mitsuba's shapes, and the front of a shape after them."""
 
 from dataclasses import replace
 

@@ -71,7 +71,7 @@ def read_library(path: Path, options: ReadOptions, codec: str) -> dict[str, Fini
 
 
 def _warn_of_rest(path: Path, entries: dict) -> None:
-    """What materials hold that changes their colour or shape, and is not read."""
+    """Tell of statements that change colour or shape and are not read."""
     curves = [name for name, entry in entries.items() if any(_is(entry, key, "spectral") for key in ("kd", "ke"))]
     if curves:
         warn(f"{path}: colours that are spectral curves (.rfl) are not read, write them as red, green and blue: {shown(curves)}")

@@ -49,7 +49,7 @@ class Map:
 
 @dataclass(eq=False)
 class Maps:
-    """Reads the textures of a library, each image once."""
+    """The textures of a library; each image is read once."""
 
     path: Path
     options: ReadOptions
@@ -95,7 +95,7 @@ class Maps:
         self.lost.append(str(error))
 
     def _find(self, name: str) -> Path:
-        """As named, or of that name beside the library: names of other machines are common."""
+        """The file of this name, or of its last part beside the library: names of other machines are common."""
         plain = name.strip('"').replace("\\", "/")
         for file in (self.path.parent / plain, self.path.parent / Path(plain).name):
             if plain and file.is_file():

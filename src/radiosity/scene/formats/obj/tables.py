@@ -44,7 +44,7 @@ NONE = -1
 
 @dataclass(eq=False)
 class Tables:
-    """What the lines say: numbers, and the corners of the faces by surface."""
+    """The tables of a file: numbers, and the corners of the faces by surface."""
 
     vertices: list[list[float]] = field(default_factory=list)
     uv: list[list[float]] = field(default_factory=list)
@@ -60,7 +60,7 @@ class Tables:
 
 
 def parse(path: Path) -> Tables:
-    """Read all lines.
+    """The tables of all lines.
 
     Raises:
         SceneError: a line that is not understood, or a vertex that does not exist.

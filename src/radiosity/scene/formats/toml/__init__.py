@@ -108,7 +108,7 @@ class Looks:
         return replace(part, material=material, faces=_turned(np.asarray(part.faces)) if flipped else part.faces)
 
     def with_powers(self, scene: Scene, source: str) -> Scene:
-        """Powers become exitances: spread over the radiating sides of all faces that an entry holds for."""
+        """The scene with powers as exitances: they are spread over the radiating sides of all faces that an entry holds for."""
         emission, back = scene.emission.copy(), scene.back_emission.copy()
         areas = scene.area * np.where(scene.back == Back.RADIATES, 2, 1)
         for number in sorted(set(self.powers.values())):
@@ -159,7 +159,7 @@ def _turned(faces: np.ndarray) -> np.ndarray:
 
 
 def _prefixed(name: str, prefix: str | None, stem: str) -> str:
-    """``lamp`` alone for a file that names nothing itself."""
+    """A name with its prefix; the prefix alone for a file that names nothing itself."""
     if not prefix:
         return name
     return prefix if name == stem else f"{prefix}/{name}"
@@ -175,7 +175,7 @@ def _matches(name: str, pattern: str) -> bool:
 
 
 def _exitance(entry) -> tuple[float, ...] | None:
-    """W/m²; zeros, as many as there are bands, where the entry gives a power."""
+    """The exitance of an entry, W/m²; zeros, as many as there are bands, where the entry gives a power."""
     if entry.radiance is not None:
         return tuple(np.pi * v for v in entry.radiance)
     if entry.power is not None:

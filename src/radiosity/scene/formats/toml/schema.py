@@ -1,4 +1,4 @@
-"""What a .toml scene may hold (docs/scene-toml.md), checked by pydantic; its errors become ours."""
+"""The schema of a .toml scene (docs/scene-toml.md), checked by pydantic; its errors become ours."""
 
 from typing import Annotated, Literal
 
@@ -12,7 +12,7 @@ NotNegative = Annotated[float, Field(ge=0)]
 
 
 def _listed(value):
-    """One entry is a list of one."""
+    """A list; one entry becomes a list of one."""
     return [value] if isinstance(value, (int, float, str)) else value
 
 
@@ -40,12 +40,12 @@ class Geometry(_Table):
 
 
 def _file(value):
-    """A path alone is a geometry without settings."""
+    """The settings of a geometry; a path alone has none."""
     return {"file": value} if isinstance(value, str) else value
 
 
 class Surface(_Table):
-    """What surfaces with a matching name get."""
+    """The settings of surfaces with a matching name."""
 
     name: Annotated[str, Field(min_length=1)]
     reflectance: Bands | None = None
