@@ -42,7 +42,7 @@ class Engine:
         if self.total + 2 * replicates > 2**31:
             raise MethodError(f"{self.n} patches times {replicates} replicates are too many to count; take fewer of either")
         self.types = geometry.device.types
-        self.numbers = ready(method.numbers, self.types)
+        self.numbers = ready(method.points, self.types)
         u32 = self.types.UInt32
         self.rho = upload(u32, self.source.rho)
         self.phase = upload(u32, phases(seed, replicates, self.n))

@@ -29,7 +29,7 @@ class FirstShot:
         black = np.zeros_like(self.groups.reflectance)
         groups = BandGroups(self.groups.index, self.groups.scale, self.groups.emission, black)
         source = replace(self.source, rho=np.zeros_like(self.source.rho))
-        local = Method(numbers=method.numbers, randomisation=method.randomisation)
+        local = Method(numbers=method.points, randomisation=method.randomisation)
         self.engine = Engine(geometry, source, local, seed + APART, replicates, groups)
 
     def fire(self, lines: int, swept: Swept) -> None:
