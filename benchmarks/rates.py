@@ -8,11 +8,10 @@ import radiosity as rd  # first: it points Dr.Jit to a libLLVM
 # isort: split
 import drjit as dr
 
-from radiosity.algorithms.firing.counters import Engine
+from radiosity.algorithms.firing.counters import FiringCounters
 from radiosity.device.backend import choose, entered
-from radiosity.problem.quanta import Source
+from radiosity.problem.model import Problem
 from radiosity.tracing.geometry import Geometry
-from radiosity.tracing.lines import local_line
 
 LINES = 1 << 22  # of a sweep
 TURNS = 7
@@ -30,14 +29,13 @@ class Rates:
 def measure(patches: rd.Patches, *, coherent: bool = False, lines: int = LINES, turns: int = TURNS, device: str = "cpu") -> Rates:
     """Time whole sweeps (what is owed, lanes, numbers, lines, hits, tally) of black patches against the bare caster."""
     geometry = Geometry(patches, choose(device))
-    source = Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0])
-    engine = Engine(geometry, source, rd.Method(coherent=coherent), 0, 1)
-    rays, width = _rays(engine, lines)
+    counters = FiringCounters(geometry, Problem.of(patches), rd.Method(coherent=coherent), 0, 1)
+    rays, width = _rays(counters, lines)
     ours, bare, quanta = [], [], lines
     for turn in range(turns + 1):
         quanta += lines
-        engine.set_quanta(quanta)
-        one = _time(lambda: engine.fire(*engine.due()))
+        counters.set_quanta(quanta)
+        one = _time(lambda: counters.fire(*counters.due()))
         two = _time(lambda: _bare(geometry, rays))
         if turn:  # the first compiles
             ours.append(lines / one / 1e6)
@@ -46,22 +44,22 @@ def measure(patches: rd.Patches, *, coherent: bool = False, lines: int = LINES, 
     return Rates(max(ours), max(bare), ratios[len(ratios) // 2])
 
 
-def _rays(engine: Engine, lines: int):
+def _rays(counters: FiringCounters, lines: int):
     """The rays of the first sweep, in memory, in the order in which they are fired."""
-    types = engine.types
-    engine.set_quanta(lines)
-    sweep, largest = engine.due()
-    bits = engine.numbers.bits_for(largest)
+    types = counters.types
+    counters.set_quanta(lines)
+    wavefront, largest = counters.due()
+    bits = counters.tracer.numbers.bits_for(largest)
     parts, total = [], 0
-    for chunk in (chunk for batch in engine.batches(sweep) for chunk in batch.chunks(types)):
-        number, index, record = chunk.read(types)
-        points = engine.points(number, index, dr.zeros(types.UInt32, chunk.width), record, bits)
-        ray = local_line(engine.geometry, record, points)
+    for launch in (launch for batch in counters.batches(wavefront) for launch in batch.launches(types)):
+        number, index, record = launch.read(types)
+        points = counters.tracer.points(number, index, dr.zeros(types.UInt32, launch.width), record, bits)
+        ray = counters.tracer.leave(record)(points)
         dr.eval(ray)
         parts.append(ray)
-        total += chunk.width
+        total += launch.width
     dr.sync_thread()
-    engine.fire(sweep, largest)
+    counters.fire(wavefront, largest)
     return parts, total
 
 
@@ -69,7 +67,7 @@ def _bare(geometry: Geometry, rays) -> None:
     with entered(geometry.device) as mi:
         for origin, direction in rays:
             ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
-            hit = geometry.tree.caster.ray_intersect_preliminary(ray, coherent=False)
+            hit = geometry.bvh.scene.ray_intersect_preliminary(ray, coherent=False)
             dr.eval(hit.t, hit.prim_index, hit.prim_uv)
 
 

@@ -12,9 +12,9 @@ import radiosity as rd
 # isort: split
 import drjit as dr
 
-from radiosity.algorithms.firing.counters import Engine
+from radiosity.algorithms.firing.counters import FiringCounters
 from radiosity.device.backend import choose
-from radiosity.problem.quanta import Source
+from radiosity.problem.model import Problem
 from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.global_lines.spans import Spans
 
@@ -59,14 +59,14 @@ def spans() -> None:
 def measure(patches: rd.Patches, turns: int = TURNS, lines: int = LINES) -> tuple[float, dict[str, Cost]]:
     """Million local lines a second, and the cost of each kind's spans."""
     geometry = Geometry(patches, choose("cpu"))
-    engine = Engine(geometry, Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0]), rd.Method(), 0, 1)
+    counters = FiringCounters(geometry, Problem.of(patches), rd.Method(), 0, 1)
     kinds = {kind: Spans(geometry, rd.Method(lines=kind, order="matrix"), 0, 1) for kind in KINDS}
     local, rates, each = [], {kind: [] for kind in KINDS}, {}
     for turn in range(turns + 1):
-        engine.set_quanta((turn + 1) * lines)
-        sweep, largest = engine.due()
-        assert sweep is not None
-        seconds, _ = _time(lambda sweep=sweep, largest=largest: engine.fire(sweep, largest))
+        counters.set_quanta((turn + 1) * lines)
+        wavefront, largest = counters.due()
+        assert wavefront is not None
+        seconds, _ = _time(lambda wavefront=wavefront, largest=largest: counters.fire(wavefront, largest))
         found = {}
         for kind, source in kinds.items():
             took, pairs = _time(lambda source=source, turn=turn: source.draw(0, turn * lines, lines))

@@ -3,7 +3,7 @@
 import numpy as np
 
 import radiosity as rd
-from radiosity.algorithms.process import AbstractTally
+from radiosity.algorithms.base import AbstractTally
 from radiosity.algorithms.table import make
 from radiosity.device.backend import choose
 from radiosity.problem.model import Problem

@@ -11,11 +11,10 @@ import numpy as np
 from iterations import open_room
 
 import radiosity as rd
-from radiosity.algorithms.process import AbstractProcess, State
+from radiosity.algorithms.base import AbstractAlgorithm, Interrupted, State
 from radiosity.algorithms.table import make
 from radiosity.device.backend import choose
 from radiosity.problem.model import Problem
-from radiosity.run.progress import Interrupted
 from radiosity.tracing.geometry import Geometry
 
 STAGES = (1_000, 6_000)  # quanta; the first stage of a run is short
@@ -60,16 +59,16 @@ def scene_of(method: rd.Method) -> tuple[Geometry, Problem]:
     return coloured()
 
 
-def begun(method: rd.Method, seed: int = 4) -> AbstractProcess:
+def begun(method: rd.Method, seed: int = 4) -> AbstractAlgorithm:
     return make(*scene_of(method), method, seed, 2)
 
 
 def whole(method: rd.Method, stages=STAGES, seed: int = 4) -> State:
     """The state after these stages, never interrupted."""
-    process = begun(method, seed)
+    algorithm = begun(method, seed)
     for quanta in stages:
-        process.advance(quanta, lambda lines: None)
-    return process.capture()
+        algorithm.advance(quanta, lambda lines: None)
+    return algorithm.capture()
 
 
 def filed(state: State) -> State:
@@ -87,19 +86,19 @@ def interrupted(method: rd.Method) -> tuple[State, int]:
     def stop(lines):
         raise Interrupted("test")
 
-    process, stops = begun(method), 0
+    algorithm, stops = begun(method), 0
     for quanta in STAGES:
         while stops < MOST:
             try:
-                process.advance(quanta, stop)
+                algorithm.advance(quanta, stop)
                 break
             except Interrupted:
-                state = filed(process.capture())
+                state = filed(algorithm.capture())
                 stops += 1
-                process = begun(method)
-                process.restore(state)
-                assert process.quanta == quanta
-    return process.capture(), stops
+                algorithm = begun(method)
+                algorithm.restore(state)
+                assert algorithm.quanta == quanta
+    return algorithm.capture(), stops
 
 
 def same(one: State, other: State, sums: float = 0.0) -> bool:

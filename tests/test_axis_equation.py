@@ -14,7 +14,7 @@ from methods import critical
 from replicates import powers
 
 import radiosity as rd
-from radiosity.algorithms.walks.flock import Legs
+from radiosity.algorithms.walks.particles import PathSegments
 from radiosity.method.equation import EQUATIONS
 
 REPLICATES, RAYS = 16, 400_000
@@ -70,8 +70,8 @@ class TestContract:
 
 
 def test_a_continuous_walk_that_forgets_where_it_landed_is_rejected(exact, monkeypatch):
-    begin = Legs.__init__
-    monkeypatch.setattr(Legs, "__init__", lambda self, engine, *, continuous: begin(self, engine, continuous=False))
+    begin = PathSegments.__init__
+    monkeypatch.setattr(PathSegments, "__init__", lambda self, engine, *, continuous: begin(self, engine, continuous=False))
     found = differences(rd.Method(equation="continuous"), exact)
     assert found["continuous"] > 2
     assert found["discrete"] < 1

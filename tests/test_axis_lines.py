@@ -17,7 +17,7 @@ from scipy import stats
 import radiosity as rd
 from radiosity.method.lines import LINES
 from radiosity.sampling import global_lines
-from radiosity.tracing import departure
+from radiosity.tracing import ray_generation
 
 ALPHA, RAYS, REPLICATES, RUNS = 1e-4, 30_000, 16, 6
 EDGE = 1e-4  # of all power: lines within single precision of an edge
@@ -131,7 +131,7 @@ def drawn_to_the_equator(first, second):
 
 @each(lambda axis, value: plainest(axis, value)[:1], "lines")
 def test_wrong_directions_are_rejected(method, monkeypatch):
-    monkeypatch.setattr(departure, "hemisphere", uniform_hemisphere)
+    monkeypatch.setattr(ray_generation, "hemisphere", uniform_hemisphere)
     monkeypatch.setattr(global_lines, "on_sphere", drawn_to_the_equator)
     scene, exact = parallel_squares()
     assert off(received(scene, method, 2), exact) > 2

@@ -13,8 +13,8 @@ from states import MOST, ODD, STAGES, SUMS, begun, interrupted, same, scene_of, 
 import radiosity as rd
 from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.algorithms.global_lines import mixing, multipath, pooling
-from radiosity.algorithms.matrix import process as matrix
-from radiosity.algorithms.walks.launches import AbstractLaunches
+from radiosity.algorithms.matrix import algorithm as matrix
+from radiosity.algorithms.walks.launches import AbstractWalks
 from radiosity.method.order import ORDERS
 from radiosity.tracing import lanes
 
@@ -61,16 +61,16 @@ class TestContract:
         assert not begun(method).unfinished(state)
 
     def test_stages_do_not_matter_where_it_says_so(self, method):
-        if begun(method).nested:
+        if begun(method).stage_independent:
             assert same(whole(method, STAGES[-1:]), whole(method, ODD), SUMS)
 
     def test_lines_only_grow(self, method):
-        process, (_, problem) = begun(method), scene_of(method)
+        algorithm, (_, problem) = begun(method), scene_of(method)
         lines = [0]
         for quanta in (500, *STAGES):
-            process.advance(quanta, lambda lines: None)
-            assert process.quanta == quanta
-            lines.append(process.tally.lines(problem, process.capture()))
+            algorithm.advance(quanta, lambda lines: None)
+            assert algorithm.quanta == quanta
+            lines.append(algorithm.tally.lines(problem, algorithm.capture()))
         assert (np.diff(lines) > 0).all()
 
     def test_an_empty_state_is_refused(self, method):
@@ -108,14 +108,14 @@ def test_an_order_with_a_memory_of_its_own_is_rejected(monkeypatch, short):
     """It leaves sweeps out by numbers of its own, which no state holds."""
     drawn = np.random.default_rng(0)
 
-    def run(engine, progress):
-        batch, largest = engine.due()
-        while batch is not None and drawn.random() < 0.8:
-            engine.fire(batch, largest)
-            progress(batch.total)
-            batch, largest = engine.due()
+    def run(self, counters, swept):
+        wavefront, largest = counters.due()
+        while wavefront is not None and drawn.random() < 0.8:
+            counters.fire(wavefront, largest)
+            swept(wavefront.total)
+            wavefront, largest = counters.due()
 
-    monkeypatch.setattr(breadth_first, "run", run)
+    monkeypatch.setattr(breadth_first.BreadthFirst, "run", run)
     method = rd.Method(order="breadth-first")
     assert not same(whole(method), whole(method))
     assert not same(interrupted(method)[0], whole(method))
@@ -123,8 +123,8 @@ def test_an_order_with_a_memory_of_its_own_is_rejected(monkeypatch, short):
 
 
 def test_a_state_that_leaves_out_where_it_was_is_rejected(monkeypatch, short):
-    restore = AbstractLaunches.restore
-    monkeypatch.setattr(AbstractLaunches, "restore", lambda self, state: restore(self, state | {"launches": np.array(0)}))
+    restore = AbstractWalks.restore
+    monkeypatch.setattr(AbstractWalks, "restore", lambda self, state: restore(self, state | {"launches": np.array(0)}))
     method = rd.Method(equation="continuous")
     assert not same(interrupted(method)[0], whole(method))
 

@@ -15,7 +15,7 @@ from replicates import powers
 from scipy.stats import t as student
 
 import radiosity as rd
-from radiosity.algorithms.process import AbstractBiasedTally
+from radiosity.algorithms.base import AbstractBiasedTally
 from radiosity.algorithms.table import make
 from radiosity.device.backend import choose
 from radiosity.problem.model import Problem

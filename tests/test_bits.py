@@ -6,7 +6,7 @@ import pytest
 import radiosity as rd
 from radiosity.algorithms.firing import counters as firing
 from radiosity.device.backend import choose, upload
-from radiosity.problem.quanta import Source, owed, phases
+from radiosity.problem.quanta import Source, phases, target_counts
 from radiosity.run.budget import first_stage
 from radiosity.tracing import lanes
 
@@ -46,9 +46,16 @@ def test_seed_matters_and_replicates_do_not(patches):
 def test_patches_owe_what_the_contract_says(patches):
     arrivals, fired, missed = counters(patches)
     source = Source.of(patches, patches.emission[:, 0], patches.reflectance[:, 0])
-    assert np.array_equal(fired, owed(source, QUANTA, arrivals, phases(5, 3, len(patches))))
+    assert np.array_equal(fired, target_counts(source, QUANTA, arrivals, phases(5, 3, len(patches))))
     assert np.array_equal(fired.sum(axis=1), arrivals.sum(axis=1) + missed.sum(axis=0))
     assert missed[0].min() > 0  # through the opening
+
+
+def test_replicates_and_patches_have_independent_phases():
+    phase = phases(5, 3, 10_000) * 2.0**-32
+    # correlations of independent numbers have a standard error of 0.01; 5 of them
+    assert np.abs(np.corrcoef(phase) - np.eye(3)).max() < 0.05
+    assert np.abs([np.corrcoef(row[1:], row[:-1])[0, 1] for row in phase]).max() < 0.05
 
 
 def test_quanta_replay_a_run_bit_for_bit():
@@ -105,6 +112,7 @@ def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, shif
     monkeypatch.setattr(lanes.Batch, "of", batch)
     monkeypatch.setattr(lanes, "CHUNK", 2**13 + 3)
     monkeypatch.setattr(lanes, "CORE_CHUNK", 1)
+    monkeypatch.setattr(firing, "MUCH", 2**40)
     one = rd.solve(cut, quanta=2**18, replicates=3)
     assert not any(b.several for b in took)
     monkeypatch.setattr(firing, "MUCH", 0)

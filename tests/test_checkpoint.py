@@ -13,7 +13,7 @@ from kills import assert_same
 
 import radiosity as rd
 from radiosity.algorithms.global_lines import multipath, pooling
-from radiosity.algorithms.matrix import process
+from radiosity.algorithms.matrix import algorithm
 from radiosity.run import checkpoint as checkpoints
 from radiosity.run.checkpoint import Checkpoint
 from radiosity.tracing import lanes
@@ -69,7 +69,13 @@ def stopped(patches, method, path, sweeps: int, **options) -> rd.Solution:
 @pytest.fixture
 def short(monkeypatch, always):
     """And between two sweeps as few lines as can be, so that each kind of run has several."""
-    for module, name in ((lanes, "CHUNK"), (lanes, "CORE_CHUNK"), (multipath, "BATCH"), (pooling, "BATCH"), (process, "LAUNCH")):
+    for module, name in (
+        (lanes, "CHUNK"),
+        (lanes, "CORE_CHUNK"),
+        (multipath, "BATCH"),
+        (pooling, "BATCH"),
+        (algorithm, "LAUNCH"),
+    ):
         monkeypatch.setattr(module, name, 1 << 14)
 
 

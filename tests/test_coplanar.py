@@ -15,10 +15,10 @@ from radiosity.scene.coplanar import contacts
 from radiosity.scene.model import Back
 from radiosity.scene.overlap import common, overlapping
 from radiosity.scene.shapes import quad
-from radiosity.tracing.caster import first_hits
+from radiosity.tracing.first_hits import first_hits
 from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.global_lines.spans import CODES, LOST, Spans
-from radiosity.tracing.lines import land
+from radiosity.tracing.hits import first_hit
 from validation.closed_forms.rectangles import parallel
 
 SIDES = ("floor", "ceiling", "west", "east", "south", "north")
@@ -224,7 +224,7 @@ def test_what_a_line_meets_does_not_depend_on_its_packet(swap):
     scene = two_rooms(swap=swap, cut=(0, 2), turn=rotation(7))
     geometry = Geometry(rd.subdivide(scene, cells=1), choose("cpu"))
     geometry.prepare()
-    types, tree = geometry.device.types, geometry.tree
+    types, tree = geometry.device.types, geometry.bvh
     random = np.random.Generator(np.random.Philox(8))
     middle = (np.array([[0.5, 0.5, 0.5]]) @ rotation(7).T - tree.centre) * tree.scale
     directions = random.normal(size=(20_000, 3))
@@ -235,7 +235,7 @@ def test_what_a_line_meets_does_not_depend_on_its_packet(swap):
             types.Array3f(*(upload(types.Float, x.astype(np.float32)) for x in part.T))
             for part in (np.broadcast_to(middle, directions.shape)[rows], directions[rows])
         ]
-        hit = land(geometry, *ray, coherent=coherent)
+        hit = first_hit(geometry, *ray, coherent=coherent)
         dr.eval(hit.primitive, hit.u, hit.front)
         found.append([np.array(x) for x in (hit.primitive, hit.u, hit.front)])
     for one, other in zip(found[0], found[1], strict=True):

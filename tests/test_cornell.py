@@ -5,7 +5,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.patches import cells
-from radiosity.tracing.caster import first_hits
+from radiosity.tracing.first_hits import first_hits
 
 
 def cast_form_factors(patches, lines: int, random) -> np.ndarray:

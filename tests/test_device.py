@@ -90,7 +90,7 @@ def test_a_users_variant_is_left_as_it_was():
         "mi.set_variant('scalar_rgb')\n"
         "scene = rd.load_scene('room')\n"
         "solution = rd.solve(rd.subdivide(scene, cells=2), rays=10**5)\n"
-        "from radiosity.tracing.caster import first_hits\n"
+        "from radiosity.tracing.first_hits import first_hits\n"
         "first_hits(scene, [[3, 2, 1]], [[0, 0, 1]])\n"
         "print(mi.variant(), solution.status)"
     )

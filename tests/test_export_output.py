@@ -1,6 +1,8 @@
 """Outputs that cannot be written are found early, and no half file is left behind."""
 
 import errno
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -8,6 +10,7 @@ from image_samples import quad_scene, solution
 
 import radiosity as rd
 from radiosity.image import check_writable, export, output, ply
+from radiosity.solution.replacing import replacing
 
 SUFFIXES = [".npz", ".glb", ".ply", ".vtp", ".csv", ".png", ".exr"]
 
@@ -85,7 +88,7 @@ def test_a_full_disk_leaves_the_old_file_and_no_other(tmp_path, result, monkeypa
 
 def test_other_faults_pass_and_leave_nothing(tmp_path):
     def fail():
-        with output.replacing(tmp_path / "a.ply") as temporary:
+        with replacing(tmp_path / "a.ply") as temporary:
             temporary.write_text("half")
             raise ZeroDivisionError
 
@@ -112,3 +115,16 @@ def test_pictures_are_exported(tmp_path):
     export(solution(rd.subdivide(cornell, cells=1)), tmp_path / "a.png", smooth=False)
     export(solution(rd.subdivide(cornell, cells=1)), tmp_path / "a.exr", smooth=False)
     assert {p.name: p.stat().st_size > 1000 for p in tmp_path.iterdir()} == {"a.png": True, "a.exr": True}
+
+
+@pytest.mark.parametrize("first", ["radiosity.solution.loading", "radiosity.hooks"])
+def test_a_solution_exports_in_a_process_that_did_not_import_the_exporters(tmp_path, first):
+    """Its folder is below theirs, so it reaches them by a hook; importing any part of the package fills that."""
+    rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=10_000).save(tmp_path / "a.npz")
+    code = (
+        f"import sys, {first}\nfrom radiosity.solution.loading import load_solution\n"
+        "solution = load_solution('a.npz')\nassert 'radiosity.image' not in sys.modules\n"
+        "solution.export('a.csv')\nassert 'radiosity.image' in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True)
+    assert (tmp_path / "a.csv").is_file()

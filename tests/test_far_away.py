@@ -12,7 +12,7 @@ from radiosity.diagnostics.check import check
 from radiosity.image import render
 from radiosity.scene.degenerate import without_area
 from radiosity.scene.shapes import quad
-from radiosity.tracing.caster import first_hits
+from radiosity.tracing.first_hits import first_hits
 from radiosity.tracing.geometry import Geometry
 
 KILOMETRE = 1e3

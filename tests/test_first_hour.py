@@ -16,7 +16,7 @@ from PIL import Image
 import radiosity as rd
 from radiosity.cli.app import run
 from radiosity.image import check_writable, false_color
-from radiosity.run.target import Target
+from radiosity.run.error_target import Target
 
 ROOT = Path(__file__).resolve().parent.parent
 SUFFIXES = (".npz", ".glb", ".ply", ".vtp", ".csv", ".png", ".exr")

@@ -10,7 +10,7 @@ import radiosity as rd
 from radiosity.errors import RadiosityWarning, SceneError
 from radiosity.scene import Back, Camera
 from radiosity.scene.assemble import ReadOptions
-from radiosity.scene.formats import read
+from radiosity.scene.formats import read, toml
 
 TRIANGLES = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]])
 
@@ -135,6 +135,13 @@ def test_reflectances_follow_the_bound_for_files(load, tmp_path):
         assert load(text).reflectance.tolist() == [[0.95]]
     with pytest.warns(RadiosityWarning, match="above 0.5"):
         assert read(tmp_path / "scene.toml", ReadOptions(max_reflectance=0.5)).reflectance.tolist() == [[0.5]]
+
+
+def test_the_reader_alone_says_who_reads_geometry(tmp_path):
+    (tmp_path / "lamp.stl").write_bytes(stl_bytes(TRIANGLES))
+    (tmp_path / "scene.toml").write_text('geometry = ["lamp.stl"]')
+    with pytest.raises(SceneError, match=r"scene\.formats\.read"):
+        toml.read(tmp_path / "scene.toml", ReadOptions())
 
 
 SHINY = '[[surface]]\nname = "*"\nreflectance = 0.97\nemission = 12.6\n'  # an emissivity of 0.03

@@ -15,10 +15,10 @@ from radiosity.errors import MethodError
 from radiosity.patches import cells
 from radiosity.sampling import global_lines
 from radiosity.scene.shapes import box, quad
+from radiosity.tracing.bvh import REACH
 from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.global_lines.hull import nothing_beyond
 from radiosity.tracing.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
-from radiosity.tracing.tree import REACH
 
 KINDS = ("global", "global-disc", "spans", "bundles")
 ALPHA, SIGMAS = 1e-4, 4.5
@@ -185,7 +185,7 @@ def test_spans_are_those_that_numpy_finds(kind, passing):
     patches = rd.subdivide(jumble(passing), cells=2)
     spans, count = spans_of(patches, kind, replicates=2), 3000
     pairs = spans.draw(1, 77, count)
-    types, tree = choose("cpu").types, spans.geometry.tree
+    types, tree = choose("cpu").types, spans.geometry.bvh
     words = [upload(types.UInt32, np.full(count, w, np.uint32)) for w in np.array(spans._randomisation)[8:]]
     index = upload(types.UInt32, np.arange(78, 78 + count, dtype=np.uint32))
     numbers = spans._numbers.points(index, types.UInt32(0), words, 32)

@@ -1,130 +1,79 @@
-"""Who may import whom: the walk goes one way, and importing the package stays light."""
+"""Who may import whom: folders stand on floors, no files import each other, and importing the package stays light."""
 
-import ast
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
+
+import pytest
+from import_graph import Package, begin_of, import_calls
+from import_rules import APART, FLOORS, TO_COME, heavy, misplaced, mutual, recording, shares, unknown_calls, unready, upward
 
 import radiosity
 
-ROOT = Path(radiosity.__file__).parent
-MODULES = sorted(ROOT.rglob("*.py"))
-OUTSIDE = {"cli", "view", "cluster"}
-EARLY = {"engine", "method", "patches", "scene"}  # what comes before the image on the walk
-PLACES = {
-    "drjit": ("engine/", "method/", "llvm.py"),  # llvm.py: only what another package has imported already
-    "mitsuba": ("engine/", "scene/formats/mitsuba/", "image/"),
+
+@pytest.fixture(scope="module")
+def ours():
+    return Package(Path(radiosity.__file__).parent)
+
+
+def test_folders_import_those_below_them_only(ours):
+    assert upward(ours) == set()
+
+
+def test_no_files_import_each_other(ours):
+    assert mutual(ours) == set()
+
+
+def test_no_folder_is_too_large(ours):
+    assert shares(ours) == {}
+
+
+@pytest.mark.parametrize("rule", [unknown_calls, misplaced, heavy, recording, unready])
+def test_imports_are_where_they_belong(ours, rule):
+    assert rule(ours) == set()
+
+
+def test_every_floor_is_there_and_every_folder_has_one(ours):
+    assert {module.split(".")[0] for module in ours.files} == set(FLOORS) - TO_COME
+    assert set(APART) <= set(ours.files)
+    assert len(FLOORS) == len(set(FLOORS))
+
+
+TABLES = {  # modules that are imported by name: a table of their names and, where they stand in its keys, a word about it
+    "": ("_HOMES", "keys"),
+    "algorithms.firing.orders": ("FIRED", "values"),
+    "algorithms.table": ("ALGORITHMS", "values"),
+    "factors.solvers": ("SOLVERS", "values"),
+    "factors.sources": ("ROWS", "values"),
+    "image": ("FORMATS", "values"),
+    "lab.experiments": ("EXPERIMENTS", "values"),
+    "sampling.numbers": ("NUMBERS", "values"),
+    "scene.formats": ("FORMATS", "values"),
 }
-CLASSES = {"scene/formats/toml/schema.py": {"pydantic"}}  # its classes derive from the package's; loaded by its reader alone
 
 
-def name_of(path: Path) -> str:
-    return path.relative_to(ROOT).as_posix()
+@pytest.mark.parametrize("module", TABLES)
+def test_modules_that_tables_name_are_imports(ours, module):
+    table, part = TABLES[module]
+    names = getattr(getattr(import_module(f"radiosity.{module}".rstrip(".")), table), part)()
+    folder = module if ours.path(module).endswith("__init__.py") else module.rpartition(".")[0]
+    found = {f"{folder}.{name.split(':')[0].replace('-', '_')}".lstrip(".") for name in names}
+    assert ours.edges[module] >= found
+    assert ours.named(module) >= found
+    assert len(found) > 2
 
 
-def imports(path: Path):
-    """(dotted module, at module level?) for each import; our own are relative to the package: ``scene.model``."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    here = list(path.relative_to(ROOT).parent.parts)
-    lazy = {
-        id(node)
-        for function in ast.walk(tree)
-        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-        for node in ast.walk(function)
-    }
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            found = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            module = node.module or ""
-            if node.level:
-                base = here[: len(here) - node.level + 1]
-                module = ".".join(["radiosity", *base, *([module] if module else [])])
-            found = [f"{module}.{alias.name}" for alias in node.names]
-        else:
-            continue
-        for name in found:
-            yield name, id(node) not in lazy
+def test_there_are_no_other_tables(ours):
+    calling = {module for module, tree in ours.trees.items() if any(begin_of(c).startswith(".") for c in import_calls(tree))}
+    assert calling == set(TABLES)
 
 
-def folders_imported(path: Path) -> set[str]:
-    parts = (name.split(".") for name, _ in imports(path))
-    return {p[1] for p in parts if p[0] == "radiosity" and len(p) > 1}
-
-
-def test_there_is_something_to_look_at():
-    assert len(MODULES) > 15
-    assert folders_imported(ROOT / "patches" / "subdivide.py") == {"errors", "scene", "patches"}
-
-
-def offenders(rule) -> dict[str, set[str]]:
-    """What each module imports against a rule; ``rule(name, path)`` is the set of offending names of one."""
-    found = {name_of(path): rule(name_of(path), path) for path in MODULES}
-    return {name: wrong for name, wrong in found.items() if wrong}
-
-
-def test_core_does_not_import_what_is_outside_it():
-    def rule(name, path):
-        return set() if name.split("/")[0] in OUTSIDE | {"__main__.py"} else folders_imported(path) & OUTSIDE
-
-    assert offenders(rule) == {}
-
-
-def test_nothing_before_the_image_imports_it():
-    def rule(name, path):
-        return folders_imported(path) & {"image"} if name.split("/")[0] in EARLY else set()
-
-    assert offenders(rule) == {}
-
-
-def test_drjit_and_mitsuba_stay_where_they_belong():
-    def rule(name, path):
-        used = {imported.split(".")[0] for imported, _ in imports(path)}
-        allowed = {package for package, places in PLACES.items() if name.startswith(places)}
-        return used & (set(PLACES) - allowed)
-
-    assert offenders(rule) == {}
-
-
-def test_other_packages_are_imported_where_they_are_used():
-    def rule(name, path):
-        allowed = set(sys.stdlib_module_names) | {"radiosity", "numpy"} | CLASSES.get(name, set())
-        if name.startswith(("engine/", "method/")):
-            allowed |= {"drjit", "mitsuba"}
-        if name.startswith("cli/"):
-            allowed |= {"cyclopts"}
-        return {imported.split(".")[0] for imported, top in imports(path) if top} - allowed
-
-    assert offenders(rule) == {}
-
-
-def called(path: Path) -> set[str]:
-    """Names that a module uses of Dr.Jit, such as ``eval`` of ``dr.eval``."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    attributes = (node for node in ast.walk(tree) if isinstance(node, ast.Attribute))
-    return {node.attr for node in attributes if isinstance(node.value, ast.Name) and node.value.id == "dr"}
-
-
-def test_loops_are_recorded_in_one_place():
-    """`device.recorded`, where uploads within them are an error and not the end of the process."""
-    recording = {"while_loop", "syntax", "if_stmt", "switch", "dispatch", "freeze"}
-
-    def rule(name, path):
-        return set() if name == "device/recorded.py" else called(path) & recording
-
-    assert offenders(rule) == {}
-    assert called(ROOT / "engine" / "recorded.py") >= {"while_loop"}
-
-
-def test_kernels_take_numbers_whose_tables_are_on_the_device():
-    """`ready`, not `make`."""
-
-    def rule(name, path):
-        found = {imported for imported, _ in imports(path)} & {"radiosity.sampling.numbers.make"}
-        return found if name.startswith(("engine/", "deterministic/")) else set()
-
-    assert offenders(rule) == {}
-    assert "radiosity.sampling.numbers.ready" in {imported for imported, _ in imports(ROOT / "engine" / "firing.py")}
+def test_imports_of_a_file_are_found(ours):
+    assert ours.edges["patches.subdivide"] == {"errors", "scene.model", "patches.cells", "patches.model"}
+    assert "image" in ours.edges[""]  # within a function
+    assert {"sampling.numbers.sobol", "sampling.numbers.random"} <= ours.edges["cli.methods"]  # by the beginning of their names
+    assert recording(Package(ours.root / "device")) == {"recorded"}
 
 
 def loaded_by(statement: str) -> set[str]:

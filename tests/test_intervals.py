@@ -230,7 +230,7 @@ def test_a_surface_reaches_its_error():
     ],
 )
 def test_a_target_means_the_surface_of_that_name_or_else_a_pattern(asked, found):
-    from radiosity.run.target import rows_of
+    from radiosity.run.error_target import rows_of
 
     names = ["lamp[1]", "lamp1", "lamp2", "lamp[1]x", "*", "a", "LAMP1"]
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])

@@ -19,7 +19,7 @@ from scipy.stats import t as student
 
 import radiosity as rd
 from radiosity.algorithms.iterations.exchange import LINE, Exchange
-from radiosity.algorithms.iterations.shooter import Ends, Shooter
+from radiosity.tally.shooter import Ends, Shooter
 
 RUNS, LONG_RUNS, SHORT_RUNS, ALPHA = 4096, 512, 768, 1e-3
 UNBIASED = ("incremental", "incremental, both ends", "incremental, control variate", "regular, warm-up")
@@ -78,7 +78,7 @@ def test_restarted_indices_are_rejected(lit, monkeypatch):
     shoot = Shooter.shoot
 
     def again(self, *arguments, **named):
-        self.engine.fired = dr.opaque(self.types.UInt32, 0, self.total)
+        self.fired = dr.opaque(self.types.UInt32, 0, self.total)
         return shoot(self, *arguments, **named)
 
     monkeypatch.setattr(Shooter, "shoot", again)

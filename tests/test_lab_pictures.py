@@ -11,7 +11,7 @@ from radiosity.lab.sample_lines import breadth_first, chords, crossings, depth_f
 from radiosity.lab.study import Protocol
 from radiosity.scene import load_scene
 from radiosity.scene.model import Back
-from radiosity.tracing.caster import first_hits
+from radiosity.tracing.first_hits import first_hits
 
 
 @pytest.fixture(scope="module")

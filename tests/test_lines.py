@@ -7,9 +7,10 @@ from scipy import stats
 import radiosity as rd
 from radiosity.device.backend import choose, upload
 from radiosity.patches import cells
-from radiosity.tracing.caster import first_hits
-from radiosity.tracing.geometry import OFFSET, Geometry
-from radiosity.tracing.lines import land, local_line, patch_of
+from radiosity.tracing.faces import OFFSET
+from radiosity.tracing.first_hits import first_hits
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.hits import first_hit, local_line, patch_of
 
 ALPHA = 1e-4
 
@@ -33,9 +34,9 @@ def lines(patches, numbers, patch):
         dr.gather(types.Array2u, geometry.patch_records, upload(types.UInt32, patch.astype(np.uint32))),
         [upload(types.Float, c.astype(np.float32)) for c in numbers.T],
     )
-    hit = land(geometry, origin, direction)
+    hit = first_hit(geometry, origin, direction)
     landed = np.array(patch_of(geometry, hit, 2**32 - 2, 2**32 - 1))
-    tree = geometry.tree
+    tree = geometry.bvh
     return np.array(origin).T / tree.scale + tree.centre, np.array(direction).T, landed
 
 

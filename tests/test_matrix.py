@@ -11,12 +11,18 @@ from iterations import open_room
 from replicates import difference, powers
 
 import radiosity as rd
-from radiosity.algorithms.matrix.tally import MatrixTally, form_factors
+from radiosity.algorithms.matrix.tally import MatrixTally
+from radiosity.factors.counted import CountedPairs
 from radiosity.factors.counts import PairCounts, split
-from radiosity.problem.model import Problem
 
 LINES = ("local", "global", "global-disc", "spans", "bundles")
 GLOBAL = LINES[1:]
+
+
+def counted(solution: rd.Solution, *, both_ways: bool) -> CountedPairs:
+    """What a run counted."""
+    state = solution.state
+    return CountedPairs(solution.patches, state["keys"], state["counts"], int(state["replicates"]), both_ways)
 
 
 @pytest.mark.parametrize("lines", LINES)
@@ -24,7 +30,7 @@ def test_exact_form_factors_of_discs(lines):
     scene, exact = coaxial_discs()
     patches = rd.subdivide(scene, cells=1)
     solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=1_000_000, replicates=16)
-    factors = form_factors(Problem.of(patches), solution.state, patches.surface, both_ways=lines == "local")
+    factors = counted(solution, both_ways=lines == "local").between(patches.surface)
     error = factors[:, 0, 1].std(ddof=1) / 4
     assert abs(factors[:, 0, 1].mean() - exact) < 5 * error
     assert error < 0.02 * exact
@@ -37,7 +43,7 @@ def test_exact_form_factors_of_a_sphere_in_a_box(lines):
     scene, exact = sphere_in_box()
     patches = rd.subdivide(scene, cells=1)
     solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=1_000_000, replicates=16)
-    factors = form_factors(Problem.of(patches), solution.state, patches.surface, both_ways=lines == "local")
+    factors = counted(solution, both_ways=lines == "local").between(patches.surface)
     assert np.allclose(factors[:, 0], [0, 1, 0, 0], atol=1e-5)  # sphere: all to the box, but what slips through an edge
     error = factors[:, 1, 0].std(ddof=1) / 4
     assert abs(factors[:, 1, 0].mean() - exact) < 5 * error
@@ -85,10 +91,10 @@ def test_both_ways_is_reciprocal_and_better():
     and both rows together with A_i F_ij / (w_i + w_j): so much smaller is the spread over replicates, pair by pair.
     """
     patches = rd.subdivide(rd.load_scene("room"), cells=1)
-    problem, n, area = Problem.of(patches), len(patches), patches.area
+    n, area = len(patches), patches.area
     solution = rd.solve(patches, rd.Method(order="matrix", numbers="random"), rays=1_000_000, replicates=32)
     each = np.arange(n)
-    both, rows = (form_factors(problem, solution.state, each, both_ways=b) for b in (True, False))
+    both, rows = (counted(solution, both_ways=b).between(each) for b in (True, False))
     exchange = area[:, None] * both[:, :, :-2]
     assert np.abs(exchange - exchange.transpose(0, 2, 1)).max() < 1e-4 * area.max()
     for factors in (both, rows):
@@ -105,6 +111,33 @@ def test_both_ways_is_reciprocal_and_better():
     assert np.sqrt(np.mean((spread / alone / expected) ** 2)) == pytest.approx(1, abs=0.12)  # scaling takes and gives a little
     one, other = (powers(solution, tally=MatrixTally(b)).std(axis=0) for b in (True, False))
     assert np.mean(one) < 0.2 * np.mean(other)
+
+
+@pytest.mark.parametrize("lines", ["local", "spans"])
+def test_what_was_counted_solves_for_other_light(lines):
+    """Prepared once, in a room; solved for another lamp and other walls, without a line more: as the firing engine says, and
+    linear in emission to rounding."""
+    patches = rd.subdivide(rd.load_scene("room"), cells=2)
+    pairs = counted(
+        rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=2_000_000, replicates=16), both_ways=lines == "local"
+    )
+    scene = patches.scene
+    wall = (scene.emission[:, 0] == 0) & (scene.area == scene.area[scene.emission[:, 0] == 0].max())
+    other = rd.Scene.from_arrays(scene.vertices, scene.faces, 0.35, np.where(wall, 7.0, 0.0), back=scene.back)
+    cut = rd.subdivide(other, cells=2)
+    assert np.allclose(cut.area, patches.area)
+    (found,) = pairs.solve(cut.emission, cut.reflectance)
+    wanted = rd.solve(cut, rays=8_000_000, replicates=16, seed=4)
+    values, reference = found.power / cut.area, wanted.irradiance[:, 0]
+    error = np.hypot(values.std(axis=0, ddof=1) / 4, wanted.irradiance_standard_error[:, 0])
+    off = np.abs(values.mean(axis=0) - reference)
+    assert (off < 6 * error + found.bias.mean(axis=0) / cut.area + 1e-6 * reference.max()).all()
+    assert (off < 0.05 * reference.max()).all()
+    both = pairs.solve(
+        np.hstack([cut.emission, 3 * cut.emission + patches.emission, patches.emission]), np.repeat(cut.reflectance, 3, axis=1)
+    )
+    assert np.allclose(both[1].power, 3 * both[0].power + both[2].power, rtol=1e-8)
+    assert np.array_equal(both[0].power, found.power)
 
 
 def test_colours_share_the_factors():
@@ -133,7 +166,7 @@ def test_counts_are_those_of_a_dictionary(random):
 
 
 def test_too_many_pairs_are_refused_or_end_the_run(monkeypatch):
-    from radiosity.algorithms.matrix import process as matrix
+    from radiosity.algorithms.matrix import algorithm as matrix
 
     patches = rd.subdivide(rd.load_scene("room"), cells=6)
     monkeypatch.setattr(matrix, "LIMIT", 1000)

@@ -10,7 +10,7 @@ from radiosity.cli import main
 from radiosity.device import memory
 from radiosity.lab.footprint import Footprint, footprints, scene_of
 from radiosity.problem.model import Problem
-from radiosity.run import demand
+from radiosity.run import memory_estimate
 
 GIB = 2**30
 needs_proc = pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="peaks are measured by Linux's /proc")
@@ -124,10 +124,10 @@ def test_a_run_that_was_told_keeps_to_it(capsys, method):
 def test_expected_memory_grows_with_bands_replicates_and_patches(method):
     """By the table: each group of bands and each replicate takes its own."""
     few, many = (rd.subdivide(rd.load_scene("room"), cells=cells) for cells in (2, 20))
-    one = demand.DEMANDS[method.machine]
+    one = memory_estimate.MEMORY_ESTIMATES[method.machine]
 
     def wanted(patches, groups, replicates):
-        return demand.demand(method, patches, groups, replicates, None)
+        return memory_estimate.demand(method, patches, groups, replicates, None)
 
     for patches in (few, many):
         n = len(patches)
@@ -162,7 +162,7 @@ def test_planes_count():
     """Few landings make wide kernels: squares of the number of patches."""
 
     def expected(about, rays):
-        return demand.demand(rd.method.resolve("density-estimation"), rd.subdivide(scene, about=about), 1, 8, rays)
+        return memory_estimate.demand(rd.method.resolve("density-estimation"), rd.subdivide(scene, about=about), 1, 8, rays)
 
     scene = rd.load_scene("room")
     assert expected(80_000, 100) > 8 * expected(20_000, 100) > 0
@@ -175,13 +175,13 @@ SLOW_METHODS = [pytest.param(name, marks=pytest.mark.slow) for name in ("stochas
 @needs_proc
 @pytest.mark.parametrize("method", ["random-walk", *SLOW_METHODS])
 def test_expected_memory_is_within_a_factor_of_two(method):
-    """All methods: benchmarks/demand.py."""
+    """All methods: benchmarks/memory_estimate.py."""
     about = 30_000 if method == "density-estimation" else 100_000
     patches = rd.subdivide(scene_of("cornell-box"), about=about, powers_of_two=True)
     (taken,) = measured("cornell-box", about, method, [("run", {"rays": 4_000_000})], warm=False)
     chosen = rd.method.resolve(method)
     assert isinstance(chosen, rd.Method)
-    expected = demand.demand(chosen, patches, Problem.of(patches).groups.n_groups, 8, 4e6)
+    expected = memory_estimate.demand(chosen, patches, Problem.of(patches).groups.n_groups, 8, 4e6)
     assert 0.5 < expected / taken.memory < 2
 
 
@@ -190,4 +190,4 @@ def test_memory_does_not_grow_with_the_number_of_lines():
     """Launches are full from about 10^6 lines on, and take what is fixed; four bytes a line would be more than twice as much."""
     few, many = measured("room", 5_000, "random-walk", [("1M", {"rays": 10**6}), ("30M", {"rays": 3 * 10**7})], warm=True)
     assert many.lines > 25 * few.lines
-    assert many.memory - few.memory < demand.DEMANDS["firing"].fixed
+    assert many.memory - few.memory < memory_estimate.MEMORY_ESTIMATES["firing"].fixed

@@ -6,7 +6,7 @@ import itertools
 import pytest
 
 import radiosity as rd
-from radiosity.algorithms.table import PROCESSES
+from radiosity.algorithms.table import ALGORITHMS
 from radiosity.method.model import AXES
 from radiosity.method.presets.citations import CITATIONS
 
@@ -64,7 +64,7 @@ def test_every_combination_of_the_axes_is_run_by_a_process_or_refused():
     accepted = []
     for values in itertools.product(*AXES.values()):
         with contextlib.suppress(rd.MethodError):
-            assert rd.Method(**dict(zip(AXES, values, strict=True))).machine in PROCESSES
+            assert rd.Method(**dict(zip(AXES, values, strict=True))).machine in ALGORITHMS
             accepted.append(values)
     assert [set(taken) for taken in zip(*accepted, strict=True)] == [set(values) for values in AXES.values()]
     assert len(accepted) == len({values[:-1] for values in accepted}) * len(AXES["numbers"])

@@ -8,8 +8,8 @@ from radiosity.device.backend import choose, upload
 from radiosity.errors import MethodError
 from radiosity.sampling.numbers import DIMENSIONS, NUMBERS, WORDS, make
 from radiosity.sampling.streams import Purpose, stream
-from radiosity.tracing.departure import place_number
-from radiosity.tracing.geometry import COLUMN_BITS
+from radiosity.tracing.faces import COLUMN_BITS
+from radiosity.tracing.ray_generation import place_number
 
 ALPHA = 1e-4  # of each test, divided by the number of its comparisons
 

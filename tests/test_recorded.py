@@ -13,7 +13,7 @@ from radiosity.scene.shapes import box
 from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.global_lines.crossing import Crossings
 from radiosity.tracing.global_lines.spans import Spans
-from radiosity.tracing.lines import land
+from radiosity.tracing.hits import first_hit
 
 LANES = 8
 
@@ -102,16 +102,16 @@ def passing():
 def test_lines_that_pass_backs_find_their_records_made(passing):
     """`land` in no loop makes what its own loop reads: geometry that nobody prepared."""
     geometry = Geometry(rd.subdivide(passing, cells=1), choose())
-    types, tree = geometry.device.types, geometry.tree
+    types, tree = geometry.device.types, geometry.bvh
     start = (np.array([[0.5, 0.5, -1.0]] * LANES) - tree.centre) * tree.scale
     origin = types.Array3f(*(upload(types.Float, column.astype(np.float32)) for column in start.T))
-    hit = land(geometry, origin, types.Array3f(0.0, 0.0, 1.0))
+    hit = first_hit(geometry, origin, types.Array3f(0.0, 0.0, 1.0))
     assert np.allclose(np.array(hit.distance) / tree.scale, 2.0)  # through the floor's back to the ceiling
     assert np.array(hit.front).all()
 
 
 def test_rays_for_pictures_and_checks_find_their_records_made(passing):
-    from radiosity.tracing.caster import first_hits
+    from radiosity.tracing.first_hits import first_hits
 
     hits = first_hits(passing, np.array([[0.5, 0.5, -1.0]]), np.array([[0.0, 0.0, 1.0]]))
     assert hits.front[0]
@@ -131,7 +131,7 @@ def test_spans_find_their_records_made(passing, lines):
 def test_crossings_are_made_before_a_loop_reads_them(passing):
     crossings = Crossings(Geometry(rd.subdivide(passing, cells=1), choose()))
     crossings.prepare()
-    types, tree = crossings.geometry.device.types, crossings.geometry.tree
+    types, tree = crossings.geometry.device.types, crossings.geometry.bvh
     low = types.Array3f(*(float(x) for x in (np.array([0.5, 0.5, -1.0]) - tree.centre) * tree.scale))
     up = types.Array3f(0.0, 0.0, 1.0)
     assert in_a_loop(types, lambda turn: crossings.next(low, up, turn < 1).valid & True).all()

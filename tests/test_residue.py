@@ -11,13 +11,13 @@ import pytest
 from enclosures import cube
 
 import radiosity as rd
-from radiosity.algorithms.firing import process as firing_process
+from radiosity.algorithms.firing import algorithm as firing_process
 from radiosity.algorithms.firing import residue, residue_walks
 from radiosity.algorithms.table import make
 from radiosity.device.backend import choose, upload
 from radiosity.problem.bands import QUANTUM
 from radiosity.problem.model import Problem
-from radiosity.problem.quanta import owed, phases
+from radiosity.problem.quanta import phases, target_counts
 from radiosity.scene.shapes import box
 from radiosity.tracing.geometry import Geometry
 
@@ -53,17 +53,17 @@ def process_of(patches, replicates, method=None, seed=1):
     return make(Geometry(patches, choose("cpu")), Problem.of(patches), method or rd.Method(), seed, replicates)
 
 
-def advanced(process, *stages):
+def advanced(algorithm, *stages):
     for quanta in stages:
-        process.advance(quanta, lambda lines: None)
-    return process.capture()
+        algorithm.advance(quanta, lambda lines: None)
+    return algorithm.capture()
 
 
-def means(process, state) -> np.ndarray:
+def means(algorithm, state) -> np.ndarray:
     """(n_groups, replicates) mean irradiance of the scene."""
-    area, found = process.problem.patches.area, []
-    for group in range(process.problem.groups.n_groups):
-        values, unit = process.tally.irradiance(process.problem, state, group)
+    area, found = algorithm.problem.patches.area, []
+    for group in range(algorithm.problem.groups.n_groups):
+        values, unit = algorithm.tally.irradiance(algorithm.problem, state, group)
         found.append(values.sum(axis=1) * unit / area.sum())
     return np.array(found)
 
@@ -79,44 +79,44 @@ def limit() -> float:
     return float(norm.ppf(1 - ALPHA / 2))
 
 
-def not_sent(engine, problem, state, begun) -> residue_walks.Sent:
+def not_sent(counters, problem, state, begun) -> residue_walks.Sent:
     """A wrong implementation."""
     groups = problem.groups.n_groups
     received = state["received"] if "received" in state else state["arrivals"][..., None] * np.int64(QUANTUM)
-    missed = np.zeros((2, engine.replicates, groups), np.int64)
+    missed = np.zeros((2, counters.tracer.replicates, groups), np.int64)
     return residue_walks.Sent(received.astype(np.int64), missed, [0] * groups, 0)
 
 
 @pytest.mark.parametrize("numbers", ["halton", "random"])
 def test_a_narrow_cavity_gets_all_its_light(numbers, monkeypatch):
     """200 short runs; without the residue's lines the same test fails by far."""
-    process = process_of(cavity(), 200, rd.Method(numbers=numbers))
-    state = advanced(process, 150)
-    assert abs(apart(means(process, state))[0]) < limit()
-    process.tally.forget()
+    algorithm = process_of(cavity(), 200, rd.Method(numbers=numbers))
+    state = advanced(algorithm, 150)
+    assert abs(apart(means(algorithm, state))[0]) < limit()
+    algorithm.tally.forget()
     monkeypatch.setattr(firing_process, "send", not_sent)
-    assert apart(means(process, state))[0] < -3 * limit()
+    assert apart(means(algorithm, state))[0] < -3 * limit()
 
 
 @pytest.mark.parametrize("stages", [(150,), (40, 80, 150)])
 def test_every_band_of_a_coloured_cavity_does(stages, monkeypatch):
-    process = process_of(cavity(COLOURS), 200)
-    assert process.problem.groups.n_groups == 3
-    state = advanced(process, *stages)
-    assert (np.abs(apart(means(process, state))) < limit()).all()
-    process.tally.forget()
+    algorithm = process_of(cavity(COLOURS), 200)
+    assert algorithm.problem.groups.n_groups == 3
+    state = advanced(algorithm, *stages)
+    assert (np.abs(apart(means(algorithm, state))) < limit()).all()
+    algorithm.tally.forget()
     monkeypatch.setattr(firing_process, "send", not_sent)
-    assert (np.abs(apart(means(process, state))) > limit()).any()
+    assert (np.abs(apart(means(algorithm, state))) > limit()).any()
 
 
 def test_groups_lack_what_they_lack_together(monkeypatch):
     """In groups of many patches the scene has no bias either, nor have its large surfaces."""
     patches = cavity(cells=8)
     assert residue.group_size(len(patches), 200) > 100
-    process = process_of(patches, 200, rd.Method(numbers="random"))
-    state = advanced(process, 200)
-    assert abs(apart(means(process, state))[0]) < limit()
-    values, unit = process.tally.irradiance(process.problem, state, 0)
+    algorithm = process_of(patches, 200, rd.Method(numbers="random"))
+    state = advanced(algorithm, 200)
+    assert abs(apart(means(algorithm, state))[0]) < limit()
+    values, unit = algorithm.tally.irradiance(algorithm.problem, state, 0)
     for surface in np.unique(patches.surface):
         here = patches.surface == surface
         if patches.area[here].sum() > 0.5:
@@ -125,12 +125,12 @@ def test_groups_lack_what_they_lack_together(monkeypatch):
 
 def test_the_residue_is_what_the_contract_owes_less_what_was_fired():
     patches = rd.subdivide(rd.load_scene("room"), cells=3)
-    process = process_of(patches, 2, seed=5)
-    state, phase = advanced(process, 700), phases(5, 2, len(patches))
-    source = process.problem.source
-    assert np.array_equal(owed(source, 700, state["arrivals"], phase), state["fired"])
+    algorithm = process_of(patches, 2, seed=5)
+    state, phase = advanced(algorithm, 700), phases(5, 2, len(patches))
+    source = algorithm.problem.source
+    assert np.array_equal(target_counts(source, 700, state["arrivals"], phase), state["fired"])
     whole, fraction = source.emitted(700)
-    read = residue.Residue.of(process.problem, state, phase).read(1, slice(0, len(patches)))[1][:, 0]
+    read = residue.Residue.of(algorithm.problem, state, phase).read(1, slice(0, len(patches)))[1][:, 0]
     for i in range(len(patches)):
         exact = (int(whole[i]) << 32) + int(fraction[i]) + int(source.rho[i]) * int(state["arrivals"][1, i])
         assert read[i] == exact - (int(state["fired"][1, i]) << 32)
@@ -140,9 +140,9 @@ def test_the_residue_is_what_the_contract_owes_less_what_was_fired():
 def test_less_than_a_line_is_left_up_to_any_group(quanta):
     """Signed sums of lines follow those of residues along the groups; lines begin within theirs, where something is owed."""
     patches = rd.subdivide(rd.load_scene("room"), cells=12)
-    process = process_of(patches, 2, seed=3)
-    state, phase = advanced(process, quanta), phases(3, 2, len(patches))
-    starts = residue_walks.starts(process.engine, process.problem, state)
+    algorithm = process_of(patches, 2, seed=3)
+    state, phase = advanced(algorithm, quanta), phases(3, 2, len(patches))
+    starts = residue_walks.starts(algorithm.counters, algorithm.problem, state)
     groups = residue.Groups.of(patches, quanta)
     begins = np.arange(len(patches)) if groups.begins is None else groups.begins
     assert (groups.begins is None) == (residue.group_size(len(patches), quanta) == 1)
@@ -150,8 +150,8 @@ def test_less_than_a_line_is_left_up_to_any_group(quanta):
     assert (np.abs(starts.power) == QUANTUM).all()
     for replicate in range(2):
         here = starts.replicate == replicate
-        owes, left = residue.Residue.of(process.problem, state, phase).read(replicate, slice(0, len(patches)))
-        assert (owes[starts.patch[here]] > 0).all()
+        has_due, left = residue.Residue.of(algorithm.problem, state, phase).read(replicate, slice(0, len(patches)))
+        assert (has_due[starts.patch[here]] > 0).all()
         lines = np.bincount(starts.patch[here], np.sign(starts.power[here, 0]), len(patches))
         sums, wanted = (np.cumsum(np.add.reduceat(x, begins)) for x in (lines, left[:, 0] / 2**32))
         assert (np.abs(sums - wanted) < 1 + 1e-9).all()
@@ -180,10 +180,10 @@ def test_lines_of_a_group_begin_in_proportion_to_what_patches_owe_up_to_one_line
     """However much a patch has sent: its residue is less than a line."""
     from scipy.stats import chisquare
 
-    owed = np.array([1 << 30, 1 << 31, 1 << 32, 5 << 40, 0, 3 << 32, 1 << 31], np.uint64)
+    target_counts = np.array([1 << 30, 1 << 31, 1 << 32, 5 << 40, 0, 3 << 32, 1 << 31], np.uint64)
     begins, each = np.array([0, 5]), 40_000
-    found = residue._within(owed, begins, np.repeat([0, 1], each), np.random.Generator(np.random.Philox(5)))
-    counts = np.bincount(found, minlength=len(owed))
+    found = residue._within(target_counts, begins, np.repeat([0, 1], each), np.random.Generator(np.random.Philox(5)))
+    counts = np.bincount(found, minlength=len(target_counts))
     assert counts[4] == 0
     share = np.array([0.25, 0.5, 1, 1, 0, 1, 0.5])
     expected = each * share / np.repeat([2.75, 1.5], [5, 2])
@@ -206,10 +206,10 @@ def test_groups_keep_to_faces_or_surfaces():
 
 
 def read(method, patches, *stages, seed=4):
-    process = process_of(patches, 3, method, seed)
-    state = advanced(process, *stages)
-    values = [process.tally.irradiance(process.problem, state, g)[0] for g in range(process.problem.groups.n_groups)]
-    return np.array(values), process.tally.books(process.problem, state, 0), process.tally.lines(process.problem, state)
+    algorithm = process_of(patches, 3, method, seed)
+    state = advanced(algorithm, *stages)
+    values = [algorithm.tally.irradiance(algorithm.problem, state, g)[0] for g in range(algorithm.problem.groups.n_groups)]
+    return np.array(values), algorithm.tally.books(algorithm.problem, state, 0), algorithm.tally.lines(algorithm.problem, state)
 
 
 @pytest.mark.parametrize("numbers", ["halton", "random"])
@@ -250,15 +250,15 @@ def test_a_saved_run_goes_on_to_the_bits_of_one(make_patches, half, tmp_path):
 
 def test_books_close_with_what_the_residue_brings():
     for patches in (cavity(), opened()):
-        process = process_of(patches, 5)
+        algorithm = process_of(patches, 5)
         for quanta in (30, 300, 3_000):
-            state = advanced(process, quanta)
-            sent = process.tally.sent(state)
-            landed = sent.received - not_sent(process.engine, process.problem, state, process.tally.begun(state)).received
+            state = advanced(algorithm, quanta)
+            sent = algorithm.tally.sent(state)
+            landed = sent.received - not_sent(algorithm.counters, algorithm.problem, state, algorithm.tally.begun(state)).received
             assert landed.any()
             assert [int(landed[..., g].sum() + sent.missed[..., g].sum()) for g in range(len(sent.fired))] == sent.fired
-            for group in range(process.problem.groups.n_groups):
-                assert process.tally.books(process.problem, state, group)["closes"] is True
+            for group in range(algorithm.problem.groups.n_groups):
+                assert algorithm.tally.books(algorithm.problem, state, group)["closes"] is True
 
 
 def test_energy_is_kept_but_for_walks_that_end_by_chance():
@@ -266,9 +266,9 @@ def test_energy_is_kept_but_for_walks_that_end_by_chance():
     rho = np.array([0.5, 0, 0, 0, 0, 0])
     patches = rd.subdivide(cube(rho, np.ones(6)), cells=3)
     for quanta in (50, 500, 5_000):
-        process = process_of(patches, 4)
-        book = process.tally.books(process.problem, advanced(process, quanta), 0)
-        assert abs(book["rounding"]) < 2 * process.problem.source.power / quanta
+        algorithm = process_of(patches, 4)
+        book = algorithm.tally.books(algorithm.problem, advanced(algorithm, quanta), 0)
+        assert abs(book["rounding"]) < 2 * algorithm.problem.source.power / quanta
 
 
 @few_lines
@@ -285,9 +285,9 @@ def test_residue_lines_count_as_rays(rays):
 def test_intermediate_stages_send_nothing(monkeypatch):
     taken, send = [], firing_process.send
 
-    def counted(engine, problem, state, begun):
+    def counted(counters, problem, state, begun):
         taken.append(int(state["quanta"]))
-        return send(engine, problem, state, begun)
+        return send(counters, problem, state, begun)
 
     monkeypatch.setattr(firing_process, "send", counted)
     patches = cavity()
@@ -322,11 +322,11 @@ def test_negative_irradiance_is_kept_and_told_everywhere(tmp_path):
 def test_weights_fall_with_the_reflectance_and_chance_keeps_their_mean():
     """In a cube of reflectance 0.75 all that a walk brings is 1 / (1 - 0.75) in the mean, line by line less."""
     patches = rd.subdivide(cube(0.75, 0.25), cells=1)
-    process = process_of(patches, 1)
-    m, types = 20_000, process.engine.types
+    algorithm = process_of(patches, 1)
+    m, types = 20_000, algorithm.counters.types
     starts = residue.Starts(np.zeros(m, np.int64), np.zeros(m, np.int64), np.arange(m, dtype=np.uint32), np.full((m, 1), QUANTUM))
     tally = upload(types.Int64, np.zeros(8, np.int64))
-    fired, lines = residue_walks._walk(process.engine, starts, tally)
+    fired, lines = residue_walks._walk(algorithm.counters, starts, tally)
     brought = np.array(tally)[:6].sum() / QUANTUM / m
     assert fired == [int(np.array(tally).sum())]
     exact = float(Fraction(1) / (1 - Fraction(3, 4)))

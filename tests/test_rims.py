@@ -14,9 +14,9 @@ import radiosity as rd
 from radiosity.device.backend import choose, upload
 from radiosity.image.lookup import Lookup
 from radiosity.patches import cells
-from radiosity.tracing.caster import first_hits
+from radiosity.tracing.first_hits import first_hits
 from radiosity.tracing.geometry import Geometry
-from radiosity.tracing.lines import land, patch_of, place_of
+from radiosity.tracing.hits import first_hit, patch_of, place_of
 
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
 RAISED = [(x + 4, y, z) for x, y, z in SQUARE]
@@ -53,10 +53,10 @@ def holds(patches: rd.Patches, patch: np.ndarray, points: np.ndarray) -> np.ndar
 
 def straight(geometry: Geometry, points: np.ndarray, up: float):
     """Where lines straight up or down from points, metres, land."""
-    types, tree = geometry.device.types, geometry.tree
+    types, tree = geometry.device.types, geometry.bvh
     origin = ((points - tree.centre) * tree.scale).astype(np.float32)
     zero = dr.zeros(types.Float, len(points))
-    return land(geometry, types.Array3f(*(upload(types.Float, x) for x in origin.T)), types.Array3f(zero, zero, zero + up))
+    return first_hit(geometry, types.Array3f(*(upload(types.Float, x) for x in origin.T)), types.Array3f(zero, zero, zero + up))
 
 
 @pytest.mark.parametrize("k", [1, 2, 3, 7])

@@ -9,7 +9,7 @@ from members import accepted
 import radiosity as rd
 from radiosity.cli.app import run
 from radiosity.method.scrambling import SCRAMBLINGS
-from radiosity.sampling.numbers import NUMBERS, name_of, parts_of
+from radiosity.sampling.numbers import NUMBERS, SCRAMBLED, name_of, parts_of
 
 OLDER = {"scrambled-halton": ("halton", "permuted-digits"), "generalized-faure": ("faure", "linear")}
 FILED = {  # of `Method(numbers="scrambled-halton")`, as files hold it since there are such files
@@ -36,8 +36,9 @@ def patches():
 def test_every_name_stands_for_one_sequence_and_scrambling():
     assert len({parts_of(name) for name in NUMBERS}) == len(NUMBERS)
     assert all(name_of(*parts_of(name)) == name for name in NUMBERS)
-    assert {points.scrambling for points in NUMBERS.values()} == set(SCRAMBLINGS)
-    assert {points.of for points in NUMBERS.values()} - {""} <= {name for name in NUMBERS if not NUMBERS[name].of}
+    assert {parts_of(name)[1] for name in NUMBERS} == set(SCRAMBLINGS)
+    assert {parts_of(name)[0] for name in NUMBERS} == set(NUMBERS) - set(SCRAMBLED)
+    assert SCRAMBLED == OLDER
 
 
 @pytest.mark.parametrize("name", OLDER)

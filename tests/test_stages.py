@@ -9,7 +9,7 @@ from members import PLAIN, accepted
 from states import coloured, grey
 
 import radiosity as rd
-from radiosity.algorithms.table import PROCESSES
+from radiosity.algorithms.table import ALGORITHMS
 from radiosity.run import budget
 
 pytestmark = pytest.mark.filterwarnings("ignore::radiosity.errors.RadiosityWarning")  # of few lines
@@ -33,7 +33,7 @@ def low(monkeypatch):
 
 
 def test_every_kind_of_run_is_here():
-    assert {method.machine for method in (*LINES.values(), *BASELINES.values())} == set(PROCESSES) - {"full-matrix"}  # one stage
+    assert {method.machine for method in (*LINES.values(), *BASELINES.values())} == set(ALGORITHMS) - {"full-matrix"}  # one stage
     assert LINES["firing"] == PLAIN
 
 

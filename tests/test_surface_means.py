@@ -11,8 +11,8 @@ from enclosures import cube, cube_irradiance
 from scipy import stats
 
 import radiosity as rd
-from radiosity.algorithms.firing import counters as firing
 from radiosity.sampling.numbers import NUMBERS
+from radiosity.tracing import line_tracer
 
 RAYS, SEEDS = 200_000, 8
 HALF = 0.44  # of what random numbers have
@@ -59,22 +59,22 @@ def test_random_numbers_err_like_random_numbers(patches):
 def test_beyond_its_own_lines_a_patch_takes_the_shift_of_all(monkeypatch):
     """A run of few patches ends in the bits of a shared shift where patches have no lines of their own, and not else."""
     patches = rd.subdivide(cube(), cells=1)
-    assert firing.own_lines(6) == 16
+    assert line_tracer.own_lines(6) == 16
 
     def arrivals(**choices):
         return rd.solve(patches, quanta=3000, replicates=2, **choices).state["arrivals"]
 
     shared = arrivals(randomisation="shared")
     assert not np.array_equal(arrivals(), shared)
-    monkeypatch.setattr(firing, "own_lines", lambda n: 1)
+    monkeypatch.setattr(line_tracer, "own_lines", lambda n: 1)
     assert not np.array_equal(arrivals(), shared)
-    monkeypatch.setattr(firing, "own_lines", lambda n: 0)
+    monkeypatch.setattr(line_tracer, "own_lines", lambda n: 0)
     assert np.array_equal(arrivals(), shared)
 
 
 def test_how_many_lines_of_a_patch_are_its_own():
     for n in (1, 2, 3, 70, 2400, 150_000):
-        own = firing.own_lines(n)
+        own = line_tracer.own_lines(n)
         assert 2 * n < own <= 4 * n
         assert own & (own - 1) == 0
-    assert firing.own_lines(2**31) == 2**32 - 1
+    assert line_tracer.own_lines(2**31) == 2**32 - 1

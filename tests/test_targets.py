@@ -13,8 +13,8 @@ import radiosity as rd
 from radiosity.cli import main
 from radiosity.problem.model import Problem
 from radiosity.run import budget, run
+from radiosity.run.error_target import nothing_before_lights
 from radiosity.run.snapshot import Snapshot
-from radiosity.run.target import nothing_before_lights
 from radiosity.solution.errors import margin, relative_error
 from radiosity.solution.intervals import FEW
 
@@ -36,7 +36,7 @@ def sensor(side=SIDE, height=HEIGHT, reflectance=0.2) -> tuple[rd.Patches, float
 class Drawn:
     """A tally of given values: (replicates, n_patches) for each group, in W."""
 
-    settles, counts_landings = False, True
+    settles, counts_hits = False, True
 
     def __init__(self, values, arrivals=None, line=1e-9):
         self.values = [np.asarray(value, float) for value in values]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.algorithms.firing.counters import Engine
+from radiosity.algorithms.firing.counters import FiringCounters
 from radiosity.device import backend as device
 from radiosity.device import turn as turns
 from radiosity.device.backend import choose
@@ -17,7 +17,7 @@ from radiosity.diagnostics.leaks import follow
 from radiosity.factors.missed import missed
 from radiosity.image import render
 from radiosity.run.run import Run
-from radiosity.tracing.caster import first_hits
+from radiosity.tracing.first_hits import first_hits
 from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.global_lines.spans import Spans
 from radiosity.tracing.visibility import Polygons, visible_share
@@ -215,14 +215,14 @@ def test_a_child_process_does_not_wait_for_threads_it_has_not():
 @pytest.mark.parametrize("which", ["hits", "lines"])
 def test_lost_hits_are_an_error(monkeypatch, patches, which):
     """As kernels of others in other threads lose them."""
-    counters = Engine.counters
+    counters = FiringCounters.counters
 
     def one_less(self):
         arrivals, fired, missed = (np.array(x) for x in counters(self))
         (arrivals if which == "hits" else fired)[0, 3] -= 1
         return arrivals, fired, missed
 
-    monkeypatch.setattr(Engine, "counters", one_less)
+    monkeypatch.setattr(FiringCounters, "counters", one_less)
     with pytest.raises(rd.DeviceError, match="hits were lost while another thread"):
         quick(patches)
 

@@ -8,7 +8,8 @@ import radiosity as rd
 from radiosity.device.backend import choose
 from radiosity.errors import MethodError
 from radiosity.scene.shapes import quad
-from radiosity.tracing.geometry import INSET, OFFSET, Geometry
+from radiosity.tracing.faces import OFFSET
+from radiosity.tracing.geometry import INSET, Geometry
 from radiosity.tracing.visibility import Polygons, _records, visible_share
 from validation.closed_forms.rectangles import parallel
 
@@ -21,7 +22,7 @@ def test_rays_begin_and_end_as_far_from_every_edge():
     """Of long parallelograms, upright or skew: what is drawn in keeps its distance from all four edges."""
     scene = black([quad((0, 0, 0), (8, 0, 0), (0, 1, 0)), quad((0, 0, 3), (0, 1, 0), (8, 5, 0))])
     geometry = geometry_of(scene)
-    polygons, tree = Polygons.of(geometry.patches), geometry.tree
+    polygons, tree = Polygons.of(geometry.patches), geometry.bvh
     records = _records(geometry, polygons).astype(float)
     corners = (polygons.corners - tree.centre) * tree.scale
     for corner, record in zip(corners, records, strict=True):

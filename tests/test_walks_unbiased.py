@@ -10,7 +10,7 @@ from methods import critical
 from replicates import powers
 
 import radiosity as rd
-from radiosity.algorithms.walks.flock import Legs
+from radiosity.algorithms.walks.particles import PathSegments
 
 RUNS, WALKS = 300, 150
 
@@ -49,11 +49,11 @@ def test_gathering_is_consistent(equation):
 @pytest.mark.parametrize("equation", ["discrete", "continuous"])
 def test_numbers_that_start_anew_at_each_landing_are_rejected(equation, monkeypatch):
     """Later legs that turn as the first one did, from where it landed: the walk is no longer a walk."""
-    before = Legs._moved
+    before = PathSegments._moved
 
     def wrong(self, numbers, stream):
         moved = before(self, numbers, stream)
         return [numbers[0] * 0 + 0.3, numbers[1] * 0 + 0.5, *moved[2:]] if len(numbers) > 1 else moved
 
-    monkeypatch.setattr(Legs, "_moved", wrong)
+    monkeypatch.setattr(PathSegments, "_moved", wrong)
     assert largest_difference(equation=equation, absorption="drawn") > BOUND

@@ -33,7 +33,7 @@ def error(runs: Runs, rays: float, method: str) -> np.ndarray:
 def resolved(patches: rd.Patches, points: int = 16) -> np.ndarray:
     """(n_patches,) bool: nothing lies in front of the patch nearer than a tenth of its size. Elsewhere, as between a lamp and the
     ceiling that it hangs a millimetre below, what halving changes says nothing of the error."""
-    from radiosity.tracing.caster import first_hits
+    from radiosity.tracing.first_hits import first_hits
 
     generator = np.random.Generator(np.random.Philox(3))
     size = np.sqrt(patches.area)

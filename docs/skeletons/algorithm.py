@@ -3,21 +3,21 @@
 Say here what the algorithm is in one sentence, then its paper: author, title, where, year; equation and page of what you follow.
 This one is the series E + rho F E + (rho F)^2 E + ..., with form factors from counted lines; it is here to be read, not used.
 
-To make it yours: copy it to a folder of its own, rename the class, put a line into `PROCESSES` (`algorithms/table.py`), and let
+To make it yours: copy it to a folder of its own, rename the class, put a line into `ALGORITHMS` (`algorithms/table.py`), and let
 `method/combinations.py` or `method/baseline.py` say which choices it serves. `tests/test_skeleton.py` shows what to test first.
 """
 
 import numpy as np
 
+from radiosity.algorithms.base import AbstractAlgorithm, State, Swept
 from radiosity.algorithms.baseline_tally import SolvedTally
-from radiosity.algorithms.process import AbstractProcess, State, Swept
 from radiosity.errors import MethodError
 from radiosity.factors.sources import rows_for
 
 LEFT = 1e-6  # of the emitted power: what is less than that is not sent on
 
 
-class Reflections(AbstractProcess):
+class Reflections(AbstractAlgorithm):
     """N reflections. The state after N depends on N alone: every stage goes on where the last one ended."""
 
     def __init__(self, *arguments):
@@ -34,7 +34,7 @@ class Reflections(AbstractProcess):
         return self.wanted
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return True
 
     def advance(self, quanta: int, swept: Swept) -> None:

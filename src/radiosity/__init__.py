@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from .device import llvm
 from .errors import DeviceError, MethodError, OutputError, RadiosityError, RadiosityWarning, SceneError
+from .hooks import HOOKS
 
 if TYPE_CHECKING:
     __version__: str
@@ -25,6 +26,15 @@ if TYPE_CHECKING:
     from .solution import RefineCheck, Solution, load_solution
 
 llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
+
+
+def _export(solution, path, **options) -> None:
+    from .image import export
+
+    export(solution, path, **options)
+
+
+HOOKS["export"] = _export  # of `Solution.export`
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {

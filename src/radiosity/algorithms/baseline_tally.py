@@ -4,7 +4,7 @@ import numpy as np
 
 from ..problem.model import Problem
 from ..solution.books import by_difference
-from .process import AbstractTally, State
+from .base import AbstractTally, State
 
 
 class SolvedTally(AbstractTally):
@@ -12,7 +12,7 @@ class SolvedTally(AbstractTally):
     groups), W that escaped and was lost; seen (n_patches,), how many of others each patch exchanges light with; history (k, 2):
     steps, and the largest residual relative to the largest radiosity."""
 
-    counts_landings = False
+    counts_hits = False
 
     def lines(self, problem: Problem, state: State) -> int:
         return int(state["lines"])

@@ -12,7 +12,7 @@ from ..factors.rows import AbstractRows
 
 BYTES_A_FACTOR = 96  # 12 in the matrix, the rest while pairs are sorted; 91 were measured in a closed cube
 LONG = 60.0  # seconds that are worth a word
-TRIAL_ROWS = 16
+PILOT_ROWS = 16
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def full_matrix(rows: AbstractRows, n: int, times: float, *, reciprocal: bool) -
 
 def seconds_a_row(rows: AbstractRows, n: int) -> float:
     """From a few rows that are made and thrown away, twice, since the first time compiles kernels."""
-    some = np.unique(np.linspace(0, n - 1, min(TRIAL_ROWS, rows.at_once, n)).astype(np.int64))
+    some = np.unique(np.linspace(0, n - 1, min(PILOT_ROWS, rows.at_once, n)).astype(np.int64))
     seconds = 0.0
     for _ in range(2):
         begun = time.perf_counter()

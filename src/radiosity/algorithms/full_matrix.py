@@ -16,11 +16,11 @@ from ..factors.model import Factors
 from ..factors.polygons.matrix import exact
 from ..factors.sources import rows_for
 from . import estimate
+from .base import AbstractAlgorithm, State, Swept
 from .baseline_tally import SolvedTally
-from .process import AbstractProcess, State, Swept
 
 
-class FullMatrix(AbstractProcess):
+class FullMatrix(AbstractAlgorithm):
     """One stage: replicate after replicate, the matrix is made, solved and forgotten."""
 
     def __init__(self, *arguments):
@@ -43,7 +43,7 @@ class FullMatrix(AbstractProcess):
         return int(bool(self.solved))
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return True
 
     def advance(self, quanta: int, swept: Swept) -> None:

@@ -2,27 +2,37 @@
 
 from importlib import import_module
 
+from ..errors import MethodError
 from ..method import Baseline, Method
 from ..problem.model import Problem
 from ..tracing.geometry import Geometry
-from .process import AbstractProcess
+from .base import AbstractAlgorithm
 
-PROCESSES = {
-    "firing": "firing.process:Firing",
+ALGORITHMS = {
+    "firing": "firing.algorithm:Firing",
     "walks": "walks.shooting:Walks",
     "gathering": "walks.gathering:Gathering",
-    "iteration": "iterations.process:Iteration",
+    "iteration": "iterations.algorithm:Iteration",
     "multipath": "global_lines.multipath:Multipath",
     "pooling": "global_lines.pooling:Pooling",
-    "matrix": "matrix.process:Matrix",
+    "matrix": "matrix.algorithm:Matrix",
     "full-matrix": "full_matrix:FullMatrix",
-    "progressive": "progressive.process:Progressive",
-    "hierarchical": "hierarchical.process:Hierarchical",
+    "progressive": "progressive.algorithm:Progressive",
+    "hierarchical": "hierarchical.algorithm:Hierarchical",
 }
 
 
-def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: int, replicates: int) -> AbstractProcess:
-    """The process that runs a method."""
+LIGHTS = ("firing",)  # those that fire all source rows
+
+
+def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: int, replicates: int) -> AbstractAlgorithm:
+    """The process that runs a method.
+
+    Raises:
+        MethodError: the method knows nothing of lights without area, and there are some.
+    """
+    if problem.lights is not None and method.machine not in LIGHTS:
+        raise MethodError(f"{method} sends light from patches only, and there are lights without area; take --method random-walk")
     geometry.prepare()
-    module, cls = PROCESSES[method.machine].split(":")
+    module, cls = ALGORITHMS[method.machine].split(":")
     return getattr(import_module(f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)

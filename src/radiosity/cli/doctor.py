@@ -64,7 +64,7 @@ def _one_line_of_work() -> None:
     import numpy as np
 
     from ..scene import Scene
-    from ..tracing.caster import first_hits
+    from ..tracing.first_hits import first_hits
 
     scene = Scene.from_arrays([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], 0.5, 1.0)
     hits = first_hits(scene, np.array([[0.25, 0.25, 1.0]]), np.array([[0.0, 0.0, -1.0]]))

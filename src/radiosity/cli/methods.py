@@ -83,12 +83,12 @@ def _axis(axis: str) -> None:
 def _numbers(name: str) -> str:
     from importlib import import_module
 
-    from ..sampling.numbers import NUMBERS
+    from ..sampling.numbers import NUMBERS, SCRAMBLED, parts_of
 
-    points = NUMBERS[name]
-    module = import_module(f"radiosity.sampling.numbers.{points.maker.split(':')[0]}")
+    module = import_module(f"radiosity.sampling.numbers.{NUMBERS[name].split(':')[0]}")
     text = " ".join((module.__doc__ or "").split("\n\n")[0].split())
-    return f"{text} The same as --numbers {points.of} --scrambling {points.scrambling}." if points.of else text
+    sequence, scrambling = parts_of(name)
+    return f"{text} The same as --numbers {sequence} --scrambling {scrambling}." if name in SCRAMBLED else text
 
 
 def _explain(name: str) -> None:

@@ -77,7 +77,7 @@ def _small(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Faces that are hardly larger than what lines begin in front of them, the worst first, and an ulp at each."""
     _, first, second = scene.frames
     longest = np.max([np.linalg.norm(edge, axis=1) for edge in (first, second, second - first)], axis=0)
-    held = ulp(scene, np.arange(scene.n_faces), scene.vertices[scene.faces[:, 0]])
+    held = ulp(scene.vertices[scene.faces[:, 0]], scene.centre, scene.plane_reach)
     small = np.flatnonzero(longest < SMALL * held)
     small = small[np.argsort(-held[small], kind="stable")]
     return small, held[small]

@@ -117,7 +117,7 @@ def _places(scene: Scene, face: np.ndarray, generator) -> tuple[np.ndarray, np.n
 
 def _trace(scene: Scene, face, back, place, generator, device: str):
     """Fates of cosine lines, and for each hit whether it is of the front, and its (u, v)."""
-    from ..tracing.caster import first_hits  # the tracer stands later in the walk, and takes a while to start
+    from ..tracing.first_hits import first_hits  # the tracer stands later in the walk, and takes a while to start
 
     radius, turn = np.sqrt(generator.random(len(face))), 2 * np.pi * generator.random(len(face))
     origin, first, second = (part[face] for part in scene.frames)
@@ -127,7 +127,7 @@ def _trace(scene: Scene, face, back, place, generator, device: str):
     x, y, z = radius * np.cos(turn), radius * np.sin(turn), np.sqrt(1 - radius**2)
     direction = x[:, None] * tangent + y[:, None] * across + z[:, None] * normal
     start = origin + place[0][:, None] * first + place[1][:, None] * second
-    start += ULPS * ulp(scene, face, start)[:, None] * normal
+    start += ULPS * ulp(start, scene.centre, scene.plane_reach[face])[:, None] * normal
     hits = first_hits(scene, start, direction, device=device)
     dead_back = ~hits.front & (scene.back[hits.face] != Back.RADIATES)
     fate = np.where(hits.face < 0, ESCAPED, np.where(dead_back, LOST, SEEN))

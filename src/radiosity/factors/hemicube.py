@@ -19,8 +19,8 @@ from ..errors import MethodError
 from ..patches.model import Patches
 from ..sampling.streams import Purpose, stream
 from ..tracing.geometry import Geometry
+from ..tracing.hits import first_hit, patch_of
 from ..tracing.lanes import CHUNK
-from ..tracing.lines import land, patch_of
 from .model import Factors
 
 MOST = 2048  # pixels along an edge
@@ -80,7 +80,7 @@ class Hemicube:
 
     def _frames(self, geometry: Geometry, numbers: np.ndarray) -> np.ndarray:
         """(k, 12) origin of the lines, two tangents and normal, the caster's coordinates."""
-        patches, tree = geometry.patches, geometry.tree
+        patches, tree = geometry.patches, geometry.bvh
         face, normal = patches.face[numbers], patches.normal[numbers]
         first = patches.scene.frames[1][face]
         tangent = first / np.linalg.norm(first, axis=1, keepdims=True)
@@ -88,7 +88,7 @@ class Hemicube:
         angle = self._angles(patches)[numbers] if self.turned else np.zeros(len(numbers))
         cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
         origin = (patches.centroid[numbers] - tree.centre) * tree.scale
-        origin += normal * geometry.offset(face, origin)[:, None]
+        origin += normal * geometry.faces.offset(face, origin)[:, None]
         return np.concatenate([origin, cosine * tangent + sine * across, cosine * across - sine * tangent, normal], axis=1)
 
     def _angles(self, patches: Patches) -> np.ndarray:
@@ -107,7 +107,7 @@ def _landed(geometry: Geometry, frames: np.ndarray, resolution: int) -> np.ndarr
     origin, tangent, across, normal = (
         types.Array3f(*(dr.gather(types.Float, words, row * 12 + at + i) for i in range(3))) for at in range(0, 12, 3)
     )
-    hit = land(geometry, origin, tangent * x + across * y + normal * z)
+    hit = first_hit(geometry, origin, tangent * x + across * y + normal * z)
     landed = patch_of(geometry, hit, n + 1, n)
     dr.eval(landed)
     return np.array(landed)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ..algorithms.iterations.shooter import Shooter
 from ..device.backend import upload
 from ..method import Baseline, Method
 from ..problem.model import Problem
+from ..tally.shooter import Shooter
 from ..tracing.geometry import Geometry
 from .rows import AbstractRows, Rows, Swept
 
@@ -19,7 +19,7 @@ class LineRows(AbstractRows):
         self, geometry: Geometry, problem: Problem, method: Baseline, seed: int, replicates: int, lines: int | None = None
     ):
         self.n, self.replicates, self.lines = len(problem.patches), replicates, lines or method.lines_of_patch
-        self.shooter = Shooter(geometry, problem.source, Method(), seed, replicates, 0)
+        self.shooter = Shooter(geometry, Method(), seed, replicates, 0)
 
     @property
     def at_once(self) -> int:
@@ -41,7 +41,7 @@ class LineRows(AbstractRows):
             counts = np.zeros(total, np.uint32)
             counts[replicate * self.n + some] = self.lines
             types = self.shooter.types
-            self.shooter.engine.fired = upload(types.UInt32, np.zeros(total, np.uint32))  # each row begins with its first line
+            self.shooter.fired = upload(types.UInt32, np.zeros(total, np.uint32))  # each row begins with its first line
             self.shooter.shoot(upload(types.UInt32, counts), pairs=pairs)
             swept(len(some) * self.lines)
         keys, counts = np.unique(np.concatenate(found) if found else np.zeros(0, np.int64), return_counts=True)

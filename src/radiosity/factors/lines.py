@@ -4,11 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..algorithms.iterations.shooter import Shooter
 from ..device.backend import upload
 from ..method import Method
 from ..problem.model import Problem
 from ..problem.quanta import phases
+from ..tally.shooter import Shooter
 from ..tracing.geometry import Geometry
 from ..tracing.global_lines.spans import ESCAPED, LOST, ONE_WAY, Spans
 
@@ -29,7 +29,7 @@ class LocalLines:
         self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int, *, both_ways: bool = True
     ):
         self.n, self.total = len(problem.patches), len(problem.patches) * replicates
-        self.shooter = Shooter(geometry, problem.source, method, seed, replicates, 0)
+        self.shooter = Shooter(geometry, method, seed, replicates, 0)
         light = TO_LIGHTS if both_ways else 0.0
         self.share = (1 - light) * problem.patches.area / problem.patches.area.sum() + light * problem.source.share
         self.phase = phases(seed, replicates, self.n) * 2.0**-32
@@ -52,7 +52,7 @@ class LocalLines:
 
     def resume(self, reached: int) -> None:
         """Go on from N."""
-        self.shooter.engine.fired = upload(self.shooter.types.UInt32, self.targets(reached))
+        self.shooter.fired = upload(self.shooter.types.UInt32, self.targets(reached))
 
 
 class GlobalLines:

@@ -7,10 +7,10 @@ from ..device.backend import upload
 from ..device.turn import turn
 from ..sampling.numbers import ready
 from ..sampling.streams import Purpose, stream
-from ..tracing.departure import place_number
 from ..tracing.geometry import Geometry
+from ..tracing.hits import first_hit, local_line, patch_of
 from ..tracing.lanes import CHUNK
-from ..tracing.lines import land, local_line, patch_of
+from ..tracing.ray_generation import place_number
 
 
 @turn()
@@ -35,7 +35,7 @@ def missed(geometry: Geometry, lines: int = 1024, seed: int = 0) -> tuple[np.nda
         words = [dr.gather(UInt32, shift, UInt32(i)) for i in range(8)]
         record = dr.gather(types.Array2u, geometry.patch_records, patch)
         points = numbers.points(index, patch, numbers.of_patch(words, place_number(record)), 16)
-        landed = patch_of(geometry, land(geometry, *local_line(geometry, record, points)), n + 1, n)
+        landed = patch_of(geometry, first_hit(geometry, *local_line(geometry, record, points)), n + 1, n)
         dr.eval(landed)
         found = np.array(landed)[: count * lines].reshape(count, lines)
         for code in (0, 1):

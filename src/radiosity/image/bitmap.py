@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from ..errors import OutputError
-from .output import replacing
+from ..solution.replacing import replacing
 
 
 def write_png(pixels: np.ndarray, path, facts: dict[str, str]) -> None:

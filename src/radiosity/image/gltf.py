@@ -13,9 +13,9 @@ import struct
 import numpy as np
 
 from ..errors import OutputError
+from ..solution.replacing import replacing
 from .look import Look
 from .mesh import ColouredMesh, coloured
-from .output import replacing
 
 FLOAT, USHORT, UINT = 5126, 5123, 5125
 ARRAY, ELEMENTS = 34962, 34963

@@ -1,12 +1,12 @@
-"""Files appear whole or not at all, and what would stop them is found before a run."""
+"""What would stop an output is found before a run."""
 
 import os
-from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..errors import INSTALL, OutputError, RadiosityError
-from ..solution.whole import reason, refused, standing, try_out
+from ..errors import INSTALL, OutputError
+from ..solution.replacing import beside
+from ..solution.whole import refused, standing, try_out
 
 
 def check_writable(path, suffixes) -> Path:
@@ -34,7 +34,7 @@ def check_writable(path, suffixes) -> Path:
             raise OutputError(f"{path}: {error}") from None
         if path.exists() and not os.access(path, os.W_OK):
             raise OutputError(f"{path}: the file is read-only; remove it or choose another name")
-        try_out(folder / _beside(path).name)
+        try_out(folder / beside(path).name)
     return path
 
 
@@ -58,29 +58,3 @@ def require_results(solution) -> None:
         raise OutputError(
             "there are no results yet: the run was stopped within its first stage; `radiosity solve --resume` goes on"
         )
-
-
-@contextmanager
-def replacing(path):
-    """A path in the same folder to write to; the finished file then takes the place of ``path`` in one step.
-
-    Raises:
-        OutputError: the system refuses; nothing is left behind, and a file that was there stays as it was.
-    """
-    path = Path(os.path.realpath(path))
-    temporary = _beside(path)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        yield temporary
-        temporary.replace(path)
-    except RadiosityError:
-        raise
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({reason(error)})") from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
-
-
-def _beside(path: Path) -> Path:
-    return path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")

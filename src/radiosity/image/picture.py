@@ -91,10 +91,10 @@ def choose_camera(solution, camera: Camera | int | None, width, height, hits) ->
 
 def first_hits(scene, origins, directions):
     """The ray caster; imported when a picture is taken, since it starts a back end. Open lamps are seen from their front."""
-    from ..tracing import caster
+    from ..tracing import first_hits
 
     seen = replace(scene, back=np.where(scene.back == Back.OPEN, Back.PASSES, scene.back).astype(np.uint8))
-    return caster.first_hits(seen if (scene.back == Back.OPEN).any() else scene, origins, directions)
+    return first_hits.first_hits(seen if (scene.back == Back.OPEN).any() else scene, origins, directions)
 
 
 def _bits_reversed(n: int) -> np.ndarray:

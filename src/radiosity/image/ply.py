@@ -9,10 +9,10 @@ import re
 
 import numpy as np
 
+from ..solution.replacing import replacing
 from . import tone
 from .look import Look
 from .mesh import coloured
-from .output import replacing
 
 CHUNK = 1 << 19
 

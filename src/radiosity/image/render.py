@@ -48,7 +48,7 @@ def render(
         false_color: colours of a map, one for each value, with a legend; several bands are shown by their luminance.
         range, log, color_map: of the false colours; see `radiosity.image.false_color.colour`.
         samples: lines of sight a pixel.
-        hits: ``hits(scene, origins, directions)`` with the result of `radiosity.tracing.caster.first_hits`, the default.
+        hits: ``hits(scene, origins, directions)`` with the result of `radiosity.tracing.first_hits.first_hits`, the default.
 
     Returns:
         For PNG or no path: (height, width, 3) uint8, sRGB; with false colours the legend makes it wider. For EXR:

@@ -7,13 +7,13 @@ UTF-8, comma separated, a header row with units; what is unknown is ``nan``.
 import csv
 import io
 from pathlib import Path
-from typing import TextIO
 
 import numpy as np
 
 from ..solution.columns import patch_columns
+from ..solution.csv_rows import open_text, write_rows
+from ..solution.replacing import replacing
 from .look import Look
-from .output import replacing
 
 CHUNK = 1 << 16
 POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net", "net error", "net low", "net high")
@@ -36,7 +36,7 @@ def _patches(solution, path: Path) -> None:
     names = np.array([_cells([name]) for name in solution.patches.scene.names], object)
     columns["surface"] = names[solution.patches.surface]
     row = ",".join("%.9g" if value.dtype.kind == "f" else "%s" for value in columns.values()).__mod__
-    with replacing(path) as temporary, _text(temporary) as file:
+    with replacing(path) as temporary, open_text(temporary) as file:
         file.write(_cells(columns) + "\n")
         for begin in range(0, len(solution.patches), CHUNK):
             part = [value[begin : begin + CHUNK].tolist() for value in columns.values()]
@@ -47,22 +47,7 @@ def _surfaces(solution, path: Path) -> None:
     rows, scene = solution.surface_table(), solution.patches.scene
     units = {"area": "m²", "dark": "m²", "radiosity": solution.unit, "irradiance": solution.unit}
     units |= dict.fromkeys(POWERS, scene.power_unit)
-    with replacing(path) as temporary, _text(temporary) as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(_titled(key, units) for key in rows[0])
-        writer.writerows(row.values() for row in rows)
-
-
-def write_rows(rows: list[dict], path) -> None:
-    """A table of like rows, as it is.
-
-    Raises:
-        OutputError: it cannot be written.
-    """
-    with replacing(Path(path)) as temporary, _text(temporary) as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(rows[0])
-        writer.writerows(row.values() for row in rows)
+    write_rows(rows, path, [_titled(key, units) for key in rows[0]])
 
 
 def _titled(key: str, units: dict[str, str]) -> str:
@@ -70,10 +55,6 @@ def _titled(key: str, units: dict[str, str]) -> str:
     quantity, _, band = key.removesuffix("]").partition(" [")
     title = f"{quantity} {band}" if band else key
     return f"{title} [{units[quantity]}]" if quantity in units else title
-
-
-def _text(path: Path) -> TextIO:
-    return path.open("w", encoding="utf-8", errors="backslashreplace", newline="")
 
 
 def _cells(values) -> str:

@@ -9,9 +9,9 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from ..solution.replacing import replacing
 from . import display_mesh
 from .look import Look
-from .output import replacing
 
 TYPES = {"f4": "Float32", "f8": "Float64", "i4": "Int32", "i8": "Int64", "u1": "UInt8"}
 CHUNK = 3 << 20  # bytes; a multiple of 3, so that base64 can be written piece by piece

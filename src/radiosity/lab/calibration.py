@@ -50,15 +50,15 @@ def coverage(
         ValueError: no patch is left.
     """
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
-    process = make(geometry, problem, arm.method, seed, REPLICATES * seeds)
+    algorithm = make(geometry, problem, arm.method, seed, REPLICATES * seeds)
     mean = float(case.patches.area @ case.patches.reflectance[:, 0] / case.patches.area.sum())
-    process.advance(max(1, round(lines * (1 - mean))), lambda lines: None)
-    state = process.capture()
+    algorithm.advance(max(1, round(lines * (1 - mean))), lambda lines: None)
+    state = algorithm.capture()
     lit = (case.patches.reflectance[:, 0] > 0) & (truth > case.patches.emission[:, 0])  # others are known exactly
-    here = lit & (process.tally.arrivals(problem, state) >= visited * seeds)
+    here = lit & (algorithm.tally.arrivals(problem, state) >= visited * seeds)
     if not here.any():
         raise ValueError(f"no patch of {case.name} has {visited:g} arrivals a run")
-    found = radiosity(process, problem, state).reshape(seeds, REPLICATES, -1)[..., here]
+    found = radiosity(algorithm, problem, state).reshape(seeds, REPLICATES, -1)[..., here]
     middle, error = found.mean(axis=1), found.std(axis=1, ddof=1) / np.sqrt(REPLICATES)
     known = error > 0
     apart = np.where(known, np.abs(middle - truth[here]) / np.where(known, error, 1), np.inf)

@@ -58,11 +58,11 @@ def reference(case: Case, equation: str, protocol: Protocol) -> tuple[np.ndarray
     the area-weighted RMS of its standard error over that of the reflected light."""
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
     replicates = 8
-    process = make(geometry, problem, Method(equation=equation, randomisation="shared"), REFERENCE_SEED, replicates)
+    algorithm = make(geometry, problem, Method(equation=equation, randomisation="shared"), REFERENCE_SEED, replicates)
     # a quantum takes 1 / (1 - mean reflectance) lines; more lines than asked for do no harm
     lines = protocol.reference * protocol.rungs[-1]
-    process.advance(max(1, lines // replicates), lambda lines: None)
-    found = radiosity(process, problem, process.capture())
+    algorithm.advance(max(1, lines // replicates), lambda lines: None)
+    found = radiosity(algorithm, problem, algorithm.capture())
     mean, error = found.mean(axis=0), found.std(axis=0, ddof=1) / np.sqrt(replicates)
     area = case.patches.area
     return mean, float(np.sqrt(area @ error**2) / np.sqrt(area @ (mean - case.patches.emission[:, 0]) ** 2))

@@ -13,7 +13,7 @@ from ..method import Method
 from ..patches import Patches, cells, subdivide
 from ..patches.nesting import parents
 from ..scene import Scene, load_scene
-from ..tracing.caster import first_hits
+from ..tracing.first_hits import first_hits
 
 FINER = 4
 LINES = 4_000_000  # in all, to evaluate delta

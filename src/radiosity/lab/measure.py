@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..algorithms.process import AbstractProcess
+from ..algorithms.base import AbstractAlgorithm
 from ..algorithms.table import make
 from ..device.backend import choose
 from ..problem.model import Problem
@@ -42,18 +42,18 @@ def measure(arm: Arm, case: Case, truth: np.ndarray, protocol: Protocol) -> Seri
     """
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
     per_quantum = lines_per_quantum(arm, problem, geometry, protocol)  # and compiles what the run will use
-    process = _process(arm, problem, geometry, protocol)
+    algorithm = _process(arm, problem, geometry, protocol)
     sight = Sight.of(case.patches)
     lines, seconds, errors, spent, before = [], [], [], 0.0, 0
     for rung in protocol.rungs:
         quanta = max(before + 1, round(rung / per_quantum))
         begun = time.perf_counter()
-        process.advance(quanta, _untold)
+        algorithm.advance(quanta, _untold)
         spent += time.perf_counter() - begun
-        before, state = quanta, process.capture()
-        lines.append(process.tally.lines(problem, state) / protocol.replicates)
+        before, state = quanta, algorithm.capture()
+        lines.append(algorithm.tally.lines(problem, state) / protocol.replicates)
         seconds.append(spent / protocol.replicates)
-        found = radiosity(process, problem, state)
+        found = radiosity(algorithm, problem, state)
         seen = np.full(protocol.replicates, np.nan) if sight is None else sight.error(found, truth)
         errors.append([*deviations(case, found, truth, absolute=case.exact is not None), seen])
     return Series(np.array(lines), np.array(seconds), *np.transpose(errors, (1, 2, 0)))
@@ -61,12 +61,12 @@ def measure(arm: Arm, case: Case, truth: np.ndarray, protocol: Protocol) -> Seri
 
 def lines_per_quantum(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol) -> float:
     """Lines that one quantum takes, from a small run."""
-    process = _process(arm, problem, geometry, protocol)
-    process.advance(TRIAL, _untold)
-    return process.tally.lines(problem, process.capture()) / protocol.replicates / TRIAL
+    algorithm = _process(arm, problem, geometry, protocol)
+    algorithm.advance(TRIAL, _untold)
+    return algorithm.tally.lines(problem, algorithm.capture()) / protocol.replicates / TRIAL
 
 
-def _process(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol) -> AbstractProcess:
+def _process(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol) -> AbstractAlgorithm:
     return make(geometry, problem, arm.method, protocol.seed, protocol.replicates)
 
 
@@ -74,9 +74,9 @@ def _untold(lines: int) -> None:
     """Nobody listens."""
 
 
-def radiosity(process: AbstractProcess, problem: Problem, state) -> np.ndarray:
+def radiosity(algorithm: AbstractAlgorithm, problem: Problem, state) -> np.ndarray:
     """(replicates, n_patches) of the first group of bands."""
-    values, unit = process.tally.irradiance(problem, state, 0)
+    values, unit = algorithm.tally.irradiance(problem, state, 0)
     patches, groups = problem.patches, problem.groups
     return groups.emission[:, 0] + groups.reflectance[:, 0] * values * (unit / patches.area)
 

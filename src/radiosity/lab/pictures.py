@@ -135,7 +135,7 @@ def _around(panel, centre, radius: float, axis: int) -> tuple[float, float]:
 
 
 def _numbered(panel, room: Scene, paths, order, title: str, group: str, which: int) -> None:
-    """Legs with their numbers; those fired together share a colour: ``which`` of (walk, leg) tells them apart."""
+    """PathSegments with their numbers; those fired together share a colour: ``which`` of (walk, leg) tells them apart."""
     _room(panel, room, title)
     for number, fired in enumerate(order, start=1):
         start, end = paths[fired[0]][fired[1] : fired[1] + 2]

@@ -7,7 +7,7 @@ import numpy as np
 from ..image import tone
 from ..image.view import directions
 from ..patches import Patches, cells
-from ..tracing.caster import first_hits
+from ..tracing.first_hits import first_hits
 
 WIDTH = 160  # pixels; one line of sight each, patches flat
 

@@ -40,17 +40,17 @@ def starts(case: Case, truth: np.ndarray, seed: int) -> list[Start]:
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
 
     def follow(order: str, quanta: list[int], *, within: bool):
-        process = make(geometry, problem, Method(order=order, randomisation="shared"), seed, REPLICATES)
+        algorithm = make(geometry, problem, Method(order=order, randomisation="shared"), seed, REPLICATES)
         lines, errors = [], []
 
         def note(_lines=0):
-            state = process.capture()
-            lines.append(process.tally.lines(problem, state) / REPLICATES)
-            found = radiosity(process, problem, state)
+            state = algorithm.capture()
+            lines.append(algorithm.tally.lines(problem, state) / REPLICATES)
+            found = radiosity(algorithm, problem, state)
             errors.append(deviations(case, found, truth, absolute=case.exact is not None)[0])
 
         for n in quanta:
-            process.advance(n, note if within else lambda _: None)
+            algorithm.advance(n, note if within else lambda _: None)
             if not within:
                 note()
         return np.array(lines), np.stack(errors, axis=1)

@@ -83,7 +83,7 @@ class Baseline:
 
     @property
     def machine(self) -> str:
-        """The process that runs it, a name of `algorithms.table.PROCESSES`."""
+        """The process that runs it, a name of `algorithms.table.ALGORITHMS`."""
         return self.scheme
 
     def __str__(self) -> str:

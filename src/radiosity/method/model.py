@@ -61,7 +61,7 @@ class Method:
 
     @property
     def machine(self) -> str:
-        """The process that runs it, a name of `algorithms.table.PROCESSES`."""
+        """The process that runs it, a name of `algorithms.table.ALGORITHMS`."""
         return machine(self)
 
     @property

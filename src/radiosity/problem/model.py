@@ -7,7 +7,9 @@ import numpy as np
 
 from ..patches.model import Patches
 from .bands import BandGroups
+from .lights import AbstractLights
 from .quanta import Source
+from .source_rows import SourceRows
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,26 +19,36 @@ class Problem:
     Attributes:
         patches: the unknowns.
         groups: bands that are one problem (see `BandGroups`).
-        source: the scalar problem of the largest band of each patch (contract 3).
+        source: the scalar problem of the largest band of each row (contract 3).
+        rows: what fires lines: the patches, and lights without area.
+        lights: those, or None.
     """
 
     patches: Patches
     groups: BandGroups
     source: Source
+    rows: SourceRows
+    lights: AbstractLights | None = None
 
     @cached_property
     def scalar(self) -> "Problem":
-        """The largest band of each patch alone: it fires as many lines."""
-        groups = self.groups
-        emission, reflectance = (x.max(axis=1, keepdims=True) for x in (groups.emission, groups.reflectance))
-        return replace(self, groups=BandGroups(np.zeros(1, np.int64), np.ones(1), emission, reflectance))
+        """The largest band of each row alone: it fires as many lines."""
+        rows, n = self.rows, self.rows.n_patches
+        emission, reflectance = (x.max(axis=1, keepdims=True) for x in (rows.emission, rows.reflectance))
+        groups = BandGroups(np.zeros(1, np.int64), np.ones(1), emission[:n], reflectance[:n], np.zeros(1, np.int64))
+        return replace(self, groups=groups, rows=SourceRows(n, emission, reflectance, rows.area))
 
     @staticmethod
-    def of(patches: Patches) -> "Problem":
+    def of(patches: Patches, lights: AbstractLights | None = None) -> "Problem":
         """Compare the bands and sum the emission.
+
+        Args:
+            lights: without area, where there are any.
 
         Raises:
             SceneError: nothing emits.
         """
-        groups = BandGroups.of(patches)
-        return Problem(patches, groups, Source.of(patches, groups.emission.max(axis=1), groups.reflectance.max(axis=1)))
+        power = np.zeros((0, patches.emission.shape[1])) if lights is None else lights.power
+        groups = BandGroups.of(patches, power)
+        rows = SourceRows.of(patches, groups, power[:, groups.leaders])
+        return Problem(patches, groups, rows.scalar(patches), rows, lights)

@@ -21,11 +21,11 @@ LIMIT = 2**32 - 1  # of every counter
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A scene's scalar problem: what the integers of contract 2 count.
+    """A scene's scalar problem: what the integers of contract 2 count. A row is a patch, or after them a light without area.
 
     Attributes:
-        share: (n_patches,) float64, E_i A_i / Phi.
-        rho: (n_patches,) uint32, reflectance times 2^32.
+        share: (n_rows,) float64, E_i A_i / Phi.
+        rho: (n_rows,) uint32, reflectance times 2^32.
         power: Phi, W or lm.
     """
 
@@ -34,13 +34,13 @@ class Source:
     power: float
 
     @staticmethod
-    def of(patches: Patches, emission: np.ndarray, reflectance: np.ndarray) -> "Source":
-        """From scalar emission and reflectance, (n_patches,) each.
+    def of(patches: Patches, emission: np.ndarray, reflectance: np.ndarray, area: np.ndarray | None = None) -> "Source":
+        """From scalar emission and reflectance of rows, (n_rows,) each, and their area: that of the patches by default.
 
         Raises:
             SceneError: nothing emits.
         """
-        power = emission * patches.area
+        power = emission * (patches.area if area is None else area)
         try:
             total = math.fsum(power)
         except OverflowError:
@@ -90,7 +90,7 @@ def phases(seed: int, replicates: int, n_patches: int) -> np.ndarray:
     return result
 
 
-def owed(source: Source, quanta: int, arrivals: np.ndarray, phase: np.ndarray) -> np.ndarray:
+def target_counts(source: Source, quanta: int, arrivals: np.ndarray, phase: np.ndarray) -> np.ndarray:
     """Contract 2 on the host, (..., n_patches) uint64: for the books and for tests."""
     whole, fraction = source.emitted(quanta)
     low = source.rho.astype(np.uint64) * arrivals.astype(np.uint64) + fraction.astype(np.uint64) + phase.astype(np.uint64)

@@ -9,7 +9,7 @@ from pathlib import Path
 from ..errors import MethodError, OutputError, RadiosityWarning
 from ..method import Baseline, Method
 from ..solution.model import Solution
-from ..solution.store import save
+from ..solution.saving import save
 from ..solution.whole import check_place
 
 EVERY = 30.0  # seconds

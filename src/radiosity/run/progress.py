@@ -123,10 +123,6 @@ class Teller:
         return max(self.lines, self.lines * (self.bound / self.budget.error) ** (1 / self.slope))
 
 
-class Interrupted(Exception):
-    """The run was asked to stop between two sweeps."""
-
-
 class Stop:
     """Set by Ctrl-C; looked at between sweeps, where the counters are whole. A second Ctrl-C stops at once."""
 

@@ -8,8 +8,7 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
-from ..algorithms.firing.state import check_same
-from ..algorithms.process import AbstractMeanTally, AbstractProcess, State
+from ..algorithms.base import AbstractAlgorithm, AbstractMeanTally, Interrupted, State
 from ..algorithms.table import make
 from ..device.backend import choose, give_back_memory
 from ..device.turn import turn
@@ -17,19 +16,21 @@ from ..errors import DeviceError, MethodError, RadiosityWarning, result_kept
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..problem.model import Problem
-from ..solution.model import NOT_REACHED, Solution
+from ..solution.model import Solution
+from ..solution.status import NOT_REACHED
 from ..solution.without_results import without_results
 from ..tally import unmet
 from ..tracing.geometry import TRACING, Geometry
-from . import demand
+from . import memory_estimate
 from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
-from .progress import Interrupted, Listener, Stop, Teller
+from .error_target import Target, nothing_before_lights
+from .pilot import few_quanta
+from .progress import Listener, Stop, Teller
+from .same import check_same
 from .shortfall import warn_of_more, warn_of_target
 from .snapshot import Snapshot
-from .target import Target, nothing_before_lights
-from .trial import few_quanta
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
@@ -71,7 +72,7 @@ class Run:
                 f"order '{method.order}' cannot carry {bands} different bands: "
                 "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
             )
-        demand.check(method, patches, bands, replicates, budget.rays)
+        memory_estimate.check(method, patches, bands, replicates, budget.rays)
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = first_rung(method.order, replicates, self.problem.source.share)
         self.teller, self.stop = Teller(budget, listener), Stop()
@@ -88,39 +89,43 @@ class Run:
             return self._stages()
 
     def _stages(self) -> Solution:
-        process, target = self._process(self.problem, self.replicates), 0
-        self.process = process
+        algorithm, target = self._process(self.problem, self.replicates), 0
+        self.algorithm = algorithm
         if self.resume is None:
             target = self._first_quanta()
         else:
-            process.restore(self.resume.state)
-            target = process.quanta
-            last = not process.nested and not process.unfinished(self.resume.state) and not on_ladder(target, self.rung)
+            algorithm.restore(self.resume.state)
+            target = algorithm.quanta
+            last = (
+                not algorithm.stage_independent
+                and not algorithm.unfinished(self.resume.state)
+                and not on_ladder(target, self.rung)
+            )
             if last and (self.budget.seconds is not None or self._budget != self.resume.provenance.get("budget")):
                 raise MethodError(
                     f"a run by {self.method} in {self.problem.groups.n_groups} groups of bands cannot go on from {target} quanta "
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
-        self.teller.begin(0 if self.resume is None else process.tally.swept_lines(self.problem, process.capture()))
+        self.teller.begin(0 if self.resume is None else algorithm.tally.swept_lines(self.problem, algorithm.capture()))
         status, pending, steps = "complete", {}, [target]
         while target:
             started = time.perf_counter()
             try:
                 for step in steps:
-                    process.advance(step, self._swept)
+                    algorithm.advance(step, self._swept)
             except Interrupted as reason:
-                status, pending = str(reason), process.capture()
+                status, pending = str(reason), algorithm.capture()
                 break
             large = self.replicates * len(self.patches) > LARGE
             if large:
                 give_back_memory()
-            snapshot = self.snapshot = Snapshot(self.problem, process.tally, process.capture(), self.replicates, self.also)
+            snapshot = self.snapshot = Snapshot(self.problem, algorithm.tally, algorithm.capture(), self.replicates, self.also)
             known = self.replicates > 1 and self._error_matters
             error = self.target.error(snapshot) if known else math.nan
             margin = self._margin(snapshot)
             lines = snapshot.lines if known or large else round(snapshot.about_lines)
-            self.teller.complete(lines, target, error, margin, process.tally.swept_lines(self.problem, snapshot.state))
+            self.teller.complete(lines, target, error, margin, algorithm.tally.swept_lines(self.problem, snapshot.state))
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
                 break
@@ -128,9 +133,9 @@ class Run:
                 break
             stage, slope = time.perf_counter() - started, self.teller.slope
             at = Progressed(target, lines, self.teller.elapsed, stage, error * margin, slope)
-            replay = not process.nested
+            replay = not algorithm.stage_independent
             if replay and self._missed(at):
-                self.process = process = self._process(self.problem, self.replicates)
+                self.algorithm = algorithm = self._process(self.problem, self.replicates)
                 steps = self._climb(target)
                 target = steps[-1]
                 continue
@@ -203,7 +208,7 @@ class Run:
         """No patch can receive anything, and there is no error to wait for."""
         return self.budget.error is not None and not snapshot.irradiance[0].any() and nothing_before_lights(self.patches)
 
-    def _process(self, problem: Problem, replicates: int) -> AbstractProcess:
+    def _process(self, problem: Problem, replicates: int) -> AbstractAlgorithm:
         return make(self.geometry, problem, self.method, self.seed, replicates)
 
     @property
@@ -222,7 +227,7 @@ class Run:
         if seconds is not None and self.teller.stage and self.teller.elapsed > PATIENCE * seconds + 1:
             raise Interrupted("complete")
         if self.checkpoint is not None and self.checkpoint.due:
-            self.checkpoint.write(lambda: self._so_far("interrupted", self.process.capture()))
+            self.checkpoint.write(lambda: self._so_far("interrupted", self.algorithm.capture()))
 
     def _first_quanta(self) -> int:
         """N of the first stage: the ladder's first rung, or less where the budget asks for less."""
@@ -247,7 +252,10 @@ class Run:
             if self.resume is None:
                 warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
             if status == NOT_REACHED:
-                warn_of_target(self, snapshot)
+                full = (
+                    snapshot.lines / self.replicates >= self.most / 2
+                )  # a stage that full counters forbid would have doubled the lines
+                warn_of_target(snapshot, self.budget, self.target, self.teller.bound, self.error_of, full=full)
             if isinstance(snapshot.tally, AbstractMeanTally):
                 unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
             ends = snapshot.lines / self.replicates / len(self.patches)

@@ -2,15 +2,12 @@
 
 import math
 import warnings
-from typing import TYPE_CHECKING
 
 from ..errors import RadiosityWarning
 from ..patches import Patches
 from .budget import Budget
+from .error_target import Target
 from .snapshot import Snapshot
-
-if TYPE_CHECKING:
-    from .run import Run
 
 MORE = 2.0  # times the lines asked for
 
@@ -27,20 +24,23 @@ def warn_of_more(lines: int, budget: Budget, replicates: int, patches: Patches) 
         )
 
 
-def warn_of_target(run: "Run", snapshot: Snapshot) -> None:
-    """Tell of an error that was not reached: what is known of it, and what ended the run."""
-    budget, whose = run.budget, run.error_of or "the scene"
-    if math.isnan(run.teller.bound):
-        landed = int(snapshot.arrivals[run.target.rows].sum())
+def warn_of_target(snapshot: Snapshot, budget: Budget, target: Target, bound: float, error_of: str | None, *, full: bool) -> None:
+    """Tell of an error that was not reached: what is known of it, and what ended the run.
+
+    Args:
+        bound: which the true error is below in 95 % of runs; NaN where that cannot be told.
+        error_of: whose error, as it was asked for.
+        full: the counters are full.
+    """
+    if math.isnan(bound):
+        landed = int(snapshot.arrivals[target.rows].sum())
         known = f"after {snapshot.lines:,} lines it cannot be told yet ({landed:,} lines landed there)"
     else:
-        known = f"after {snapshot.lines:,} lines it is {run.teller.bound:.2%} or less in 95 % of runs"
+        known = f"after {snapshot.lines:,} lines it is {bound:.2%} or less in 95 % of runs"
     limits = [f"{name}={value:g}" for name, value in (("rays", budget.rays), ("seconds", budget.seconds)) if value is not None]
-    # a stage that full counters forbid would have doubled the lines
-    limited = limits and snapshot.lines / run.replicates < run.most / 2
-    why = f"the limit was {', '.join(limits)}" if limited else "counters are full: take more replicates"
+    why = f"the limit was {', '.join(limits)}" if limits and not full else "counters are full: take more replicates"
     warnings.warn(
-        f"the error {100 * (budget.error or 0):.3g}% of {whose} was not reached: {known}; {why}",
+        f"the error {100 * (budget.error or 0):.3g}% of {error_of or 'the scene'} was not reached: {known}; {why}",
         RadiosityWarning,
         stacklevel=6,
     )

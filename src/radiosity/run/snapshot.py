@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..algorithms.process import AbstractBiasedTally, AbstractTally, State
+from ..algorithms.base import AbstractBiasedTally, AbstractTally, State
 from ..pieces import pieces
 from ..problem.model import Problem
 from ..solution.errors import inner_products, margin, mean_and_error, relative_error
@@ -65,7 +65,7 @@ class Snapshot:
             for part, one, its_error in self._irradiance(group):
                 mean[part, bands], error[part, bands] = (x[:, None] * groups.scale[bands] for x in (one, its_error))
         some = any(by_luck(mean[part], error[part]).any() for part in pieces(len(mean)))
-        if some and self.tally.counts_landings:
+        if some and self.tally.counts_hits:
             usual = usual_power(mean, self.arrivals, self.problem.patches.area, self.line)
             error = least_error(mean, error, self.arrivals, self.problem.patches.area, usual, self.replicates)
         return mean, error

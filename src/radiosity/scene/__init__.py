@@ -1,4 +1,4 @@
-"""file -> Scene"""
+"""Scenes: the model, the readers of files and the built-in ones."""
 
 import os
 from pathlib import Path

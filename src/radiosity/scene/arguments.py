@@ -1,14 +1,16 @@
-"""Each argument of `Scene.from_arrays`, checked: it comes back as an array of its full shape, or is a SceneError."""
+"""Checks of the arguments of `Scene.from_arrays`: each returns an array of its full shape, or raises a SceneError."""
 
 import numpy as np
 
 from ..errors import SceneError
-from .model import Back, Camera
+from .back import Back
+from .camera import Camera
 
 LARGEST = 1e30  # of emission, colours and texture coordinates: products and single precision copies of them are finite
 
 
 def array(value, dtype, what, source) -> np.ndarray:
+    """An array of numbers."""
     if isinstance(value, np.ndarray) and np.iscomplexobj(value):
         raise SceneError(f"{source}: {what} cannot be read as numbers (they are complex)")
     try:
@@ -18,6 +20,7 @@ def array(value, dtype, what, source) -> np.ndarray:
 
 
 def whole(value, what, kind, source) -> np.ndarray:
+    """An array of whole numbers, int64."""
     raw = array(value, np.float64, what, source)
     if not np.isfinite(raw).all() or (raw != np.floor(raw)).any() or np.abs(raw).max(initial=0) > 2**53:
         raise SceneError(f"{source}: {what} must hold whole {kind}")
@@ -25,18 +28,21 @@ def whole(value, what, kind, source) -> np.ndarray:
 
 
 def words(value, what, source) -> tuple[str, ...]:
+    """A sequence of names."""
     if isinstance(value, str) or not np.iterable(value):
         raise SceneError(f"{source}: {what} is {value!r}; expected a sequence of names")
     return tuple(str(word) for word in value)
 
 
 def cameras_of(value, source) -> tuple[Camera, ...]:
+    """A sequence of cameras."""
     if not np.iterable(value) or not all(isinstance(camera, Camera) for camera in value):
         raise SceneError(f"{source}: cameras must be a sequence of Camera")
     return tuple(value)
 
 
 def indices(faces, source) -> np.ndarray:
+    """(n_faces, 4) int64: corners of faces, -1 in the last column of triangles."""
     raw = whole(faces, "faces", "vertex numbers", source)
     if raw.size == 0:
         return np.zeros((0, 4), np.int64)
@@ -48,6 +54,7 @@ def indices(faces, source) -> np.ndarray:
 
 
 def check_indices(faces, n_vertices, source) -> None:
+    """Refuse corners that are no vertices."""
     low = faces.copy()
     low[:, 3] = np.maximum(low[:, 3], 0 if n_vertices else -1)
     wrong = (low < 0) | (low >= n_vertices) | (faces < -1)
@@ -59,6 +66,7 @@ def check_indices(faces, n_vertices, source) -> None:
 
 
 def per_face(value, n, what, source) -> np.ndarray:
+    """(n, 1) or (n, n_bands) float64: a value of each face."""
     value = array(value, np.float64, what, source)
     if value.ndim == 0:
         return np.full((n, 1), value)
@@ -70,12 +78,14 @@ def per_face(value, n, what, source) -> np.ndarray:
 
 
 def widen(value, n_bands, source) -> np.ndarray:
+    """(n, n_bands) float64: values of faces in all bands, from one or all of them."""
     if value.shape[1] not in (1, n_bands):
         raise SceneError(f"{source}: values have {value.shape[1]} and {n_bands} bands; give all the same number, or one")
     return np.broadcast_to(value, (len(value), n_bands)).copy()
 
 
 def surfaces_of(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]:
+    """(n,) int32 the surface of each face, and the names of all surfaces."""
     index = np.zeros(n, np.int64) if surface is None else whole(surface, "surface", "surface numbers", source)
     if index.shape != (n,):
         raise SceneError(f"{source}: surface has shape {index.shape}; expected ({n},)")
@@ -94,6 +104,7 @@ def surfaces_of(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]
 
 
 def backs_of(back, two_sided, n, source) -> np.ndarray:
+    """(n,) uint8: the `Back` of each face."""
     if back is None:
         sides = array(two_sided, np.float64, "two_sided", source)
         if sides.shape not in ((), (n,)) or not np.isin(sides, (0, 1)).all():
@@ -109,6 +120,7 @@ def backs_of(back, two_sided, n, source) -> np.ndarray:
 
 
 def check_values(value, what, surface, names, source) -> None:
+    """Refuse reflectances and emissions out of range."""
     top = 1.0 if "reflectance" in what else LARGEST
     wrong = ~((value >= 0) & (value < top))
     if wrong.any():
@@ -120,7 +132,7 @@ def check_values(value, what, surface, names, source) -> None:
 
 
 def check_open(back, reflectance, surface, names, source) -> None:
-    """What lets all lines pass reflects none."""
+    """Refuse open faces that reflect: lines pass through them."""
     wrong = (back == Back.OPEN) & (reflectance > 0).any(axis=1)
     if wrong.any():
         face = int(np.flatnonzero(wrong)[0])
@@ -131,6 +143,7 @@ def check_open(back, reflectance, surface, names, source) -> None:
 
 
 def bands_of(bands, n_bands, source) -> tuple[str, ...]:
+    """The names of the bands."""
     if bands is None:
         bands = {1: ("grey",), 3: ("red", "green", "blue")}.get(n_bands, tuple(f"band {i}" for i in range(n_bands)))
     bands = words(bands, "bands", source)

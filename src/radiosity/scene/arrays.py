@@ -1,25 +1,21 @@
-"""`Scene.from_arrays`: plain arrays, checked, become a scene."""
+"""The check of `Scene.from_arrays`: plain arrays become the fields of a scene."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..errors import SceneError, shown
 from . import arguments
 from .habits import warn
-from .model import Scene
 from .paint import Paint
 
 OPPOSITE = 1e-6  # cosine between halves that rounding does not make
 PARALLEL_TOLERANCE = 2e-6  # of the longest edge: what single precision coordinates can hold
 
 
-def build(vertices, faces, reflectance, emission, *, source, **rest) -> Scene:
-    """See `Scene.from_arrays`."""
-    return build_rows(vertices, faces, reflectance, emission, source=source, **rest)[0].without_degenerate_faces()
-
-
-def build_rows(
+def checked_fields(
     vertices,
     faces,
     reflectance,
@@ -27,7 +23,7 @@ def build_rows(
     *,
     surface=None,
     names=None,
-    two_sided=False,
+    two_sided: ArrayLike = False,
     back=None,
     back_reflectance=None,
     back_emission=None,
@@ -35,8 +31,11 @@ def build_rows(
     photometric=False,
     cameras=(),
     source="arrays",
-) -> tuple[Scene, np.ndarray]:
-    """The scene with degenerate faces still in it, and the input row that each of its faces came from."""
+) -> tuple[dict[str, Any], np.ndarray]:
+    """The fields of a `Scene` by name, with degenerate faces still in it, and the input row that each of its faces came from.
+
+    Arguments and errors are those of `Scene.from_arrays`.
+    """
     vertices = arguments.array(vertices, np.float64, "vertices", source)
     faces = arguments.indices(faces, source)
     if vertices.ndim != 2 or vertices.shape[1] != 3:
@@ -73,28 +72,35 @@ def build_rows(
         warn(f"{source}: {text} (first: face {crossed[0]}; surfaces {where}); put their corners in order")
     faces, rows = _parallelograms(vertices, faces)
     reflectance, emission, back_reflectance, back_emission = (value[rows] for value in values)
-    scene = Scene(
-        vertices,
-        faces,
-        reflectance,
-        emission,
-        back[rows],
-        back_reflectance,
-        back_emission,
-        surface[rows],
-        names,
-        bands,
-        bool(photometric),
-        np.full(len(names), np.nan),
-        cameras=arguments.cameras_of(cameras, source),
-        source=str(source),
-    )
-    return scene, rows
+    fields = {
+        "vertices": vertices,
+        "faces": faces,
+        "reflectance": reflectance,
+        "emission": emission,
+        "back": back[rows],
+        "back_reflectance": back_reflectance,
+        "back_emission": back_emission,
+        "surface": surface[rows],
+        "names": names,
+        "bands": bands,
+        "photometric": bool(photometric),
+        "patch_size": np.full(len(names), np.nan),
+        "cameras": arguments.cameras_of(cameras, source),
+        "source": str(source),
+    }
+    return fields, rows
 
 
-def split_paint(paint: Paint, scene: Scene, rows: np.ndarray, faces: np.ndarray) -> Paint:
-    """A paint of input faces, carried to the scene's faces where quadrilaterals were split."""
-    corner = np.argmax(faces[rows][:, None, :] == scene.faces[:, :, None], axis=2)
+def split_paint(paint: Paint, split: np.ndarray, rows: np.ndarray, faces: np.ndarray) -> Paint:
+    """A paint of input faces, carried to the faces of the scene.
+
+    Args:
+        paint: of the input faces.
+        split: (n_faces, 4) corners of the scene's faces, where quadrilaterals were split.
+        rows: (n_faces,) the input face of each.
+        faces: (n_input, 4) corners of the input faces.
+    """
+    corner = np.argmax(faces[rows][:, None, :] == split[:, :, None], axis=2)
     at = np.arange(len(rows))[:, None]
     return replace(paint, image=paint.image[rows], uv=paint.uv[rows][at, corner], color=paint.color[rows][at, corner])
 

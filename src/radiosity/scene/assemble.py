@@ -1,11 +1,11 @@
-"""Parts with materials become one scene, and strangers' habits are named aloud."""
+"""Parts with materials become one scene; what is taken differently from the file is told."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from ..errors import SceneError, shown
-from .arrays import build_rows, split_paint
+from .arrays import checked_fields, split_paint
 from .bends import straightened
 from .habits import DEFAULT_REFLECTANCE, settle, warn
 from .model import Camera, Scene
@@ -57,7 +57,7 @@ def assemble(
         value = np.asarray(value, np.float64).ravel()
         return np.broadcast_to(value, (len(bands),)) if len(value) == 1 else value
 
-    scene, rows = build_rows(
+    fields, rows = checked_fields(
         np.concatenate([part.vertices for part in parts]),
         faces,
         each([spread(m.reflectance) for m in material]),
@@ -74,8 +74,8 @@ def assemble(
     )
     # the rows of the paints must follow where quadrilaterals were split
     paints = (reflectance_paint(parts, len(bands), options.max_reflectance), emission_paint(parts, len(bands)))
-    of_reflectance, of_emission = (paint and split_paint(paint, scene, rows, faces) for paint in paints)
-    scene = replace(scene, reflectance_paint=of_reflectance, emission_paint=of_emission)
+    of_reflectance, of_emission = (paint and split_paint(paint, fields["faces"], rows, faces) for paint in paints)
+    scene = Scene(**fields, reflectance_paint=of_reflectance, emission_paint=of_emission)
     if options.textures.averaged:
         warn(
             f"{source}: images that are too large, alone or together, are averaged to {SMALL} pixels along an edge, and small "

@@ -52,5 +52,5 @@ def is_linear(corners: np.ndarray) -> np.ndarray:
 
 
 def tolerance(extent: np.ndarray, largest: np.ndarray) -> np.ndarray:
-    """What texture coordinates may be off: a share of their extent, and what single precision rounds."""
+    """The error that texture coordinates may have: a share of their extent, and the rounding of single precision."""
     return 1e-5 * extent + 5e-7 * largest

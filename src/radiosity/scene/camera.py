@@ -1,4 +1,4 @@
-"""A camera."""
+"""Cameras: from where pictures are taken."""
 
 from dataclasses import dataclass
 

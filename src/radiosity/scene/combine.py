@@ -1,4 +1,4 @@
-"""Several scenes as one."""
+"""One scene of several."""
 
 from dataclasses import replace
 

@@ -31,17 +31,17 @@ class Contacts:
     same_way: np.ndarray
 
     def take(self, rows: np.ndarray) -> "Contacts":
-        """Some of them (indices or mask)."""
+        """The pairs of a choice (indices or mask)."""
         return Contacts(*(getattr(self, field.name)[rows] for field in fields(Contacts)))
 
     def doubled(self, scene: Scene) -> np.ndarray:
-        """(m,) bool: in one plane, and both radiate to the same side: there only one of the two is met."""
+        """(m,) bool: both faces lie in one plane and radiate to the same side, so that lines meet only one of them."""
         radiates = scene.back == Back.RADIATES
         hides = scene.back != Back.OPEN
         return self.coplanar & (self.same_way | radiates[self.one] | radiates[self.two]) & hides[self.one] & hides[self.two]
 
     def unseen(self, scene: Scene) -> np.ndarray:
-        """(m,) bool: one radiates towards the other, which is nearer than lines begin, and yet apart."""
+        """(m,) bool: one face radiates towards the other, which is apart from it, but nearer than the place where lines begin."""
         back, turned = scene.back, np.where(self.same_way, -1, 1)
         sides = []
         for face, other, height in ((self.one, self.two, self.gap), (self.two, self.one, turned * self.gap)):
@@ -52,7 +52,7 @@ class Contacts:
 
     @staticmethod
     def joined(parts: "list[Contacts]") -> "Contacts":
-        """Several, in the order of their pairs, each once."""
+        """The pairs of several values, in their order, each once."""
         if not parts:
             return Contacts(*(np.zeros(0, t) for t in (np.int64, np.int64, float, float, float, bool, bool)))
         every = Contacts(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Contacts)))

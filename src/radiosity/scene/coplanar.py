@@ -27,14 +27,14 @@ _known: "WeakKeyDictionary[Scene, Contacts]" = WeakKeyDictionary()
 
 
 def contacts(scene: Scene) -> Contacts:
-    """All pairs of a scene; found once."""
+    """The pairs of a scene; they are found once."""
     if scene not in _known:
         _known[scene] = _find(scene)
     return _known[scene]
 
 
 def copied(scene: Scene) -> np.ndarray:
-    """(n_faces,) int64: of each face the first one with the same corners in the same order, itself where there is none."""
+    """(n_faces,) int64: the first face with the same corners in the same order; the face itself where there is no other."""
     rows = _corners(scene).reshape(scene.n_faces, 12)
     _, first, number = np.unique(numbered(rows), return_index=True, return_inverse=True)
     first = first[number.ravel()]
@@ -58,7 +58,7 @@ def _find(scene: Scene) -> Contacts:
 
 
 def _compared(scene: Scene, corners: np.ndarray, faces: np.ndarray) -> list[Contacts]:
-    """Pairs of some faces, in parts."""
+    """The pairs among some faces, in parts."""
     edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
     longest, reach = edges.max(axis=1), np.abs(corners).max(axis=(1, 2))
     margin = NEAR * EPSILON * np.maximum(reach, scene.plane_reach)
@@ -84,7 +84,7 @@ def _compared(scene: Scene, corners: np.ndarray, faces: np.ndarray) -> list[Cont
 
 
 def _parallel(plates: Plates, corners: np.ndarray, small: np.ndarray, large: np.ndarray) -> np.ndarray:
-    """Rows of pairs that are parallel and in one plane, within what they are uncertain by."""
+    """The rows of pairs that are parallel and in one plane, within their uncertainty."""
     normal = plates.normal
     turned = np.linalg.norm(np.cross(normal[small], normal[large]), axis=1)
     rows = np.flatnonzero(turned <= 2 * (plates.tilt[small] + plates.tilt[large]) + EPSILON)
@@ -95,7 +95,7 @@ def _parallel(plates: Plates, corners: np.ndarray, small: np.ndarray, large: np.
 
 
 def _measured(scene: Scene, corners: np.ndarray, least: np.ndarray, small: np.ndarray, large: np.ndarray) -> Contacts:
-    """Those of the pairs that overlap, nearer than `NEAR` ulps."""
+    """The pairs that overlap and are nearer than `NEAR` ulps."""
     normal = scene.normal
     first = corners[large, 1] - corners[large, 0]
     first /= np.linalg.norm(first, axis=1, keepdims=True)
@@ -122,7 +122,7 @@ def _measured(scene: Scene, corners: np.ndarray, least: np.ndarray, small: np.nd
 
 
 def _height(corners: np.ndarray, along: np.ndarray, face: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """(m, k) from points, along a direction, to the planes of faces."""
+    """(m, k) distances from points, along a direction, to the planes of faces."""
     origin, second, third, fourth = corners[face].transpose(1, 0, 2)
     last = np.where((third == fourth).all(axis=1)[:, None], third, fourth)
     normal = np.cross(second - origin, last - origin)

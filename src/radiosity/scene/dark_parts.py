@@ -13,7 +13,7 @@ EXPECTED = 12  # lines that a side would have got, were it as dim as the dimmer 
 
 
 def dark_parts(scene: Scene, reached: np.ndarray, kind: np.ndarray) -> np.ndarray:
-    """(n_faces, 2) bool, fronts and backs that are dark, of two-sided faces on surfaces of `Lit.BOTH`.
+    """(n_faces, 2) bool: dark fronts and backs of two-sided faces on surfaces of `Lit.BOTH`.
 
     Args:
         reached: (n_faces, 2) lines that met fronts and backs.

@@ -1,22 +1,21 @@
-"""Faces without area."""
+"""Faces without area are found and left out."""
 
 import warnings
 
 import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
-from .model import Scene
 from .precision import EPSILON
 
 RESOLUTION = 4 * EPSILON  # of the distance from the scene's centre: what the ray caster can tell apart
 
-# Twice a face's area over the square of the scene's reach: where the caster's scene reaches to 2^20 (tracing/tree.py),
+# Twice a face's area over the square of the scene's reach: where the caster's scene reaches to 2^20 (tracing/bvh.py),
 # smaller faces are so close to what Embree can divide by, seen along a line, that places of hits would be wrong.
 SMALLEST = 4e-27
 
 
-def leave_out(scene: Scene) -> Scene:
-    """See `Scene.without_degenerate_faces`."""
+def leave_out(scene):
+    """The `Scene` of the faces of ``scene`` that have an area; see `Scene.without_degenerate_faces`."""
     if scene.n_faces == 0:
         raise SceneError(f"{scene.source}: the scene has no faces; add geometry")
     bad = without_area(scene)
@@ -39,9 +38,12 @@ def leave_out(scene: Scene) -> Scene:
     return scene.take(~bad)
 
 
-def without_area(scene: Scene) -> np.ndarray:
-    """(n_faces,) bool: faces whose height over their longest edge is below the resolution where they lie, or whose area is below
-    what lines can tell apart beside the size of the scene."""
+def without_area(scene) -> np.ndarray:
+    """(n_faces,) bool: faces of a `Scene` that count as faces without area.
+
+    Their height over their longest edge is below the resolution where they lie, or their area is below what lines can tell apart
+    beside the size of the scene.
+    """
     _, first, second = scene.frames
     longest = np.max([np.linalg.norm(e, axis=1) for e in (first, second, second - first)], axis=0)
     doubled = np.linalg.norm(np.cross(first, second), axis=1)

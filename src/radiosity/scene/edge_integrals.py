@@ -11,7 +11,7 @@ GAUSS = (0.5 - 0.5 / np.sqrt(3), 0.5 + 0.5 / np.sqrt(3))  # exact for the cubics
 
 
 def crossings(tables: Tables, start: np.ndarray, edge: np.ndarray) -> np.ndarray:
-    """(m,) float64: the lines between cells that edges must be cut at, of axes that repeat.
+    """(m,) float64: the number of lines between cells that each edge must be cut at, along axes that repeat.
 
     Args:
         start, edge: (m, 2) texel coordinates of where edges begin, and the vectors along them.
@@ -23,7 +23,7 @@ def crossings(tables: Tables, start: np.ndarray, edge: np.ndarray) -> np.ndarray
 
 
 def along_edges(tables: Tables, start: np.ndarray, edge: np.ndarray) -> np.ndarray:
-    """(n_bands, m) float64, in square texels."""
+    """(n_bands, m) float64: the integral along each edge, in square texels."""
     x, y, dx, dy = _own(tables, start, edge)
     down, flat = _along_axes(dx, dy)
     result = np.zeros((len(tables.mean), len(x)))
@@ -51,20 +51,20 @@ def along_edges(tables: Tables, start: np.ndarray, edge: np.ndarray) -> np.ndarr
 
 
 def _own(tables: Tables, start: np.ndarray, edge: np.ndarray):
-    """Own coordinates of starts, moved near the origin where the axis repeats, and edges."""
+    """The starts in own coordinates, moved near the origin where the axis repeats, and the edges."""
     x, y = tables.x.own(start[:, 0]), tables.y.own(start[:, 1])
     x, y = (at % axis.period if axis.period else at for at, axis in ((x, tables.x), (y, tables.y)))
     return x, y, edge[:, 0] * tables.x.scale, edge[:, 1] * tables.y.scale
 
 
 def _along_axes(dx: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Edges along y that are long, and edges along x."""
+    """(m,) bool each: edges along y that are long, and edges along x."""
     wide, high = np.abs(dx), np.abs(dy)
     return (wide < STRAIGHT) & (high > LONG), (high == 0) | ((high < STRAIGHT) & (wide > LONG))
 
 
 def _cut(tables: Tables, x, y, dx, dy, lines) -> np.ndarray:
-    """(n_bands, m) along edges that are cut at these lines."""
+    """(n_bands, m) integrals along edges that are cut at these lines."""
     count = len(x)
     keys = [np.arange(count, dtype=np.float64)]  # the edge's number, and how far along it a segment begins
     for (first, number), start, by in zip(lines, (x, y), (dx, dy), strict=True):

@@ -9,7 +9,7 @@ AROUND = 4  # faces at an edge that are looked at
 
 
 def flat_pieces(corners: np.ndarray, normal: np.ndarray, tilt: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """(n_faces,) int: the piece of each, a number of its own where it is joined to none.
+    """(n_faces,) int: the piece of each face; a face that is joined to none has a number of its own.
 
     Two faces are joined by an edge which both have, in opposite directions, if their fronts look the same way and no other face
     fits there.

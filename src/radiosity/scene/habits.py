@@ -1,4 +1,7 @@
-"""Values that strangers' files hold by habit are taken, each kind with one warning; senseless ones are errors."""
+"""Values that files often hold although they are not quite right: they are taken, with one warning a kind.
+
+Values that make no sense are errors.
+"""
 
 import warnings
 from dataclasses import replace
@@ -50,12 +53,12 @@ def settle(parts: list[Part], source: str, options: ReadOptions) -> list[Part]:
 
 
 def warn(text: str) -> None:
-    """One `RadiosityWarning`."""
+    """Give one `RadiosityWarning`."""
     warnings.warn(text, RadiosityWarning, stacklevel=4)
 
 
 def _peak(part: Part) -> np.ndarray:
-    """(n_bands,) highest factor of the paint, by band."""
+    """(n_bands,) the highest factor of the paint in each band."""
     peak = np.ones(1)
     if part.color is not None and len(part.color):
         peak = peak * part.color.max(axis=0)
@@ -87,7 +90,7 @@ def _lower(part: Part, limit: float) -> Part:
 
 
 def _has_white_face(part: Part) -> bool:
-    """Whether a face has no image and the colour 1 at all corners."""
+    """Whether some face has no image and the colour 1 at all corners."""
     if part.texture is not None or part.color is None:
         return False
     faces, white = np.asarray(part.faces), (np.asarray(part.color, np.float32) == 1).all(axis=1)
@@ -107,7 +110,7 @@ def _check_values(name: str, m, source: str) -> None:
 
 
 def _check_arrays(part: Part, source: str) -> None:
-    """Numbers of the vertices that faces use."""
+    """Refuse coordinates and colours out of range, of vertices that faces use."""
     faces = np.asarray(part.faces)
     used = np.zeros(len(part.vertices), bool)
     used[faces[faces >= 0]] = True

@@ -15,7 +15,7 @@ NARROW = 8  # footprints are at least so many of those larger texels wide
 
 
 class ImageMeans:
-    """Of one image, (height, width, n_bands), with its sampler.
+    """The means of one image, (height, width, n_bands), with its sampler.
 
     Means are exact, but for footprints over thousands of texels whose edges do not lie along the axes: texels at their rim
     count by the means of larger ones, which errs by less than 0.1 %.
@@ -28,7 +28,7 @@ class ImageMeans:
         self._known: dict[int, Tables] = {}
 
     def over(self, origin: np.ndarray, first: np.ndarray, second: np.ndarray, *, triangles: bool) -> np.ndarray:
-        """Means over footprints, (m, n_bands) float64.
+        """(m, n_bands) float64: means over footprints.
 
         Args:
             origin, first, second: (m, 2) a corner and the two edges from it, in texture coordinates.

@@ -36,12 +36,13 @@ class Axis:
 
     @staticmethod
     def of(count: int, wrap: str, *, linear: bool, scale: float) -> "Axis":
+        """The axis of ``count`` texels of an image."""
         period = periods(count, wrap)
         ends = (0, period + 1) if period else (-1, count + 1)
         return Axis(fold(np.arange(*ends), count, wrap), period, scale, -ends[0] - 0.5 * linear)
 
     def own(self, at: np.ndarray) -> np.ndarray:
-        """Texel coordinates to own ones."""
+        """Own coordinates from texel coordinates."""
         return at * self.scale + self.shift
 
     def cell(self, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -53,7 +54,7 @@ class Axis:
         return begin.astype(np.int64), begin
 
     def lines(self, one: np.ndarray, two: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """First whole number strictly between own coordinates, and how many there are, float64 each."""
+        """The first whole number strictly between own coordinates, and how many there are, float64 each."""
         low, high = np.minimum(one, two), np.maximum(one, two)
         if not self.period:
             low, high = (np.clip(end, 0, len(self.texels) - 1) for end in (low, high))
@@ -64,7 +65,7 @@ class Axis:
 
 
 class Tables:
-    """Of some bands of an image at one scale.
+    """The antiderivatives of some bands of an image at one scale.
 
     Args:
         image: (height, width, n) float.

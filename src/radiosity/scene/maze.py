@@ -11,7 +11,7 @@ SEED = 20_000_605
 
 
 def maze_quads(mean_reflectance: float, cells: int) -> Scene:
-    """See `builtin.labyrinth`."""
+    """The scene of `builtin.labyrinth`."""
     if not 0 < mean_reflectance < 1:
         raise ValueError(f"mean_reflectance is {mean_reflectance}; it must be above 0 and strictly below 1")
     if cells < 4:

@@ -2,32 +2,18 @@
 
 import hashlib
 from dataclasses import dataclass, field, replace
-from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .back import Back
 from .camera import Camera
 from .paint import Paint
 from .precision import median_centre, plane_reach
 from .sampler import DEFAULT_SAMPLER
 
-
-class Back(IntEnum):
-    """What the back of a face does.
-
-    Example:
-        >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
-        >>> scene = rd.Scene.from_arrays(corners, [[0, 1, 2, 3]], reflectance=0.5, emission=1, back=[rd.Back.PASSES])
-        >>> rd.Back(scene.back[0]).name
-        'PASSES'
-    """
-
-    ABSORBS = 0
-    RADIATES = 1
-    PASSES = 2  # invisible from behind: lines go on
-    OPEN = 3  # of a lamp that hides nothing: lines go on from both sides, and the front emits
+__all__ = ["Back", "Scene", "unit_normals"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,9 +100,9 @@ class Scene:
         Raises:
             SceneError: shapes, indices or values out of range; nothing left that has an area.
         """
-        from .arrays import build
+        from .arrays import checked_fields
 
-        return build(
+        fields, _ = checked_fields(
             vertices,
             faces,
             reflectance,
@@ -132,6 +118,7 @@ class Scene:
             cameras=cameras,
             source=source,
         )
+        return Scene(**fields).without_degenerate_faces()
 
     @property
     def n_faces(self) -> int:
@@ -167,7 +154,7 @@ class Scene:
 
     @cached_property
     def area(self) -> np.ndarray:
-        """(n_faces,) m², of one side."""
+        """(n_faces,) m²: area of one side."""
         _, first, second = self.frames
         return np.linalg.norm(np.cross(first, second), axis=1) * np.where(self.is_quad, 1.0, 0.5)
 
@@ -185,23 +172,29 @@ class Scene:
 
     @cached_property
     def centre(self) -> np.ndarray:
-        """(3,) metres: where coordinates are measured from in single precision, see `scene.precision`."""
-        return median_centre(self)
+        """(3,) float64 metres: the origin of coordinates in single precision, see `scene.precision`.
+
+        The middle of the box where the scene has no area.
+        """
+        if not self.area.sum() > 0:
+            return self.bounds.mean(axis=0)
+        origin, first, second = self.frames
+        return median_centre(origin + (first + second) / np.where(self.is_quad, 2.0, 3.0)[:, None], self.area)
 
     @cached_property
     def reach(self) -> float:
-        """Metres: the largest coordinate of a face about the centre."""
+        """The largest coordinate of a face about the centre, metres."""
         return float(np.abs(self.bounds - self.centre).max())
 
     @cached_property
     def plane_reach(self) -> np.ndarray:
-        """(n_faces,) metres, see `scene.precision.plane_reach`."""
+        """(n_faces,) metres: the size of the numbers that place each face's plane, see `scene.precision.plane_reach`."""
         corners = self.vertices[np.where(self.faces < 0, self.faces[:, :1], self.faces)] - self.centre
         return plane_reach(self.normal, corners)
 
     @cached_property
     def hash(self) -> str:
-        """SHA-256 over everything that a solution depends on."""
+        """SHA-256 of everything that a solution depends on."""
         digest = hashlib.sha256()
         for array in (
             self.vertices,
@@ -251,6 +244,6 @@ class Scene:
 
 
 def unit_normals(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n, 3) of faces with these edges, (n, 3) each."""
+    """(n, 3) unit normals of faces with these edges, (n, 3) each."""
     cross = np.cross(first, second)
     return cross / np.linalg.norm(cross, axis=1, keepdims=True)

@@ -56,7 +56,7 @@ def pairs(plates: Plates, some: np.ndarray) -> Iterator[tuple[np.ndarray, np.nda
 
 
 def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Faces by cubes and slabs: face, cube (k, 3) and key of each."""
+    """The cubes and slabs of each face, an entry each: face, cube (k, 3) and key."""
     margin = plates.margin[face][:, None]
     low = np.floor((plates.low[face] - margin) / cube).astype(np.int64)
     wide = np.floor((plates.high[face] + margin) / cube).astype(np.int64) > low
@@ -86,7 +86,7 @@ def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray,
 
 
 def _each(conditions, count: int) -> np.ndarray:
-    """All of some conditions, column by column: faster than along short rows."""
+    """Whether all conditions of a row hold; column by column, which is faster than along short rows."""
     result = np.ones(count, bool)
     for condition in conditions:
         result &= condition

@@ -25,7 +25,7 @@ def overlapping(one: np.ndarray, two: np.ndarray, least: np.ndarray) -> np.ndarr
 
 
 def common(one: np.ndarray, two: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What both cover: (m, 8, 2) corners, the last one repeated, and (m,) area. Without any: zeros.
+    """The part that both cover: (m, 8, 2) corners, the last one repeated, and (m,) area. Zeros where there is none.
 
     By cutting ``two`` along the edges of ``one`` (I. Sutherland, G. Hodgman, "Reentrant polygon clipping", CACM 17(1), 1974).
 

@@ -10,7 +10,7 @@ from .sampler import DEFAULT_SAMPLER, Sampler, fold
 
 @dataclass(frozen=True, eq=False)
 class Paint:
-    """Multiplies a face's base value at a point of the face.
+    """A factor of a face's base value at each point of the face.
 
     Attributes:
         images: linear (not gamma encoded) images, each (height, width, n_bands) float32; row 0 is the top

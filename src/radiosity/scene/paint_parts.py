@@ -8,14 +8,14 @@ from .sampler import Sampler
 
 
 def reflectance_paint(parts: list[Part], n_bands: int, limit: float) -> Paint | None:
-    """Of textures and vertex colours; None where no part has any."""
+    """The paint of textures and vertex colours; None where no part has any."""
     if all(part.texture is None and part.color is None for part in parts):
         return None
     return _paint(parts, [(part.texture, part.sampler, part.uv, part.color) for part in parts], n_bands, limit)
 
 
 def emission_paint(parts: list[Part], n_bands: int) -> Paint | None:
-    """Of emission textures and colours; None where no part has any."""
+    """The paint of emission textures and colours; None where no part has any."""
     if all(part.emission_texture is None and part.emission_color is None for part in parts):
         return None
     coordinates = [part.uv if part.emission_uv is None else part.emission_uv for part in parts]

@@ -1,21 +1,22 @@
-"""What the readers of files hand over: parts of surfaces with materials, and how to take them."""
+"""Parts of surfaces with materials, which readers of files make, and the options of reading."""
 
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..errors import SceneError
-from .model import Back
+from .back import Back
 from .sampler import DEFAULT_SAMPLER, Sampler
 from .texture_memory import TextureMemory
 
 
 @dataclass(frozen=True)
 class Material:
-    """Of one side, or of both. Bands are 1 (grey) or 3 numbers.
+    """What a face does to light. Bands are 1 (grey) or 3 numbers.
 
     Attributes:
         reflectance: diffuse reflectance, or None where the file gives no material.
@@ -71,6 +72,7 @@ class Part:
 
     @property
     def n_bands(self) -> int:
+        """Number of bands, 1 or 3."""
         m = self.material
         values = [m.reflectance, m.emission, m.back_reflectance, m.back_emission]
         arrays = [self.color, self.emission_color, self.texture, self.emission_texture]
@@ -79,7 +81,7 @@ class Part:
 
 @dataclass(frozen=True)
 class ReadOptions:
-    """How to take a file.
+    """The options of reading a file.
 
     Attributes:
         max_reflectance: larger reflectances are brought down to this, with a warning; but not those of the user's own .toml.
@@ -88,6 +90,7 @@ class ReadOptions:
         root: the folder outside which no file is read, resolved; None: any file may be.
         unit: metres, what the user's own .toml takes a length of 1 for.
         textures: how large images may be; it is used up while files are read.
+        read: reads another scene file by its suffix, for a file that names some; `scene.formats.read` hands itself over here.
     """
 
     max_reflectance: float = 0.95
@@ -96,14 +99,16 @@ class ReadOptions:
     root: Path | None = None
     unit: float = 1.0
     textures: TextureMemory = field(default_factory=TextureMemory)
+    read: Callable[[Path, "ReadOptions"], Any] | None = None
 
     def __post_init__(self):
         if not 0 < self.max_reflectance < 1:
             raise SceneError(f"max_reflectance is {self.max_reflectance}; it must be above 0 and strictly below 1, such as 0.95")
 
     def admit(self, file: Path, source) -> Path:
-        """A file that the scene file ``source`` asks for, if it lies in the scene's folder: a scene of strangers is not to read
-        what else there is on this machine. Links are followed first.
+        """A file that the scene file ``source`` asks for, if it lies in the scene's folder. Links are followed first.
+
+        A scene of a stranger must not read other files of this machine.
 
         Raises:
             SceneError: it lies outside.

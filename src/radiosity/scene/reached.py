@@ -20,7 +20,7 @@ class Lit(IntEnum):
 
 
 def lit_sides(scene: Scene, reached: np.ndarray, least: int) -> np.ndarray:
-    """(n_surfaces,) of `Lit`.
+    """(n_surfaces,) the `Lit` of each surface.
 
     Args:
         reached: (n_faces, 2) lines that met fronts and backs.

@@ -29,7 +29,7 @@ DEFAULT_SAMPLER = Sampler()
 
 
 def fold(texel: np.ndarray, count: int, wrap: str) -> np.ndarray:
-    """Numbers of texels anywhere on the axis to those of the image, 0 to count - 1."""
+    """Texels of the image, 0 to count - 1, from texels anywhere on the axis."""
     if wrap == "clamp":
         return np.clip(texel, 0, count - 1)
     if wrap == "repeat":
@@ -39,5 +39,5 @@ def fold(texel: np.ndarray, count: int, wrap: str) -> np.ndarray:
 
 
 def periods(count: int, wrap: str) -> int:
-    """Texels after which the axis repeats; 0: it does not."""
+    """The number of texels after which the axis repeats; 0: it does not."""
     return {"repeat": count, "mirror": 2 * count if count > 1 else 1, "clamp": 0}[wrap]

@@ -12,7 +12,7 @@ def quad(origin, first, second) -> np.ndarray:
 
 
 def box(low, high, *, inward: bool = False, turn: float = 0.0) -> list[np.ndarray]:
-    """Faces of an axis-aligned box: y low, y high, x low, x high, z low, z high; turned by degrees about its vertical axis."""
+    """The faces of a box (y low, y high, x low, x high, z low, z high), turned by degrees about its vertical axis."""
     (x0, y0, z0), (x1, y1, z1) = low, high
     dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
     faces = [

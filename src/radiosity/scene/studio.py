@@ -49,6 +49,6 @@ def studio() -> Scene:
 
 
 def standing(low, high) -> list[np.ndarray]:
-    """Faces of a box that stands on something: without its bottom."""
+    """The faces of a box without its bottom, on which it stands."""
     faces = box(low, high)
     return [*faces[:4], faces[5]]

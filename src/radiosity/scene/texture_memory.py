@@ -1,4 +1,4 @@
-"""How many texels of images a scene may hold, and which images were averaged to stay below that."""
+"""The limit of the texels that images of a scene may have, and the images that were averaged to stay below it."""
 
 from dataclasses import dataclass, field
 
@@ -9,7 +9,7 @@ SMALL = 1024  # those that are not are averaged to this
 
 @dataclass(eq=False)
 class TextureMemory:
-    """Counts the texels of the images that a file brings along.
+    """A count of the texels of the images that a file brings along.
 
     Attributes:
         left: texels that may still be kept.

@@ -1,7 +1,7 @@
 """tally -> radiosity, irradiance, errors; save and load"""
 
+from .loading import load_solution
 from .model import Solution
 from .refinement import RefineCheck
-from .store import load_solution
 
 __all__ = ["RefineCheck", "Solution", "load_solution"]

@@ -6,14 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ..hooks import HOOKS
 from ..patches.model import Patches
 from ..scene.model import Back
 from . import intervals, means
 from .brief import brief
 from .errors import relative_error
 from .sides import Sides, sides_of
-
-NOT_REACHED = "not reached"  # the status of runs that ended above the error they were to reach, or could not tell it
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -201,12 +200,10 @@ class Solution:
 
     def save(self, path) -> None:
         """Write an NPZ file that `radiosity.load_solution` reads."""
-        from .store import save
+        from .saving import save
 
         save(self, Path(path))
 
     def export(self, path, **options) -> None:
         """Write .glb, .ply, .vtp, .csv, .png, .exr or .npz by the path's suffix; see `radiosity.image.export`."""
-        from ..image import export
-
-        export(self, path, **options)
+        HOOKS["export"](self, path, **options)

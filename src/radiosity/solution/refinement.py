@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .csv_rows import write_rows
 from .model import Solution
 from .percent import UNKNOWN, percent
 
@@ -126,8 +127,6 @@ class RefineCheck:
         Raises:
             OutputError: it cannot be written.
         """
-        from ..image.tables import write_rows
-
         write_rows(self.table(), path)
 
 

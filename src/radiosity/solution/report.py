@@ -6,6 +6,7 @@ from ..errors import printable, shown
 from .intervals import FEW
 from .percent import UNKNOWN, number, percent
 from .sides import BACK
+from .status import NOT_REACHED
 
 MOST_ROWS = 24
 WIDEST = 32  # letters of a surface's name
@@ -65,8 +66,6 @@ def _error(solution) -> str:
 
 
 def _status(solution) -> str:
-    from .model import NOT_REACHED
-
     if solution.status != NOT_REACHED:
         return solution.status
     return f"{NOT_REACHED}: the error asked for was {100 * solution.provenance['budget']['error']:.3g}%"

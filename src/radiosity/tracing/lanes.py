@@ -16,14 +16,14 @@ PIECE = 1 << 18  # patches of a batch: what it holds of each need not be there o
 
 
 @dataclass(frozen=True)
-class Sweep:
+class Wavefront:
     """What is fired before anything else is asked: fixed before the first line, so that the pieces it is fired in do not matter.
 
     Attributes:
         numbers: UInt32, patch numbers; None where they are those from ``low`` on.
         low, size: the first of them, and how many they are.
         total: lines of all.
-        counts: UInt32, those of each; None where bands keep what they follow from, see `Engine.batches`.
+        counts: UInt32, those of each; None where bands keep what they follow from, see `FiringCounters.batches`.
     """
 
     numbers: Any
@@ -32,7 +32,7 @@ class Sweep:
     total: int
     counts: Any = None
 
-    def batches(self, types, owed, fired, records, shifts: tuple[int, ...] = ()) -> "Iterator[Batch]":
+    def batches(self, types, target_counts, fired, records, shifts: tuple[int, ...] = ()) -> "Iterator[Batch]":
         """A piece at a time, of 2^shift lines a lane: the largest of ``shifts`` that leaves few lanes half empty, or else one.
         For patch numbers ``owed`` gives what each owes in all, ``records`` two words, and the array ``fired`` what was fired
         before; no other lines than the batches' are fired until the last one is made."""
@@ -45,7 +45,7 @@ class Sweep:
             at = dr.select(inside, place, 0)
             numbers = at + low if self.numbers is None else dr.gather(types.UInt32, self.numbers, at)
             before = dr.gather(types.UInt32, fired, numbers)
-            counts = owed(numbers) - before if self.counts is None else dr.gather(types.UInt32, self.counts, at)
+            counts = target_counts(numbers) - before if self.counts is None else dr.gather(types.UInt32, self.counts, at)
             counts = dr.select(inside, counts, 0)
             dr.schedule(counts, before)
             lines, *lanes = sums(types, counts, *(lanes_of(counts, shift) for shift in shifts))
@@ -107,7 +107,7 @@ class Batch:
         """A lane has more than one line."""
         return not isinstance(self.each, int)
 
-    def chunks(self, types) -> "Iterator[Chunk]":
+    def launches(self, types) -> "Iterator[Launch]":
         """Launches of a bounded number of lanes."""
         cuda = dr.backend_v(types.UInt32) is dr.JitBackend.CUDA
         most = CUDA_CHUNK if cuda else max(CHUNK, CORE_CHUNK * dr.thread_count())
@@ -122,7 +122,7 @@ class Batch:
             rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, dr.width(rank), exclusive=False)
             dr.eval(rank)
             rank = dr.reshape(types.UInt32, rank, max(width, 2), shrink=True)
-            yield Chunk(self, rank, first, end, width, max(width, 2))
+            yield Launch(self, rank, first, end, width, max(width, 2))
 
 
 def lanes_of(counts, shift):
@@ -144,7 +144,7 @@ def paired(types, rows):
 
 
 @dataclass(frozen=True)
-class Chunk:
+class Launch:
     """Lanes of one launch: the rank of each lane's patch in its batch. A single lane has one beside it that is not real:
     ``lanes`` is less than ``width`` then, and whatever counts must ask `real`."""
 

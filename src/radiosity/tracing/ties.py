@@ -8,7 +8,7 @@ a function of the line and the faces, not of the packet in which the line was tr
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -18,9 +18,7 @@ from ..device.recorded import loop
 from ..scene.coplanar import contacts, copied
 from ..scene.model import Back
 from ..scene.precision import EPSILON
-
-if TYPE_CHECKING:
-    from .geometry import Geometry
+from .faces import Faces
 
 WORDS = 16  # of a face's record: origin, edges, normal in units of hit records, largest coordinate
 KIND_BIT = 28  # of a rank: what a line meets first is lowest
@@ -40,30 +38,30 @@ LEAST = 64  # entries of a table
 class Ties:
     """Faces of a scene that share a plane with others, for kernels."""
 
-    geometry: "Geometry"
+    table: Faces
 
     @cached_property
     def copied(self) -> np.ndarray:
         """(n_faces,) int64: the face that stands for each, see `scene.coplanar`."""
-        return copied(self.geometry.scene)
+        return copied(self.table.scene)
 
     @cached_property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
         """Faces that stand for themselves and lie in one plane."""
-        every = contacts(self.geometry.scene)
+        every = contacts(self.table.scene)
         rows = every.coplanar & (self.copied[every.one] == every.one) & (self.copied[every.two] == every.two)
         return every.one[rows], every.two[rows]
 
     @cached_property
     def standing(self) -> np.ndarray:
         """(k,) int64 faces that stand for themselves or for copies, and lie on others."""
-        copies = np.flatnonzero(self.copied != np.arange(self.geometry.scene.n_faces))
+        copies = np.flatnonzero(self.copied != np.arange(self.table.scene.n_faces))
         return np.unique(np.concatenate([*self.pairs, self.copied[copies]]))
 
     @cached_property
     def behind(self) -> np.ndarray:
         """(n_faces,) int64: of a face that stands for copies the one of them that a line from behind meets first; else itself."""
-        order = np.argsort(_kinds(self.geometry.scene.back), kind="stable")
+        order = np.argsort(_kinds(self.table.scene.back), kind="stable")
         best = np.arange(len(order))
         copies, first = np.unique(self.copied[order], return_index=True)
         best[copies] = order[first]
@@ -73,7 +71,7 @@ class Ties:
     def faces(self) -> np.ndarray:
         """(m,) int64 faces to be met where several lie in one plane, in the order in which lines meet those that show alike."""
         faces = np.unique(np.concatenate([self.standing, self.behind[self.standing]]))
-        return faces[np.argsort(np.round(np.log(self.geometry.scene.area[faces]) / ALIKE), kind="stable")]
+        return faces[np.argsort(np.round(np.log(self.table.scene.area[faces]) / ALIKE), kind="stable")]
 
     @cached_property
     def flagged(self) -> np.ndarray:
@@ -88,19 +86,19 @@ class Ties:
     def tables(self) -> tuple[Any, Any, Any, Any, Any]:
         """Of each face where its cells begin and how many there are along an edge; where a cell's entries begin; ranks of faces
         in cells; and of each rank a record and four words: first patch, flags, and the caster's first triangle."""
-        geometry = self.geometry
-        types, scene, patches = geometry.device.types, geometry.scene, geometry.patches
+        table = self.table
+        types, scene, patches = table.device.types, table.scene, table.patches
         along, begins, entries = self._cells()
         cells = np.zeros((scene.n_faces, 2), np.uint32)
         cells[self.standing] = np.column_stack([np.cumsum(along**2) - along**2, along])
         cells = cells[self.copied]
-        origin, one, two = (part[self.faces] for part in geometry.frames)
-        normal = geometry.steps[self.faces]
+        origin, one, two = (part[self.faces] for part in table.frames)
+        normal = table.steps[self.faces]
         record = np.zeros((len(self.faces), WORDS))
         record[:, :12] = np.concatenate([origin, one, two, normal], axis=1)
         words = np.zeros((len(self.faces), 4), np.uint32)
-        words[:, 0], words[:, 1] = patches.first[:-1][self.faces], geometry.packed[self.faces]
-        words[:, 2] = geometry.first_primitives[self.faces]
+        words[:, 0], words[:, 1] = patches.first[:-1][self.faces], table.packed[self.faces]
+        words[:, 2] = table.first_primitives[self.faces]
         UInt32, padded = types.UInt32, lambda a: np.concatenate([a.ravel(), np.zeros(LEAST, a.dtype)])
         return (
             upload(UInt32, padded(cells)),
@@ -131,7 +129,7 @@ class Ties:
         x, y = begin[row, 0] + step % wide[row], begin[row, 1] + step // wide[row]
         first = np.cumsum(along**2) - along**2
         cell = first[at[row]] + y * along[at[row]] + x
-        rank = np.zeros(self.geometry.scene.n_faces, np.int64)
+        rank = np.zeros(self.table.scene.n_faces, np.int64)
         rank[self.faces] = np.arange(len(self.faces))
         entries = rank[other[row]]
         order = np.lexsort([entries, cell])
@@ -140,8 +138,8 @@ class Ties:
 
     def _places(self, at: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(m, 2) each: the box of other faces in the coordinates of standing ones."""
-        origin, first, second = (part[self.standing[at]] for part in self.geometry.frames)
-        corners = self.geometry.corners[other] - origin[:, None]
+        origin, first, second = (part[self.standing[at]] for part in self.table.frames)
+        corners = self.table.corners[other] - origin[:, None]
         aa, ab, bb = (np.einsum("mi,mi->m", p, q) for p, q in ((first, first), (first, second), (second, second)))
         pa, pb = (np.einsum("mki,mi->mk", corners, edge) for edge in (first, second))
         area = (aa * bb - ab * ab)[:, None]
@@ -152,16 +150,16 @@ class Ties:
         """In a kernel: what lines meet where the caster has found a face that shares its plane.
 
         Args:
-            hit: a `lines.Landing`, of whose faces those ``flagged`` share a plane.
+            hit: a `hits.Hit`, of whose faces those ``flagged`` share a plane.
             beyond: also what a line that came from the other side would meet there.
 
         Returns:
             Of one or two sides: whether a face was found, the fields of its landing, and its normal, as in `lines._hit`.
         """
-        types = self.geometry.device.types
+        types = self.table.device.types
         UInt32 = types.UInt32
         cells, begins, entries, *_ = self.tables
-        face = dr.gather(UInt32, self.geometry.primitive_faces, hit.primitive, flagged)
+        face = dr.gather(UInt32, self.table.primitive_faces, hit.primitive, flagged)
         first, along = dr.gather(types.Array2u, cells, face, flagged)
         x, y = (UInt32(dr.clip(c, 0, 1) * types.Float(along)) for c in (hit.u, hit.v))
         cell = first + dr.minimum(y, along - 1) * along + dr.minimum(x, along - 1)
@@ -194,7 +192,7 @@ class Ties:
     def _tried(self, rank, origin, direction, active) -> tuple:
         """The line against the plane of a face (T. Möller, B. Trumbore, JGT 2(1), 1997): whether it goes through the face, from
         the front, the face's words, coordinates, distance and normal."""
-        types = self.geometry.device.types
+        types = self.table.device.types
         *_, records, words = self.tables
         block = dr.gather(types.Array44f, records, rank, active)
         parts = [block[i // 4][i % 4] for i in range(WORDS)]

@@ -18,9 +18,10 @@ from ..patches.model import Patches
 from ..sampling.hemisphere import triangle
 from ..sampling.numbers import ready
 from ..sampling.numbers.random import philox
-from .geometry import INSET, OFFSET, Geometry
+from .faces import OFFSET
+from .geometry import INSET, Geometry
+from .hits import first_hit
 from .lanes import CHUNK
-from .lines import land
 
 MOST = (1 << 16) - 1  # rays of a pair
 WORDS = 10  # of a polygon on the device: origin, two edges, offset
@@ -109,8 +110,10 @@ def _chunk(geometry: Geometry, one: Polygons, other: Polygons, keys: np.ndarray,
     faces = (up > above) & (down > beyond)  # nearer to a plane than lines begin there is in the plane
     kernel = dr.select(faces, up * down / (square * square), 0)
     origin = start + normal * above
-    hit = land(geometry, origin, dr.normalize(end - origin), active=faces)
-    seen = hit.valid & (dr.gather(UInt32, geometry.primitive_faces, hit.primitive, hit.valid) == dr.gather(UInt32, target, pair))
+    hit = first_hit(geometry, origin, dr.normalize(end - origin), active=faces)
+    seen = hit.valid & (
+        dr.gather(UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid) == dr.gather(UInt32, target, pair)
+    )
     met = dr.select(seen, kernel, 0)
     dr.eval(kernel, met)
     whole, part = (np.array(x, np.float64).reshape(-1, rays)[:count].sum(axis=1) for x in (kernel, met))
@@ -128,9 +131,9 @@ def _point(types, records, pair, is_triangle, x, y):
 
 def _records(geometry: Geometry, polygons: Polygons) -> np.ndarray:
     """(m, WORDS) float32 in the caster's coordinates, drawn in from the edges as whole faces are (`Geometry.face_records`)."""
-    tree = geometry.tree
-    points = (polygons.corners - tree.centre) * tree.scale
-    offset = geometry.offset(polygons.face, points)
+    bvh = geometry.bvh
+    points = (polygons.corners - bvh.centre) * bvh.scale
+    offset = geometry.faces.offset(polygons.face, points)
     origin, first, second = points[:, 0], points[:, 1] - points[:, 0], points[:, 3] - points[:, 0]
     flat = _is_triangle(polygons) == 1
     area = np.maximum(np.linalg.norm(np.cross(first, second), axis=1), 1e-300)

@@ -24,7 +24,7 @@ from ...problem.bands import QUANTUM
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...sampling.streams import Purpose, stream
-from ..process import State
+from ..base import State
 
 SHARE = 0.025  # of a replicate's quanta: the lines that noise makes are to be no more
 MOST = 512  # patches of a group
@@ -55,7 +55,7 @@ class Starts:
             phase: (replicates, n_patches) uint32.
         """
         residue, found = Residue.of(problem, state, phase), []
-        groups = Groups.of(problem.patches, residue.quanta)
+        groups = Groups.of(problem.patches, residue.quanta, problem.rows.n_lights)
         for replicate in range(len(phase)):
             random = np.random.Generator(np.random.Philox(stream(seed, replicate, Purpose.RESIDUE)))
             patch, power = _lines(residue, replicate, groups, random)
@@ -97,33 +97,34 @@ class Residue:
         """What some patches owe of the scalar problem, (k,) uint64, and what is left of each group, (k, n_groups) int64; both in
         2^-32 of a quantum."""
         arrivals, phase = self.state["arrivals"][replicate, part], self.phase[replicate, part]
-        owed = self.problem.source.rho[part].astype(np.uint64) * arrivals + self.emitted[part]
+        target_counts = self.problem.source.rho[part].astype(np.uint64) * arrivals + self.emitted[part]
         if "received" not in self.state:
-            return owed, (((owed + phase) % ONE).astype(np.int64) - phase)[:, None]
-        groups, received = self.problem.groups, self.state["received"][replicate, part]
-        share = groups.emission[part] * (self.problem.patches.area[part] / self.problem.source.power)[:, None]
-        owed_of_each = share * (self.quanta * QUANTUM) + Source.fixed(groups.reflectance[part]) * 2.0**-32 * received
-        return owed, 2 * np.round(owed_of_each - self.state["sent"][replicate, part]).astype(np.int64)
+            return target_counts, (((target_counts + phase) % ONE).astype(np.int64) - phase)[:, None]
+        rows, received = self.problem.rows, self.state["received"][replicate, part]
+        share = rows.emission[part] * (rows.area[part] / self.problem.source.power)[:, None]
+        owed_of_each = share * (self.quanta * QUANTUM) + Source.fixed(rows.reflectance[part]) * 2.0**-32 * received
+        return target_counts, 2 * np.round(owed_of_each - self.state["sent"][replicate, part]).astype(np.int64)
 
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """Consecutive patches whose residues are summed.
+    """Consecutive rows whose residues are summed.
 
     Attributes:
-        n_patches: in all.
-        begins: (k,) int64, the first patch of each, increasing; None where each patch is alone.
+        n: rows in all.
+        begins: (k,) int64, the first row of each, increasing; None where each row is alone.
     """
 
-    n_patches: int
+    n: int
     begins: np.ndarray | None
 
     @staticmethod
-    def of(patches: Patches, quanta: int) -> "Groups":
-        """At N quanta. None reaches over the end of a face, or else of a surface, where these are no more than groups."""
+    def of(patches: Patches, quanta: int, n_lights: int = 0) -> "Groups":
+        """At N quanta. None reaches over the end of a face, or else of a surface, where these are no more than groups. Lights
+        are alone."""
         n, size = len(patches), group_size(len(patches), quanta)
         if size == 1:
-            return Groups(n, None)
+            return Groups(n + n_lights, None)
         faces, surface = patches.first[:-1].astype(np.int64), patches.scene.surface
         surfaces = faces[np.concatenate([[True], surface[1:] != surface[:-1]])]
         runs = next((runs for runs in (faces, surfaces) if len(runs) * size <= n), np.zeros(1, np.int64))
@@ -131,15 +132,16 @@ class Groups:
         count = -(-length // size)
         of = np.repeat(np.arange(len(runs)), count)
         turn = np.arange(len(of)) - (np.cumsum(count) - count)[of]
-        return Groups(n, runs[of] + turn * length[of] // count[of])
+        begins = runs[of] + turn * length[of] // count[of]
+        return Groups(n + n_lights, np.append(begins, n + np.arange(n_lights)))
 
     def parts(self) -> Iterator[tuple[slice, np.ndarray]]:
         """Whole groups, some `PIECE` patches at a time, and where groups begin in them."""
         if self.begins is None:
-            yield from ((part, np.arange(part.stop - part.start)) for part in pieces(self.n_patches))
+            yield from ((part, np.arange(part.stop - part.start)) for part in pieces(self.n))
             return
-        step = max(PIECE * len(self.begins) // self.n_patches, 1)
-        ends = np.append(self.begins, self.n_patches)
+        step = max(PIECE * len(self.begins) // self.n, 1)
+        ends = np.append(self.begins, self.n)
         for group in range(0, len(self.begins), step):
             part = slice(int(ends[group]), int(ends[min(group + step, len(self.begins))]))
             yield part, self.begins[group : group + step] - part.start
@@ -155,21 +157,21 @@ def _lines(residue: Residue, replicate: int, groups: Groups, random: np.random.G
     """Patches where a replicate's lines begin, and what they carry."""
     total, found = int(random.integers(0, 1 << 32)), []
     for part, begins in groups.parts():
-        owed, left = residue.read(replicate, part)
+        target_counts, left = residue.read(replicate, part)
         sums = np.add.reduceat(left, begins)
         most = sums[np.arange(len(sums)), np.abs(sums).argmax(axis=1)]
         reached = np.cumsum(np.append(total, most))
         total = int(reached[-1])
         group = np.repeat(np.arange(len(sums)), np.abs(np.diff(reached >> 32)))
         power = np.round(sums[group] * (QUANTUM / np.abs(most[group]))[:, None]).astype(np.int64)
-        found.append((part.start + (group if groups.begins is None else _within(owed, begins, group, random)), power))
+        found.append((part.start + (group if groups.begins is None else _within(target_counts, begins, group, random)), power))
     patch, power = (np.concatenate(column) for column in zip(*found, strict=True))
     return patch, power
 
 
-def _within(owed: np.ndarray, begins: np.ndarray, group: np.ndarray, random: np.random.Generator) -> np.ndarray:
+def _within(target_counts: np.ndarray, begins: np.ndarray, group: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """A patch of each line's group."""
-    weight = np.concatenate([[0], np.cumsum(np.minimum(owed, ONE), dtype=np.uint64)])
-    low, high = weight[begins[group]], weight[np.append(begins[1:], len(owed))[group]]
+    weight = np.concatenate([[0], np.cumsum(np.minimum(target_counts, ONE), dtype=np.uint64)])
+    low, high = weight[begins[group]], weight[np.append(begins[1:], len(target_counts))[group]]
     at = low + (random.random(len(group)) * (high - low)).astype(np.uint64)
     return np.searchsorted(weight, np.minimum(at, high - np.uint64(1)), side="right") - 1

@@ -18,8 +18,8 @@ from ...problem.model import Problem
 from ...sampling.numbers import WORDS
 from ...sampling.numbers.random import philox
 from ...sampling.streams import Purpose, stream
-from ...tracing.lines import local_line
-from ..process import State
+from ..base import State
+from .counters import FiringCounters
 from .residue import Starts
 
 LEAST = QUANTUM // 2  # 2^30
@@ -43,62 +43,63 @@ class Sent:
     lines: int
 
 
-def starts(engine, problem: Problem, state: State) -> Starts:
+def starts(counters: FiringCounters, problem: Problem, state: State) -> Starts:
     """Where lines begin after the state's stage."""
-    return Starts.of(problem, state, frozen(engine.phase).reshape(engine.replicates, engine.n), engine.seed)
+    tracer = counters.tracer
+    return Starts.of(problem, state, frozen(counters.phase).reshape(tracer.replicates, tracer.n), tracer.seed)
 
 
-def send(engine, problem: Problem, state: State, begun: Starts) -> Sent:
+def send(counters: FiringCounters, problem: Problem, state: State, begun: Starts) -> Sent:
     """Send the residues of a complete stage on.
 
     Args:
-        engine: of the run; its counters are left alone.
+        counters: of the run; its counters are left alone.
         problem: what is solved.
         state: of the stage.
         begun: its `starts`.
     """
-    n_groups = begun.power.shape[1]
-    tally = dr.zeros(engine.types.Int64, (engine.total + 2 * engine.replicates) * n_groups)
+    tracer, n_groups = counters.tracer, begun.power.shape[1]
+    tally = dr.zeros(counters.types.Int64, tracer.slots * n_groups)
     dr.eval(tally)
-    fired, lines = _walk(engine, begun, tally) if len(begun.line) else ([0] * n_groups, 0)
+    fired, lines = _walk(counters, begun, tally) if len(begun.line) else ([0] * n_groups, 0)
     flat = frozen(tally).reshape(-1, n_groups)  # nobody else holds it: hits are added where it lies, which takes no memory
-    received = flat[: engine.total].reshape(engine.replicates, engine.n, n_groups)
+    received = flat[: tracer.total].reshape(tracer.replicates, tracer.n, n_groups)
     for replicate, row in enumerate(received):
-        for part in pieces(engine.n):
+        for part in pieces(tracer.n):
             if "received" in state:
                 row[part] += state["received"][replicate, part].astype(np.int64)
             else:
                 row[part] += (state["arrivals"][replicate, part] * np.int64(QUANTUM))[:, None]
-    return Sent(received, flat[engine.total :].reshape(2, engine.replicates, n_groups), fired, lines)
+    return Sent(received, flat[tracer.total :].reshape(2, tracer.replicates, n_groups), fired, lines)
 
 
-def _walk(engine, begun: Starts, tally) -> tuple[list[int], int]:
+def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], int]:
     """One lane a line, which its walk follows to the end, in one kernel. What was fired of each group, and how many lines."""
-    types, (m, n_groups) = engine.types, begun.power.shape
+    types, tracer, (m, n_groups) = counters.types, counters.tracer, begun.power.shape
     width = max(m, 2)  # arrays of one entry would compile a kernel of their own
 
     def column(kind, values):
         return upload(kind, np.resize(values, width))
 
-    number = column(types.UInt32, (begun.replicate * engine.n + begun.patch).astype(np.uint32))
+    number = column(types.UInt32, (begun.replicate * tracer.n + begun.patch).astype(np.uint32))
     line, going = column(types.UInt32, begun.line), dr.arange(types.UInt32, width) < dr.opaque(types.UInt32, m)
-    streams = [stream(engine.seed, replicate, Purpose.RESIDUE_LINES) for replicate in range(engine.replicates)]
+    streams = [stream(tracer.seed, replicate, Purpose.RESIDUE_LINES) for replicate in range(tracer.replicates)]
     words = upload(types.UInt32, np.array([stream.generate_state(WORDS, np.uint32) for stream in streams]))
 
     def body(number, turn, going, weight, powers, fired):
-        replicate = engine.replicate(number)
+        replicate = tracer.replicate(number)
         points, choice = _numbers(types, words, line, turn, replicate)
-        slot = engine.land_in(local_line(engine.geometry, engine.record(number), points), replicate, going)
+        slot = tracer.land_in(tracer.leave(tracer.record(number))(points), replicate, active=going)
         for g, power in enumerate(powers):
             dr.scatter_add(tally, power, slot * n_groups + g, active=going)
         fired = [before + power for before, power in zip(fired, powers, strict=True)]
-        here = going & (slot < engine.total)
-        patch = slot - engine.replicate(slot) * engine.n_opaque
-        rho = dr.gather(types.UInt32, engine.rho, patch, here)
+        here = going & (slot < tracer.total)
+        patch = slot - tracer.replicate(slot) * tracer.n_opaque
+        rho = dr.gather(types.UInt32, counters.rho, patch, here)
         left = types.UInt32((types.UInt64(weight) * types.UInt64(rho)) >> 32)
         after = dr.maximum(left, LEAST)
         here &= choice >> 2 < left
-        return slot, turn + 1, here, after, _reflected(engine, powers, patch, here, left, after), fired
+        return slot, turn + 1, here, after, _reflected(counters, powers, patch, here, left, after), fired
 
     powers = [column(types.Int64, power) for power in begun.power.T]
     none = [dr.zeros(types.Int64, width) for _ in powers]
@@ -109,9 +110,9 @@ def _walk(engine, begun: Starts, tally) -> tuple[list[int], int]:
     return [int(frozen(one)[:m].sum()) for one in fired], int(frozen(turn)[:m].sum(dtype=np.int64))
 
 
-def _reflected(engine, powers: list, patch, here, left, after) -> list:
+def _reflected(counters: FiringCounters, powers: list, patch, here, left, after) -> list:
     """In a kernel: the powers of lines that go on with the weight ``after`` where ``left`` is left of it."""
-    types, bands = engine.types, engine.bands
+    types, bands = counters.types, counters.bands
     if bands is None:
         return [dr.select(powers[0] < 0, -types.Int64(after), types.Int64(after))]
     wide = types.Float64

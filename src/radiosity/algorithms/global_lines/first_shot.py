@@ -9,13 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from ...method.model import Method
-from ...problem.bands import QUANTUM, BandGroups
+from ...problem.bands import QUANTUM
 from ...problem.model import Problem
 from ...tracing.geometry import Geometry
-from ..firing import state as counters
-from ..firing.counters import Engine
-from ..firing.orders import run as fire_all
-from ..process import State, Swept
+from ..base import State, Swept
+from ..firing import state as firing_state
+from ..firing.counters import FiringCounters
+from ..firing.orders import fire_all
 
 PREFIX = "shot_"
 APART = 1 << 64  # added to the seed: local lines do not repeat the numbers of global ones
@@ -25,24 +25,27 @@ class FirstShot:
     """Counters of the lines from the lights, of all replicates."""
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int):
-        self.source, self.groups = problem.source, problem.groups
-        black = np.zeros_like(self.groups.reflectance)
-        groups = BandGroups(self.groups.index, self.groups.scale, self.groups.emission, black)
-        source = replace(self.source, rho=np.zeros_like(self.source.rho))
+        rows, source = problem.rows, problem.source
+        black = replace(
+            problem,
+            groups=replace(problem.groups, reflectance=np.zeros_like(problem.groups.reflectance)),
+            rows=replace(rows, reflectance=np.zeros_like(rows.reflectance)),
+            source=replace(source, rho=np.zeros_like(source.rho)),
+        )
         local = Method(numbers=method.points, randomisation=method.randomisation)
-        self.engine = Engine(geometry, source, local, seed + APART, replicates, groups)
+        self.counters = FiringCounters(geometry, black, local, seed + APART, replicates)
 
     def fire(self, lines: int, swept: Swept) -> None:
         """Send each replicate's lights' power in so many lines, those fired before included."""
-        if lines != self.engine.quanta:
-            self.engine.set_quanta(lines)
-        fire_all("breadth-first", self.engine, swept)
+        if lines != self.counters.quanta:
+            self.counters.set_quanta(lines)
+        fire_all("breadth-first", self.counters, swept)
 
     def capture(self) -> State:
-        return {PREFIX + name: values for name, values in counters.capture(self.engine).items()}
+        return {PREFIX + name: values for name, values in firing_state.capture(self.counters).items()}
 
     def restore(self, state: State) -> None:
-        counters.restore(self.engine, {k.removeprefix(PREFIX): v for k, v in state.items() if k.startswith(PREFIX)})
+        firing_state.restore(self.counters, {k.removeprefix(PREFIX): v for k, v in state.items() if k.startswith(PREFIX)})
 
 
 def fired(state: State) -> int:

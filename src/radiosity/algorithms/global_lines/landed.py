@@ -4,7 +4,7 @@ import numpy as np
 
 from ...problem.model import Problem
 from ...solution.books import Books, by_difference, exact_sum
-from ..process import AbstractTally, State
+from ..base import AbstractTally, State
 from . import first_shot
 
 HIGHEST = 34  # bits of the largest power that a span can carry

@@ -14,7 +14,7 @@ from ...device.backend import frozen, upload
 from ...errors import MethodError
 from ...problem.quanta import Source
 from ...tracing.global_lines.spans import ONE_WAY, Spans
-from ..process import AbstractProcess, State, Swept
+from ..base import AbstractAlgorithm, State, Swept
 from . import first_shot
 from .exchange import LEDGER, Exchange
 from .first_shot import FirstShot
@@ -26,7 +26,7 @@ WARM_UP, MOST_WARM_UP = 4, 64  # ends of a mean patch, the first times 1 / (1 - 
 BATCH = 1 << 21  # spans of all replicates between two looks at the clock
 
 
-class Multipath(AbstractProcess):
+class Multipath(AbstractAlgorithm):
     """N is the number of global lines of a replicate (of spans, where they are drawn one by one). All lines, as they are counted,
     are proportional to it: each line has a fixed expected number of ends, and a first shot has its share of all.
 
@@ -65,7 +65,7 @@ class Multipath(AbstractProcess):
         return self._quanta
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return self.shot is None
 
     def advance(self, quanta: int, swept: Swept) -> None:

@@ -5,7 +5,7 @@ import numpy as np
 from ...problem.model import Problem
 from ...solution.books import by_difference
 from ...tally.unmet import bias, means, sides
-from ..process import AbstractMeanTally, State
+from ..base import AbstractMeanTally, State
 from . import first_shot
 
 UNIT = 2.0**-34  # of a group's largest emission: what radiosity is rounded to, so that its sums are whole numbers

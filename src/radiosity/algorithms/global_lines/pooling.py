@@ -11,7 +11,7 @@ from ...errors import MethodError
 from ...tally.unmet import means, sides
 from ...tracing.global_lines.ends import Ends, of_lines
 from ...tracing.global_lines.spans import ESCAPED, LOST, Pairs, Spans
-from ..process import AbstractProcess, State, Swept
+from ..base import AbstractAlgorithm, State, Swept
 from . import first_shot
 from .first_shot import FirstShot
 from .pooled import Pooled, units
@@ -27,7 +27,7 @@ SWEEPS, SETTLED = 200, 1e-4  # of the warm-up: at most, or until all change toge
 ARRAYS = ("carried", "recent", "recent_ends", "fresh", "fresh_ends", "received", "ends", "escaped", "lost")
 
 
-class Pooling(AbstractProcess):
+class Pooling(AbstractAlgorithm):
     """N is the number of global lines of a replicate (of spans, where they are drawn one by one). An iteration is one bundle;
     or, of other lines, a power of two, such that a mean patch has ENDS ends or more.
 
@@ -81,7 +81,7 @@ class Pooling(AbstractProcess):
         return self._quanta
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return self.shot is None
 
     def advance(self, quanta: int, swept: Swept) -> None:

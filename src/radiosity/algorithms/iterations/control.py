@@ -10,8 +10,8 @@ import drjit as dr
 import numpy as np
 
 from ...device.backend import upload
+from ...tally.shooter import Ends
 from .exchange import BITS, LINE, Exchange
-from .shooter import Ends
 
 SHARE = 8  # one line in so many measures what is missed
 

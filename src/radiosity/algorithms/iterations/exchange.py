@@ -13,8 +13,8 @@ from ...method import Method
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...sampling.streams import Purpose, stream
+from ...tally.shooter import Ends, Shooter
 from ...tracing.geometry import Geometry
-from .shooter import Ends, Shooter
 
 BITS = 30
 LINE = 2**BITS  # fixed point units of one expected line
@@ -43,13 +43,13 @@ class Exchange:
         self.two_ended = method.estimator == "bidirectional"
         self.turns, self.first = TURNS if self.two_ended else 1, 0
         sequences = self.turns * (2 if self.two_ended and method.warm_up else 1)
-        self.shooter = Shooter(geometry, problem.source, method, seed, replicates, self.groups, sequences)
+        self.shooter = Shooter(geometry, method, seed, replicates, self.groups, sequences)
         self.types, self.n, self.total = self.shooter.types, len(problem.patches), self.shooter.total
         self.areas = problem.patches.area / problem.patches.area.sum()
         self.area = self._tiled(self.areas[:, None])
         self.rho = self._tiled(Source.fixed(groups.reflectance) * 2.0**-32)
         self.emitted = self._tiled(groups.emission * problem.patches.area[:, None] / problem.source.power)
-        self.replicate = self.shooter.engine.replicate(dr.arange(self.types.UInt32, self.total))
+        self.replicate = self.shooter.tracer.replicate(dr.arange(self.types.UInt32, self.total))
         every = np.arange(replicates)
         slots = np.concatenate([np.repeat(every, self.n), every, every])
         self.slot_replicate = upload(self.types.UInt32, np.repeat(slots, self.groups).astype(np.uint32))
@@ -89,7 +89,7 @@ class Exchange:
         dr.eval(before)
         drawn = [np.random.Generator(np.random.Philox(self._stream(r))).integers(0, LINE) for r in range(self.replicates)]
         offset = dr.gather(types.UInt64, upload(types.UInt64, np.array([*drawn, 0], np.uint64)), self.replicate)
-        low = before - dr.gather(types.UInt64, before, self.replicate * self.shooter.engine.n_opaque) + offset
+        low = before - dr.gather(types.UInt64, before, self.replicate * self.shooter.tracer.n_opaque) + offset
         counts = types.UInt32(((low + expected) >> BITS) - (low >> BITS))
         dr.eval(counts)
         return counts

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...device.backend import upload
 from ...problem.model import Problem
-from ..process import State, Swept
+from ..base import State, Swept
 from .control import SHARE, Control, source_constant
 from .exchange import LINE, Exchange
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...device.backend import upload
 from ...problem.model import Problem
-from ..process import State, Swept
+from ..base import State, Swept
 from .control import Control
 from .exchange import LINE, Exchange
 from .incremental import Incremental

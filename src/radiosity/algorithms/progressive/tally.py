@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...problem.model import Problem
+from ..base import AbstractTally, State
 from ..baseline_tally import SolvedTally
-from ..process import AbstractTally, State
 
 
 def ambient(area: np.ndarray, reflectance: np.ndarray, unshot: np.ndarray) -> np.ndarray:
@@ -23,7 +23,7 @@ class ProgressiveTally(AbstractTally):
     ambient: bool
     solved: SolvedTally
 
-    counts_landings = False
+    counts_hits = False
 
     def lines(self, problem: Problem, state: State) -> int:
         return self.solved.lines(problem, state)

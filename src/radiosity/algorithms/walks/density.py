@@ -7,7 +7,7 @@ import numpy as np
 from ...problem.model import Problem
 from ...solution.books import by_difference
 from ...solution.smoothing import Smoother
-from ..process import AbstractBiasedTally, AbstractTally, State
+from ..base import AbstractBiasedTally, AbstractTally, State
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import numpy as np
 from ...device.backend import upload
 from ...problem.model import Problem
 from ...tracing.lanes import Batch
-from ..firing.counters import Engine
+from ...tracing.line_tracer import LineTracer
 
 MIX = 0x9E3779B1  # low bits of the choice, of which a number in single precision has only 24
 
@@ -25,61 +25,63 @@ class Fractions:
     """Birthplaces and the fixed shares that go on.
 
     Attributes:
-        engine: counters and numbers.
+        tracer: lines of the patches.
         cumulative: UInt32 (n_patches,), the sum of shares of emission up to each patch, times 2^32.
         mean: area-weighted mean reflectance, of the largest band.
         begun: walks of earlier stages; counts: how many of this one's go on k times.
     """
 
-    engine: Engine
+    tracer: LineTracer
     cumulative: Any
     mean: float
     begun: int = 0
     counts: list[int] = field(default_factory=list)
 
     @staticmethod
-    def of(engine: Engine, problem: Problem) -> "Fractions":
+    def of(tracer: LineTracer, problem: Problem) -> "Fractions":
         """Of a problem."""
         area, rho = problem.patches.area, problem.groups.reflectance.max(axis=1)
         whole = np.cumsum(problem.source.share)
         cumulative = np.minimum(np.floor(whole / whole[-1] * 2.0**32), 2**32 - 1).astype(np.uint32)
         lit = np.flatnonzero(problem.source.share)[-1]
         cumulative[lit:] = 2**32 - 1
-        return Fractions(engine, upload(engine.types.UInt32, cumulative), float(area @ rho / area.sum()))
+        return Fractions(tracer, upload(tracer.types.UInt32, cumulative), float(area @ rho / area.sum()))
 
     def batch(self, begun: int, quanta: int) -> tuple[Batch, int]:
         """Walks begun + 1 to quanta of each replicate; their patches are chosen in the kernel."""
-        engine, new = self.engine, quanta - begun
+        tracer, new = self.tracer, quanta - begun
         self.begun, self.counts = begun, [new]
         while self.counts[-1]:
             self.counts.append(int(new * self.mean ** len(self.counts)))
-        u32 = engine.types.UInt32
-        numbers = upload(u32, np.arange(engine.replicates, dtype=np.uint32) * engine.n)
-        counts, fired = (dr.opaque(u32, value, engine.replicates) for value in (new, begun))
-        return Batch.of(engine.types, numbers, counts, fired, engine.record), quanta
+        u32 = tracer.types.UInt32
+        numbers = upload(u32, np.arange(tracer.replicates, dtype=np.uint32) * tracer.n)
+        counts, fired = (dr.opaque(u32, value, tracer.replicates) for value in (new, begun))
+        return Batch.of(tracer.types, numbers, counts, fired, tracer.record), quanta
 
     def birthplace(self, number, index, bits: int):
         """In a kernel: patch number where a walk begins, and its record; ``number`` tells the replicate."""
-        engine, types = self.engine, self.engine.types
-        replicate = engine.replicate(number)
-        chosen = engine.points(number, index, replicate, engine.record(number), bits)[4]
+        tracer, types = self.tracer, self.tracer.types
+        replicate = tracer.replicate(number)
+        chosen = tracer.points(number, index, replicate, tracer.record(number), bits)[4]
         position = (types.UInt32(chosen * 2.0**24) << 8) | ((index * MIX) >> 24)
         patch = dr.binary_search(
             0,
-            engine.n - 1,
+            tracer.n - 1,
             lambda at: dr.gather(types.UInt32, self.cumulative, at) <= position,
         )
-        here = replicate * engine.n_opaque + patch
-        return here, engine.record(here)
+        here = replicate * tracer.n_opaque + patch
+        return here, tracer.record(here)
 
-    def go_on(self, index, leg: int):
+    def go_on(self, index, segment: int):
         """Mask: walks that go on at their ``leg``-th landing."""
-        return index - dr.opaque(self.engine.types.UInt32, self.begun) <= dr.opaque(self.engine.types.UInt32, self._count(leg))
+        return index - dr.opaque(self.tracer.types.UInt32, self.begun) <= dr.opaque(
+            self.tracer.types.UInt32, self._count(segment)
+        )
 
-    def factor(self, leg: int):
+    def factor(self, segment: int):
         """Float: how many walks each of those stands for."""
-        after = self._count(leg)
-        return dr.opaque(self.engine.types.Float, self._count(leg - 1) / after if after else 0.0)
+        after = self._count(segment)
+        return dr.opaque(self.tracer.types.Float, self._count(segment - 1) / after if after else 0.0)
 
-    def _count(self, leg: int) -> int:
-        return self.counts[leg] if leg < len(self.counts) else 0
+    def _count(self, segment: int) -> int:
+        return self.counts[segment] if segment < len(self.counts) else 0

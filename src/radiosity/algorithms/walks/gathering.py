@@ -17,13 +17,14 @@ from ...device.backend import frozen, upload
 from ...errors import MethodError
 from ...problem.model import Problem
 from ...solution.books import by_difference, exact_sum
+from ...tally.hit_counts import HitCounts
 from ...tally.unmet import bias, means, sides
-from ...tracing.lanes import Batch, Chunk
-from ..firing.counters import Engine
-from ..process import AbstractMeanTally, State
-from .births import Births
-from .flock import Flock, Legs
-from .launches import AbstractLaunches
+from ...tracing.lanes import Batch, Launch
+from ...tracing.line_tracer import LineTracer
+from ..base import AbstractMeanTally, State
+from .launches import AbstractWalks
+from .particles import ParticleBank, PathSegments
+from .source_sampling import SourceSampling
 
 UNIT = 2.0**24  # fixed point units of the largest emission of a group
 
@@ -39,66 +40,68 @@ class Visit:
     alive: Any
 
 
-class Gathering(AbstractLaunches):
+class Gathering(AbstractWalks):
     """Sums of the radiosity met, and numbers of lines that left each patch."""
 
     def _prepare(self) -> None:
-        self.engine = Engine(self.geometry, self.problem.source, self.method, self.seed, self.replicates)
-        self.types = types = self.engine.types
-        self.legs = Legs(self.engine, continuous=self.method.equation == "continuous")
-        self.births = Births.of_area(self.problem, self.seed, self.replicates)
+        method = self.method
+        self.tracer = LineTracer.of(self.geometry, method.points, method.randomisation, self.seed, self.replicates)
+        self.types = types = self.tracer.types
+        self.hits, self.fired = HitCounts(self.tracer), dr.opaque(types.UInt32, 0, self.tracer.total)
+        self.segments = PathSegments(self.tracer, continuous=self.method.equation == "continuous")
+        self.source_sampling = SourceSampling.of_area(self.problem, self.seed, self.replicates)
         groups = self.problem.groups
         self.n, top = groups.n_groups, groups.reflectance.max(axis=1)
         self.survival = upload(types.Float, top.astype(np.float32))
         emission = groups.emission / groups.emission.max(axis=0)
         ratio = groups.reflectance / np.where(top > 0, top, 1)[:, None]
         self.emission, self.ratio = ([upload(types.Float, c.astype(np.float32)) for c in x.T] for x in (emission, ratio))
-        self.met = dr.opaque(types.UInt64, 0, self.engine.total * self.n)
+        self.met = dr.opaque(types.UInt64, 0, self.tracer.total * self.n)
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return True
 
-    def _births(self, before: int, quanta: int) -> tuple[Batch | None, int]:
-        return self.births.batch(self.engine, before, quanta)
+    def _sources(self, before: int, quanta: int) -> tuple[Batch | None, int]:
+        return self.source_sampling.batch(self.tracer, before, quanta)
 
-    def _follow(self, chunk: Chunk, largest: int) -> int:
+    def _follow(self, launch: Launch, largest: int) -> int:
         types, visits = self.types, []
-        number, index, record = chunk.read(types)
-        step = self.legs.first(number, index, record, self.engine.numbers.bits_for(largest))
-        lane, flock = dr.arange(types.UInt32, chunk.width), Flock(number, index, (), ())
-        flock, visit = self._land(flock, lane, number, step, chunk.real(types))
+        number, index, record = launch.read(types)
+        step = self.segments.first(number, index, record, self.tracer.numbers.bits_for(largest))
+        lane, particles = dr.arange(types.UInt32, launch.width), ParticleBank(number, index, (), ())
+        particles, visit = self._land(particles, lane, number, step, launch.real(types))
         while True:
             visits.append(visit)
             rows: Any = dr.compress(visit.alive)
             if dr.width(rows) == 0:
                 break
             lane, left = (dr.gather(types.UInt32, column, rows) for column in (visit.lane, visit.landed))
-            flock = flock.at(rows)
-            leg = dr.opaque(types.UInt32, len(visits), flock.size)
-            flock, visit = self._land(flock, lane, left, self.legs.later(flock, leg), True)
-        self._score(visits, chunk)
-        return chunk.lanes + sum(dr.width(visit.lane) for visit in visits[1:])
+            particles = particles.at(rows)
+            segment = dr.opaque(types.UInt32, len(visits), particles.size)
+            particles, visit = self._land(particles, lane, left, self.segments.later(particles, segment), True)
+        self._score(visits, launch)
+        return launch.lanes + sum(dr.width(visit.lane) for visit in visits[1:])
 
-    def _land(self, flock: Flock, lane, left, step, real) -> tuple[Flock, Visit]:
-        engine, types = self.engine, self.types
-        on = real & (step.landed < engine.total)
-        patch = step.landed - engine.replicate(flock.walk) * engine.n_opaque
+    def _land(self, particles: ParticleBank, lane, left, step, real) -> tuple[ParticleBank, Visit]:
+        tracer, types = self.tracer, self.types
+        on = real & (step.landed < tracer.total)
+        patch = step.landed - tracer.replicate(particles.walk) * tracer.n_opaque
         alive = on & (step.numbers[4] < dr.gather(types.Float, self.survival, patch, on))
-        dr.scatter_add(engine.arrivals, types.UInt32(1), step.landed, active=real)
-        dr.scatter_add(engine.fired, types.UInt32(1), left, active=real)
-        after = Flock(flock.walk, flock.index, step.place, ())
-        dr.eval(engine.arrivals, engine.fired, alive, step.landed, left, lane, after.columns())
+        self.hits.add(step.landed, real)
+        dr.scatter_add(self.fired, types.UInt32(1), left, active=real)
+        after = ParticleBank(particles.walk, particles.index, step.place, ())
+        dr.eval(self.hits.arrivals, self.fired, alive, step.landed, left, lane, after.columns())
         return after, Visit(lane, left, step.landed, alive)
 
-    def _score(self, visits: list[Visit], chunk: Chunk) -> None:
+    def _score(self, visits: list[Visit], launch: Launch) -> None:
         """From the last legs back to the first: what each line met."""
-        engine, types = self.engine, self.types
-        met = [dr.opaque(types.Float, 0.0, chunk.width) for _ in range(self.n)]
+        tracer, types = self.tracer, self.types
+        met = [dr.opaque(types.Float, 0.0, launch.width) for _ in range(self.n)]
         for at, visit in reversed(list(enumerate(visits))):
-            real = chunk.real(types) if at == 0 else True
-            on = real & (visit.landed < engine.total)
-            patch = visit.landed - engine.replicate(visit.left) * engine.n_opaque
+            real = launch.real(types) if at == 0 else True
+            on = real & (visit.landed < tracer.total)
+            patch = visit.landed - tracer.replicate(visit.left) * tracer.n_opaque
             for g in range(self.n):
                 behind = dr.gather(types.Float, met[g], visit.lane, visit.alive)
                 value = dr.gather(types.Float, self.emission[g], patch, on)
@@ -110,16 +113,16 @@ class Gathering(AbstractLaunches):
             dr.eval(self.met, met)
 
     def _counts(self) -> State:
-        arrivals, fired, missed = self.engine.counters()
-        met = frozen(self.met).reshape(self.replicates, self.engine.n, self.n)
+        arrivals, missed = self.hits.read()
+        fired = frozen(self.fired).reshape(arrivals.shape)
+        met = frozen(self.met).reshape(self.replicates, self.tracer.n, self.n)
         return {"arrivals": arrivals, "fired": fired, "missed": missed, "met": met}
 
     def _put_back(self, state: State) -> None:
-        if "met" not in state or state["met"].shape != (self.replicates, self.engine.n, self.n):
+        if "met" not in state or state["met"].shape != (self.replicates, self.tracer.n, self.n):
             raise MethodError("the solution to go on from lacks the sums of its run; start anew")
-        u32 = self.types.UInt32
-        self.engine.arrivals = upload(u32, np.concatenate([state["arrivals"].ravel(), state["missed"].ravel()]))
-        self.engine.fired = upload(u32, state["fired"])
+        self.hits.write(state["arrivals"], state["missed"])
+        self.fired = upload(self.types.UInt32, state["fired"])
         self.met = upload(self.types.UInt64, state["met"])
 
     @property

@@ -4,11 +4,11 @@ from abc import abstractmethod
 
 import numpy as np
 
-from ...tracing.lanes import Batch, Chunk
-from ..process import AbstractProcess, State, Swept
+from ...tracing.lanes import Batch, Launch
+from ..base import AbstractAlgorithm, State, Swept
 
 
-class AbstractLaunches(AbstractProcess):
+class AbstractWalks(AbstractAlgorithm):
     """Stages made of launches. ``quanta`` is the number of walks of a replicate."""
 
     def __init__(self, *arguments):
@@ -21,11 +21,11 @@ class AbstractLaunches(AbstractProcess):
         """Make the counters."""
 
     @abstractmethod
-    def _births(self, before: int, quanta: int) -> tuple[Batch | None, int]:
+    def _sources(self, before: int, quanta: int) -> tuple[Batch | None, int]:
         """Walks of a stage, and the largest index among them."""
 
     @abstractmethod
-    def _follow(self, chunk: Chunk, largest: int) -> int:
+    def _follow(self, launch: Launch, largest: int) -> int:
         """All walks of a launch, to their ends: how many lines they took."""
 
     @abstractmethod
@@ -43,11 +43,11 @@ class AbstractLaunches(AbstractProcess):
     def advance(self, quanta: int, swept: Swept) -> None:
         if quanta != self._quanta:
             self._before, self._quanta, self._done, self._finished = self._quanta, quanta, 0, False
-        batch, largest = self._births(self._before, self._quanta)
+        batch, largest = self._sources(self._before, self._quanta)
         if batch is not None:
-            for at, chunk in enumerate(batch.chunks(self.geometry.device.types)):
+            for at, launch in enumerate(batch.launches(self.geometry.device.types)):
                 if at >= self._done:
-                    lines = self._follow(chunk, largest)
+                    lines = self._follow(launch, largest)
                     self._done = at + 1
                     swept(lines)
         self._finished = True

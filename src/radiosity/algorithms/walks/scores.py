@@ -6,7 +6,7 @@ import numpy as np
 from ...device.backend import frozen, upload
 from ...method.model import Method
 from ...problem.model import Problem
-from ..firing.counters import Engine
+from ...tracing.line_tracer import LineTracer
 
 UNIT = 2**24  # fixed point units of a quantum: as fine as a weight in single precision, and 2^32 landings fit
 
@@ -27,9 +27,9 @@ class Scores:
         fired: power that left along lines, from the lines' side of the ledger, for each group.
     """
 
-    def __init__(self, engine: Engine, problem: Problem, method: Method):
-        self.engine, self.estimator = engine, method.estimator
-        types, groups = engine.types, problem.groups
+    def __init__(self, tracer: LineTracer, problem: Problem, method: Method):
+        self.tracer, self.estimator = tracer, method.estimator
+        types, groups = tracer.types, problem.groups
         self.n = groups.n_groups
         reflectance = groups.reflectance.max(axis=1)
         self.fractional = method.absorption == "fractional"
@@ -45,7 +45,7 @@ class Scores:
                 [upload(types.Float, column.astype(np.float32)) for column in x.T] for x in (share, ratio)
             )
         if self.weighted:
-            self.received = dr.opaque(types.UInt64, 0, (engine.total + 2 * engine.replicates) * self.n)
+            self.received = dr.opaque(types.UInt64, 0, tracer.slots * self.n)
         self.fired = [0] * self.n
 
     def arrays(self) -> tuple:
@@ -56,12 +56,12 @@ class Scores:
         """What particles of patch numbers carry at first."""
         if not self.carries:
             return ()
-        patch = number - self.engine.replicate(number) * self.engine.n_opaque
-        return tuple(dr.gather(self.engine.types.Float, share, patch) for share in self.shares)
+        patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
+        return tuple(dr.gather(self.tracer.types.Float, share, patch) for share in self.shares)
 
     def fixed(self, weights) -> tuple:
         """In fixed point, rounded."""
-        types = self.engine.types
+        types = self.tracer.types
         return tuple(types.UInt64(weight * float(UNIT) + 0.5) for weight in weights)
 
     def count_fired(self, weights, lines: int, real=True) -> None:
@@ -81,7 +81,7 @@ class Scores:
         """In a kernel: lines land in slots; those of no patch score what they bring."""
         if not self.weighted:
             return
-        one = self.engine.types.Float(1)
+        one = self.tracer.types.Float(1)
         for g in range(self.n):
             brought = weights[g] if self.carries else one
             (score,) = self.fixed((self._score(brought, probability, alive),))
@@ -98,17 +98,17 @@ class Scores:
         """What goes on from a landing; ``factor`` restores what a fixed share of walks left behind."""
         if not self.carries:
             return ()
-        ratios = (dr.gather(self.engine.types.Float, ratio, patch, on) for ratio in self.ratios)
+        ratios = (dr.gather(self.tracer.types.Float, ratio, patch, on) for ratio in self.ratios)
         return tuple(w * r * (1 if factor is None else factor) for w, r in zip(weights, ratios, strict=True))
 
     def capture(self) -> dict[str, np.ndarray]:
         """fired_power (n_groups,) uint64; where weighted also received (replicates, n_patches, n_groups) and
         received_missed (2, replicates, n_groups), uint64."""
-        engine, state = self.engine, {"fired_power": np.array(self.fired, np.uint64)}
+        tracer, state = self.tracer, {"fired_power": np.array(self.fired, np.uint64)}
         if self.weighted:
-            flat, split = frozen(self.received), engine.total * self.n
-            state["received"] = flat[:split].reshape(engine.replicates, engine.n, self.n)
-            state["received_missed"] = flat[split:].reshape(2, engine.replicates, self.n)
+            flat, split = frozen(self.received), tracer.total * self.n
+            state["received"] = flat[:split].reshape(tracer.replicates, tracer.n, self.n)
+            state["received_missed"] = flat[split:].reshape(2, tracer.replicates, self.n)
         return state
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
@@ -116,4 +116,4 @@ class Scores:
         self.fired = [int(power) for power in state["fired_power"]]
         if self.weighted:
             flat = np.concatenate([state["received"].ravel(), state["received_missed"].ravel()])
-            self.received = upload(self.engine.types.UInt64, flat)
+            self.received = upload(self.tracer.types.UInt64, flat)

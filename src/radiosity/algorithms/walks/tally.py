@@ -7,7 +7,7 @@ import numpy as np
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...solution.books import Books, by_difference, exact_sum, exact_totals
-from ..process import AbstractTally, State
+from ..base import AbstractTally, State
 from .scores import UNIT
 
 

@@ -46,7 +46,7 @@ WALKS = {
     "qmc-radiosity": Preset(
         Method(equation="continuous", absorption="fractional"),
         "Keller's quasi-Monte Carlo radiosity: walk n takes point n of a sequence, its birth patch too, and of M walks the "
-        "first M rho^k go on at the k-th landing with weights, rho being the mean reflectance. Legs after the first take "
+        "first M rho^k go on at the k-th landing with weights, rho being the mean reflectance. PathSegments after the first take "
         "the same sequence in other orders (Latin supercube sampling) in place of ever larger prime bases. What the last "
         "walk leaves behind is cut off: a bias of the order of one walk.",
         "To compare; random-walk and particle-tracing have less error where reflectances differ much.",

@@ -34,7 +34,7 @@ class AbstractNumbers(ABC):
 
         Each word is moved by the place (UInt32) times a number of its own, modulo 1: a Kronecker sequence (its numbers are those
         of M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). A place is such a sum of face, column and
-        row, see `tracing.departure.place_number`, that the patches of a face move a point evenly over the cube.
+        row, see `tracing.ray_generation.place_number`, that the patches of a face move a point evenly over the cube.
         """
         moved = [word + place * step for word, step in zip(randomisation, KRONECKER, strict=False)]
         return [*moved, *randomisation[DIMENSIONS:]]

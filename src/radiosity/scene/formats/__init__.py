@@ -1,5 +1,6 @@
 """File formats by suffix. A new one is one new module with ``read(path, options) -> Scene`` and one line here."""
 
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
@@ -42,7 +43,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
         if path.stat().st_size == 0:
             raise SceneError(f"{path}: the file is empty")
         with np.errstate(all="ignore"):  # numbers out of range are found by the checks, with their place
-            return import_module(f".{FORMATS[suffix]}", __package__).read(path, options)
+            return import_module(f".{FORMATS[suffix]}", __package__).read(path, replace(options, read=read))
     except (RadiosityError, Warning):
         raise
     except ModuleNotFoundError as error:

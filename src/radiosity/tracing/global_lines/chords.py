@@ -8,8 +8,8 @@ import numpy as np
 
 from ...device.backend import frozen
 from ...device.recorded import loop
+from ..bvh import REACH
 from ..lanes import paired
-from ..tree import REACH
 from .crossing import CODES, ESCAPED, ONE_WAY, PENDING, Crossings
 from .walking import Sink, step
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...device.backend import upload
 from ...scene.model import Back
-from ..departure import before
 from ..geometry import Geometry
-from ..lines import both_sides, patch_of
+from ..hits import both_sides, patch_of
+from ..ray_generation import before
 from .hull import nothing_beyond
 
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `firing`: no patch has these numbers
@@ -57,9 +57,9 @@ class Crossings:
     def records(self):
         """(n_faces * 16,) Float: origin, edges, normal, whether there is nothing in front and behind, and the plane's offset."""
         geometry = self.geometry
-        origin, first, second = geometry.frames
-        free, least = nothing_beyond(geometry), geometry.plane_offsets[:, None]
-        record = np.concatenate([origin, first, second, geometry.normals, free, least, np.zeros_like(least)], axis=1)
+        origin, first, second = geometry.faces.frames
+        free, least = nothing_beyond(geometry), geometry.faces.plane_offsets[:, None]
+        record = np.concatenate([origin, first, second, geometry.faces.normals, free, least, np.zeros_like(least)], axis=1)
         return upload(self.geometry.device.types.Float, record.astype(np.float32))
 
     def next(self, origin, direction, active, *, coherent: bool = False) -> Crossing:
@@ -73,7 +73,7 @@ class Crossings:
         hit, turned = both_sides(geometry, origin, direction, coherent, active)
         near = patch_of(geometry, hit, LOST, ESCAPED)
         far = patch_of(geometry, turned, LOST, ESCAPED)
-        face = dr.gather(types.UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
+        face = dr.gather(types.UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid)
         block = dr.gather(types.Array44f, self.records, face, hit.valid)
         words = [block[i // 4][i % 4] for i in range(16)]
         corner, first, second, normal = (types.Array3f(*words[at : at + 3]) for at in range(0, 12, 3))

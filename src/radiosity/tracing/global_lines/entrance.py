@@ -12,9 +12,9 @@ import numpy as np
 
 from ...device.backend import upload
 from ...scene.model import Back
-from ..departure import before
-from ..geometry import COLUMN_BITS, QUAD
-from ..lines import Landing, patch_of
+from ..faces import COLUMN_BITS, QUAD
+from ..hits import Hit, patch_of
+from ..ray_generation import before
 from .crossing import ESCAPED, LOST, Crossings
 
 CELLS = 128  # of a table, along each edge of each side of the box
@@ -39,8 +39,8 @@ class Entrance:
     def faces(self) -> np.ndarray:
         """(6, CELLS, CELLS) uint32: for each axis the low and the high side, the face that holds a cell's centre."""
         geometry = self.crossings.geometry
-        origin, first, second = geometry.frames
-        offset = geometry.offset(np.arange(len(origin)), origin)
+        origin, first, second = geometry.faces.frames
+        offset = geometry.faces.offset(np.arange(len(origin)), origin)
         quad, back = geometry.scene.is_quad, geometry.scene.back
         table = np.full((6, CELLS, CELLS), NONE, np.uint32)
         inward = np.cross(first, second)
@@ -110,7 +110,7 @@ class Entrance:
         number, packed = dr.gather(types.Array2u, places, face, there)
         inside = (u > INSIDE) & (v > INSIDE) & (dr.select((packed & QUAD) != 0, dr.maximum(u, v), u + v) < 1 - INSIDE)
         front = dr.full(types.Bool, True, dr.width(u))
-        hit = Landing(there & inside, face, u, v, front, Float(0), number, packed)
+        hit = Hit(there & inside, face, u, v, front, Float(0), number, packed)
         return hit.valid, patch_of(geometry, hit, LOST, ESCAPED), before(corner + first * u + second * v, normal, words[14])
 
 

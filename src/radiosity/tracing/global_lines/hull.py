@@ -3,7 +3,8 @@
 import numpy as np
 
 from ...scene.precision import EPSILON
-from ..geometry import OFFSET, Geometry
+from ..faces import OFFSET
+from ..geometry import Geometry
 
 DIRECTIONS = 96  # the farthest vertices of so many directions sort out nearly all faces inside
 MOST = 1 << 28  # products of faces and vertices: where more would be asked for, no side is known to be free
@@ -13,13 +14,13 @@ BESIDE = 4 * EPSILON  # of a vertex's largest coordinate: vertices this little i
 
 def nothing_beyond(geometry: Geometry) -> np.ndarray:
     """(n_faces, 2) bool: no vertex of the scene lies in front of the face; or behind it."""
-    vertices = geometry.tree.vertices.astype(np.float64)
+    vertices = geometry.bvh.vertices.astype(np.float64)
     vertices = vertices[np.unique(geometry.scene.faces[geometry.scene.faces >= 0])]
-    origin, normal = geometry.frames[0], geometry.normals
+    origin, normal = geometry.faces.frames[0], geometry.faces.normals
     free = np.zeros((len(origin), 2), bool)
     extreme = vertices[np.unique(np.argmax(_sphere(DIRECTIONS) @ vertices.T, axis=1))]
     for side, outward in enumerate((normal, -normal)):
-        height = np.einsum("ij,ij->i", outward, origin) + geometry.plane_offsets * (BESIDE / OFFSET)
+        height = np.einsum("ij,ij->i", outward, origin) + geometry.faces.plane_offsets * (BESIDE / OFFSET)
         rows = np.flatnonzero(_highest(outward, extreme) <= height)
         if len(rows) * len(vertices) <= MOST:
             free[rows, side] = _highest(outward[rows], vertices) <= height[rows]

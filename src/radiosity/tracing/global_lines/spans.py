@@ -21,8 +21,8 @@ from ...sampling.global_lines import by_disc, by_two_points, of_bundle
 from ...sampling.numbers import ready
 from ...sampling.streams import Purpose, stream
 from ...scene.precision import EPSILON
+from ..bvh import REACH
 from ..geometry import Geometry
-from ..tree import REACH
 from .chords import MARGIN, crossing_box, walk
 from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 from .entrance import Entrance
@@ -112,7 +112,7 @@ class Spans:
     @cached_property
     def ends_per_line(self) -> np.ndarray:
         """(n_patches,) float64: expected ends on each patch per line."""
-        area, radius = self.geometry.patches.area, self.radius / self.geometry.tree.scale
+        area, radius = self.geometry.patches.area, self.radius / self.geometry.bvh.scale
         if self.method.lines == "spans":
             return 2 * area / self.surfaces.area
         return area / (8 * radius**2 if self.method.lines == "bundles" else 2 * np.pi * radius**2)
@@ -121,7 +121,7 @@ class Spans:
     def bundle(self) -> int:
         """Lines of a bundle: a power of four, such that a mean patch has a quarter to one end in a bundle. More would cost
         directions, which errors depend on most."""
-        area, radius = self.geometry.patches.area, self.radius / self.geometry.tree.scale
+        area, radius = self.geometry.patches.area, self.radius / self.geometry.bvh.scale
         wanted = 8 * radius**2 / area.mean()
         return 4 ** int(np.clip(np.floor(np.log2(wanted) / 2), LEAST_SIDE, MOST_SIDE))
 
@@ -212,7 +212,7 @@ class Spans:
     def _vertices(self) -> np.ndarray:
         """(n, 3) float64, those that faces use, in the caster's units."""
         faces = self.geometry.scene.faces
-        return self.geometry.tree.vertices[np.unique(faces[faces >= 0])].astype(np.float64)
+        return self.geometry.bvh.vertices[np.unique(faces[faces >= 0])].astype(np.float64)
 
     @cached_property
     def _bounds(self) -> np.ndarray:

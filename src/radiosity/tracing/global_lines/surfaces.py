@@ -14,9 +14,10 @@ from ...device.backend import frozen, upload
 from ...device.recorded import loop
 from ...sampling.hemisphere import triangle
 from ...scene.model import Back
-from ..departure import BACK, MASK, Frame
-from ..geometry import COLUMN_BITS, QUAD, Geometry
-from ..lines import Landing, land, patch_of
+from ..faces import COLUMN_BITS, QUAD
+from ..geometry import Geometry
+from ..hits import Hit, first_hit, patch_of
+from ..ray_generation import BACK, MASK, Frame
 from .crossing import CODES, ESCAPED, LOST, ONE_WAY, Crossings
 
 MOST_CELLS = 1 << 20
@@ -99,7 +100,7 @@ class Surfaces:
             s, t = dr.select(quad, s, folded[0]), dr.select(quad, t, folded[1])
         yes = dr.full(types.Bool, True, dr.width(face))
         none = dr.zeros(Float, dr.width(face))
-        patch = patch_of(geometry, Landing(yes, face, s, t, face < BACK, none, first, packed), LOST, ESCAPED)
+        patch = patch_of(geometry, Hit(yes, face, s, t, face < BACK, none, first, packed), LOST, ESCAPED)
         columns, rows = Float(packed & MASK), Float((packed >> COLUMN_BITS) & MASK)
         return patch, *Frame.of(geometry, face).leave(s * columns, t * rows, numbers)
 
@@ -113,7 +114,7 @@ class Surfaces:
         if self.geometry.some_backs_pass:
             other = self._through(crossings, origin, direction)
         else:
-            other = patch_of(self.geometry, land(self.geometry, origin, direction), LOST, ESCAPED)
+            other = patch_of(self.geometry, first_hit(self.geometry, origin, direction), LOST, ESCAPED)
         ends = dr.opaque(types.UInt32, 0, max(count, 2)), dr.opaque(types.UInt32, 0, max(count, 2))
         for end, values in zip(ends, (patch, other), strict=True):
             dr.scatter(end, values, lane)

@@ -1,15 +1,22 @@
-"""Orders of the firing engine: each module fires until no patch owes a line."""
+"""Orders of the firing engine: a new one is one new file and one line in the table."""
 
 from importlib import import_module
 
+from ...base import Swept
+from ..counters import FiringCounters
+from .base import AbstractOrder
+
 FIRED = {
-    "depth-first": "depth_first",
-    "breadth-first": "breadth_first",
-    "staged": "breadth_first",
-    "well-distributed": "well_distributed",
+    "depth-first": "depth_first:DepthFirst",
+    "breadth-first": "breadth_first:BreadthFirst",
+    "staged": "breadth_first:BreadthFirst",
+    "well-distributed": "well_distributed:WellDistributed",
 }
 
+__all__ = ["FIRED", "AbstractOrder", "fire_all"]
 
-def run(name: str, engine, progress) -> None:
+
+def fire_all(name: str, counters: FiringCounters, swept: Swept) -> None:
     """Fire every line owed in the order called ``name``."""
-    import_module(f".{FIRED[name]}", __package__).run(engine, progress)
+    module, order = FIRED[name].split(":")
+    getattr(import_module(f".{module}", __package__), order)().run(counters, swept)

@@ -1,19 +1,24 @@
-"""Breadth-first: sweep after sweep, every patch fires all it owes (Shirley 1991)."""
+"""Breadth-first: sweep after sweep, every row fires all it owes (Shirley 1991)."""
 
-from . import depth_first
+from ...base import Swept
+from ..counters import FiringCounters
+from .base import AbstractOrder
+from .depth_first import walk_all
 
 TAIL = 1 << 13  # fewer lines than this are followed to their ends at once: the counters are the same
 
 
-def run(engine, progress) -> None:
-    """Sweep until no patch owes a line. ``progress(lines)`` is called after each sweep."""
-    while True:
-        sweep, largest = engine.due()
-        if sweep is None:
-            return
-        if sweep.total < TAIL and engine.bands is None:
-            depth_first.walk_all(engine, sweep, progress)
-            return
-        engine.fire(sweep, largest)
-        progress(sweep.total)
-        del sweep  # and the memory it holds
+class BreadthFirst(AbstractOrder):
+    """Sweeps until no row owes a line."""
+
+    def run(self, counters: FiringCounters, swept: Swept) -> None:
+        while True:
+            wavefront, largest = counters.due()
+            if wavefront is None:
+                return
+            if wavefront.total < TAIL and counters.bands is None:
+                walk_all(counters, wavefront, swept)
+                return
+            counters.fire(wavefront, largest)
+            swept(wavefront.total)
+            del wavefront  # and the memory it holds

@@ -9,45 +9,41 @@ from typing import Any
 import drjit as dr
 
 from ....device.recorded import loop
+from ....tracing.lanes import Launch, Wavefront
+from ...base import Swept
+from ..counters import FiringCounters
+from .base import AbstractOrder
 
 
-def run(engine, progress) -> None:
-    """Follow all walks to their ends. ``progress(lines)`` is called after each launch."""
-    sweep, _ = engine.due()
-    if sweep is not None:
-        walk_all(engine, sweep, progress)
+class DepthFirst(AbstractOrder):
+    """Follows all walks to their ends."""
+
+    def run(self, counters: FiringCounters, swept: Swept) -> None:
+        wavefront, _ = counters.due()
+        if wavefront is not None:
+            walk_all(counters, wavefront, swept)
 
 
-def walk_all(engine, sweep, progress) -> None:
+def walk_all(counters: FiringCounters, wavefront: Wavefront, swept: Swept) -> None:
     """From the lines of a sweep, a launch at a time."""
-    for batch in list(engine.batches(sweep)):  # made before walks fire lines of patches that are still to come
-        for chunk in batch.chunks(engine.types):
-            before = engine.lines
-            walk(engine, chunk)
-            progress(engine.lines - before)
+    for batch in list(counters.batches(wavefront)):  # made before walks fire lines of patches that are still to come
+        for launch in batch.launches(counters.types):
+            before = counters.lines
+            walk(counters, launch)
+            swept(counters.lines - before)
 
 
-def walk(engine, chunk) -> None:
+def walk(counters: FiringCounters, launch: Launch) -> None:
     """One lane for each line owed at the start."""
-    types = engine.types
-    number, _, _ = chunk.read(types)
+    types, tracer = counters.types, counters.tracer
+    number, _, _ = launch.read(types)
 
     def body(number, going):
-        taken: Any = dr.scatter_inc(engine.fired, number, going)
-        index = taken + 1
-        landed = engine.trace(number, index, engine.record(number), 32)
-        before = dr.scatter_inc(engine.arrivals, landed, going)
-        going = going & (landed < engine.total)
-        patch = landed - engine.replicate(landed) * engine.n_opaque
-        wide = types.UInt64
-        rho = wide(dr.gather(types.UInt32, engine.rho, patch, going))
-        rest = wide(dr.gather(types.UInt32, engine.fraction, patch, going)) + wide(
-            dr.gather(types.UInt32, engine.phase, landed, going)
-        )
-        low = rho * wide(before) + rest
-        going &= ((low + rho) >> 32) > (low >> 32)
-        return landed, going
+        taken: Any = dr.scatter_inc(counters.fired, number, going)
+        landed = tracer.trace(number, taken + 1, tracer.record(number), 32)
+        before = dr.scatter_inc(counters.hits.arrivals, landed, going)
+        going = going & (landed < counters.total)
+        return landed, going & counters.is_due_after(landed, before, going)
 
-    going = chunk.real(types)
-    loop((number, going), lambda number, going: going, body)
-    dr.eval(engine.arrivals, engine.fired)
+    loop((number, launch.real(types)), lambda number, going: going, body)
+    dr.eval(counters.hits.arrivals, counters.fired)

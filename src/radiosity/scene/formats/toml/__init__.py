@@ -125,8 +125,6 @@ class Looks:
 
 
 def _geometry(file: str, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
-    from .. import read as read_any
-
     path = source.parent / file
     options.admit(path, source)
     if not path.exists() and (other := in_any_case(source.parent, file)):
@@ -145,7 +143,9 @@ def _geometry(file: str, factor: float, name: str | None, looks: Looks, options:
             result.append(looks.apply(part))
         return result
 
-    scene = read_any(path, replace(options, edit=edit, unit=factor))
+    if options.read is None:
+        raise SceneError(f"{source}: read it by `scene.formats.read`, which reads its geometry files too")
+    scene = options.read(path, replace(options, edit=edit, unit=factor))
     cameras = [replace(c, origin=_times(c.origin, factor), target=_times(c.target, factor)) for c in scene.cameras]
     return replace(scene, cameras=tuple(cameras))
 

@@ -15,7 +15,7 @@ MOST = 6 << 20  # bytes of a copy: larger ones gain little
 WORDS = 4  # of a packet of counts and powers
 
 
-class AbstractLandings(ABC):
+class AbstractHitTally(ABC):
     """Of the lines of a sweep, which may take several launches."""
 
     @abstractmethod
@@ -28,31 +28,31 @@ class AbstractLandings(ABC):
 
     @abstractmethod
     def settle(self) -> None:
-        """After the last launch: all is in the engine's counters."""
+        """After the last launch: all is in the hit counts."""
 
 
-class Atomic(AbstractLandings):
-    """Added to the engine's counters at once. With ``flags`` it is remembered where lines landed."""
+class Atomic(AbstractHitTally):
+    """Added to the hit counts at once. With ``flags`` it is remembered where lines landed."""
 
-    def __init__(self, engine, flags: bool, mode: dr.ReduceMode = dr.ReduceMode.Direct):
-        self.engine, self.flags, self.mode = engine, flags, mode
+    def __init__(self, hits, flags: bool, mode: dr.ReduceMode = dr.ReduceMode.Direct):
+        self.hits, self.flags, self.mode = hits, flags, mode
 
     def add(self, slot, powers, active):
-        engine, types = self.engine, self.engine.types
-        dr.scatter_add(engine.arrivals, types.UInt32(1), slot, active=active, mode=self.mode)
+        hits, types = self.hits, self.hits.tracer.types
+        dr.scatter_add(hits.arrivals, types.UInt32(1), slot, active=active, mode=self.mode)
         if self.flags:
-            dr.scatter(engine.touched, types.Bool(True), slot, active=active)
+            dr.scatter(hits.touched, types.Bool(True), slot, active=active)
         for g, power in enumerate(powers):
-            dr.scatter_add(engine.bands.received, power, slot * len(powers) + g, active=active, mode=self.mode)
+            dr.scatter_add(hits.bands.received, power, slot * len(powers) + g, active=active, mode=self.mode)
 
     def arrays(self):
-        return counters(self.engine)
+        return counters(self.hits)
 
     def settle(self):
         pass
 
 
-class Copied(AbstractLandings):
+class Copied(AbstractHitTally):
     """Added to a copy of each thread, on a CPU.
 
     Dr.Jit adds packets of two or four words one lane after the other. Single words it compares with those of all other lanes
@@ -60,12 +60,12 @@ class Copied(AbstractLandings):
     zero, or with the powers of three groups of bands.
     """
 
-    def __init__(self, engine, flags: bool):
-        self.engine, self.flags, types = engine, flags, engine.types
-        self.n = groups_of(engine)
+    def __init__(self, hits, flags: bool):
+        self.hits, self.flags, types = hits, flags, hits.tracer.types
+        self.n = groups_of(hits)
         self.packet: Any = types.Array2u if self.n == 0 else types.Array4u64
         self.size, self.rows = dr.size_v(self.packet), packets(self.n)
-        self.sums = dr.opaque(dr.value_t(self.packet), 0, dr.width(engine.arrivals) * self.rows * self.size)
+        self.sums = dr.opaque(dr.value_t(self.packet), 0, dr.width(hits.arrivals) * self.rows * self.size)
 
     def add(self, slot, powers, active):
         words = [1, *powers, *[0] * (self.rows * self.size - 1 - len(powers))]
@@ -77,25 +77,25 @@ class Copied(AbstractLandings):
         return [self.sums]
 
     def settle(self):
-        engine, types = self.engine, self.engine.types
-        slot = dr.arange(types.UInt32, dr.width(engine.arrivals))
+        hits, types = self.hits, self.hits.tracer.types
+        slot = dr.arange(types.UInt32, dr.width(hits.arrivals))
         words = [w for row in range(self.rows) for w in dr.gather(self.packet, self.sums, slot * self.rows + row)]
-        engine.arrivals = engine.arrivals + types.UInt32(words[0])
+        hits.arrivals = hits.arrivals + types.UInt32(words[0])
         if self.flags:
-            engine.touched = engine.touched | (words[0] != 0)
+            hits.touched = hits.touched | (words[0] != 0)
         for g, power in enumerate(words[1 : 1 + self.n]):
-            dr.scatter_add(engine.bands.received, power, slot * self.n + g, mode=dr.ReduceMode.NoConflicts)
-        dr.eval(*counters(engine))
+            dr.scatter_add(hits.bands.received, power, slot * self.n + g, mode=dr.ReduceMode.NoConflicts)
+        dr.eval(*counters(hits))
 
 
-def counters(engine) -> list:
-    """The engine's, that lines land in."""
-    return [engine.arrivals, engine.touched, *([] if engine.bands is None else [engine.bands.received])]
+def counters(hits) -> list:
+    """What lines land in."""
+    return [hits.arrivals, hits.touched, *([] if hits.bands is None else [hits.bands.received])]
 
 
-def groups_of(engine) -> int:
+def groups_of(hits) -> int:
     """Groups of bands whose power lines carry; none where there is one."""
-    return 0 if engine.bands is None else engine.bands.n
+    return 0 if hits.bands is None else hits.bands.n
 
 
 def packets(groups: int) -> int:
@@ -103,12 +103,12 @@ def packets(groups: int) -> int:
     return -(-(1 + groups) // WORDS)
 
 
-def landings(engine, lines: int, flags: bool) -> AbstractLandings:
+def hit_tally(hits, lines: int, flags: bool) -> AbstractHitTally:
     """For a sweep of so many lines."""
-    groups = groups_of(engine)
+    groups = groups_of(hits)
     each = 2 * 4 if groups == 0 else packets(groups) * WORDS * 8  # bytes
     checked = dr.flag(dr.JitFlag.Debug)  # it takes packets in the second thread's copy for out of bounds, and leaves them out
-    if engine.geometry.device.name != "cpu" or checked:
-        return Atomic(engine, flags, dr.ReduceMode.Expand if lines > DENSE * engine.total else dr.ReduceMode.Direct)
-    copies = lines > SHARED * engine.total and each * engine.total <= MOST
-    return Copied(engine, flags) if copies else Atomic(engine, flags)
+    if hits.tracer.geometry.device.name != "cpu" or checked:
+        return Atomic(hits, flags, dr.ReduceMode.Expand if lines > DENSE * hits.tracer.total else dr.ReduceMode.Direct)
+    copies = lines > SHARED * hits.tracer.total and each * hits.tracer.total <= MOST
+    return Copied(hits, flags) if copies else Atomic(hits, flags)

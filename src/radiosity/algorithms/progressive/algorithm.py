@@ -10,8 +10,8 @@ import numpy as np
 from ...errors import MethodError
 from ...factors.sources import rows_for
 from .. import estimate
+from ..base import AbstractAlgorithm, State, Swept
 from ..baseline_tally import SolvedTally
-from ..process import AbstractProcess, State, Swept
 from .recent import RecentRows
 from .tally import ProgressiveTally, ambient
 
@@ -19,7 +19,7 @@ UNSHOT = 1e-4  # of the emitted power: what is left then is not worth a shot
 DENSER = 1.05  # the history has an entry for so many times as many shots as the last
 
 
-class Progressive(AbstractProcess):
+class Progressive(AbstractAlgorithm):
     """N shots; the state after them depends on N alone."""
 
     def __init__(self, *arguments):
@@ -40,7 +40,7 @@ class Progressive(AbstractProcess):
         return self.wanted
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return True
 
     def advance(self, quanta: int, swept: Swept) -> None:

@@ -8,47 +8,47 @@ from ...problem.bands import QUANTUM
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...solution.books import Books, exact_sum, signed_totals
-from ..process import AbstractProcess, AbstractTally, State, Swept
-from . import state as counters
-from .counters import Engine
-from .orders import run as fire_all
+from ..base import AbstractAlgorithm, AbstractTally, State, Swept
+from . import state as firing_state
+from .counters import FiringCounters
+from .orders import fire_all
 from .residue import Starts
 from .residue_walks import LONGER, Sent, send, starts
 
 
-class Firing(AbstractProcess):
+class Firing(AbstractAlgorithm):
     """Integers that do not depend on order (contract 2), or powers of bands that travel with sweeps (contract 3)."""
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
-        self.engine = Engine(self.geometry, self.problem.source, self.method, self.seed, self.replicates, self.problem.groups)
+        self.counters = FiringCounters(self.geometry, self.problem, self.method, self.seed, self.replicates)
 
     @property
     def quanta(self) -> int:
-        return self.engine.quanta
+        return self.counters.quanta
 
     @property
-    def nested(self) -> bool:
-        return self.engine.bands is None
+    def stage_independent(self) -> bool:
+        return self.counters.bands is None
 
     def advance(self, quanta: int, swept: Swept) -> None:
         self.tally.forget()
-        if quanta != self.engine.quanta:
-            self.engine.set_quanta(quanta)
-        fire_all(self.method.order, self.engine, swept)
+        if quanta != self.counters.quanta:
+            self.counters.set_quanta(quanta)
+        fire_all(self.method.order, self.counters, swept)
 
     def capture(self) -> State:
-        return counters.capture(self.engine)
+        return firing_state.capture(self.counters)
 
     def restore(self, state: State) -> None:
-        counters.restore(self.engine, state)
+        firing_state.restore(self.counters, state)
 
     def unfinished(self, state: State) -> bool:
         return "within" in state
 
     @cached_property
     def tally(self) -> "Arrivals":
-        return Arrivals(self.engine, self.problem)
+        return Arrivals(self.counters, self.problem)
 
 
 class Arrivals(AbstractTally):
@@ -57,8 +57,8 @@ class Arrivals(AbstractTally):
 
     settles = True
 
-    def __init__(self, engine: Engine, problem: Problem):
-        self.engine, self.problem = engine, problem
+    def __init__(self, counters: FiringCounters, problem: Problem):
+        self.counters, self.problem = counters, problem
         self.forget()
 
     def forget(self) -> None:
@@ -70,14 +70,14 @@ class Arrivals(AbstractTally):
         """Where lines begin that send the residue of a state on."""
         if self._begun is None or self._state is not state:
             self.forget()  # first, for the sake of memory
-            self._state, self._begun = state, starts(self.engine, self.problem, state)
+            self._state, self._begun = state, starts(self.counters, self.problem, state)
         return self._begun
 
     def sent(self, state: State) -> Sent:
         """What the residue of a state brings."""
         begun = self.begun(state)
         if self._sent is None:
-            self._sent = send(self.engine, self.problem, state, begun)
+            self._sent = send(self.counters, self.problem, state, begun)
         return self._sent
 
     def lines(self, problem: Problem, state: State) -> int:
@@ -88,27 +88,29 @@ class Arrivals(AbstractTally):
 
     def about_lines(self, problem: Problem, state: State) -> float:
         fired, begun = exact_sum(state["fired"]), self.begun(state)
-        packets = self.engine.replicates * int(state["quanta"])
+        packets = self.counters.tracer.replicates * int(state["quanta"])
         of_one = fired / max(packets - begun.net, packets / 2)  # what is fired lacks those of the residue
         return fired + LONGER * len(begun.line) * of_one
 
     def arrivals(self, problem: Problem, state: State) -> np.ndarray:
-        return state["arrivals"].sum(axis=0, dtype=np.int64)
+        return state["arrivals"][:, : problem.rows.n_patches].sum(axis=0, dtype=np.int64)
 
     def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        return self.sent(state).received[..., group], problem.source.power / int(state["quanta"]) / QUANTUM
+        return self.sent(state).received[:, : problem.rows.n_patches, group], problem.source.power / int(
+            state["quanta"]
+        ) / QUANTUM
 
     def books(self, problem: Problem, state: State, group: int) -> dict:
-        source, groups, quanta = problem.source, problem.groups, int(state["quanta"])
+        source, rows, quanta = problem.source, problem.rows, int(state["quanta"])
         replicates, sent = len(state["arrivals"]), self.sent(state)
         if "received" not in state:
             missed, fired, unit = state["missed"], exact_sum(state["fired"]), QUANTUM
             emitted = source.emitted_in_all(quanta) * replicates * QUANTUM
         else:
             missed, fired, unit = state["received_missed"][..., group], exact_sum(state["fired_power"][group]), 1
-            share = groups.emission[:, group] * problem.patches.area / source.power
+            share = rows.emission[:, group] * rows.area / source.power
             emitted = round(float(share.sum()) * quanta * QUANTUM) * replicates << 32
-        arrived, reflected = signed_totals(sent.received[..., group], Source.fixed(groups.reflectance[:, group]))
+        arrived, reflected = signed_totals(sent.received[..., group], Source.fixed(rows.reflectance[:, group]))
         escaped, lost = (exact_sum(x) * unit + int(y.sum()) << 32 for x, y in zip(missed, sent.missed[..., group], strict=True))
         fired = fired * unit + sent.fired[group]
         watts = source.power / quanta / QUANTUM / 2**32 / replicates

@@ -8,16 +8,17 @@ import drjit as dr
 from ..device.backend import classes
 from ..device.recorded import loop
 from ..scene.model import Back
-from .departure import BACK, MASK, before, local_line, local_lines
-from .geometry import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF, TIED, Geometry
+from .faces import BACK_BIT, COLUMN_BITS, NORMAL_BITS, NORMAL_ONE, QUAD, SECOND_HALF
+from .geometry import TIED, Geometry
+from .ray_generation import BACK, MASK, before, local_line, local_lines
 
 NORMAL_MASK = (1 << NORMAL_BITS) - 1
 
-__all__ = ["Landing", "land", "local_line", "local_lines", "patch_of", "place_of"]
+__all__ = ["Hit", "first_hit", "local_line", "local_lines", "patch_of", "place_of"]
 
 
 @dataclass(frozen=True)
-class Landing:
+class Hit:
     """Where lines land: primitive, face coordinates, side, distance in the caster's units, and the hit record's first words."""
 
     valid: Any
@@ -39,7 +40,7 @@ class Landing:
         return self.back(Back.PASSES) | (self.valid & ((self.packed >> BACK_BIT) == int(Back.OPEN)))
 
 
-def land(geometry: Geometry, origin, direction, *, coherent: bool = False, active=True) -> Landing:
+def first_hit(geometry: Geometry, origin, direction, *, coherent: bool = False, active=True) -> Hit:
     """Trace lines to the first side that does not let them pass."""
     geometry.prepare_hits()
     if not geometry.some_backs_pass:
@@ -54,7 +55,9 @@ def land(geometry: Geometry, origin, direction, *, coherent: bool = False, activ
         travelled = dr.select(going, hit[5] + new.distance, hit[5])
         kept = [dr.select(done, value, old) for value, old in zip(_fields(new), hit, strict=True)]
         # go on in front of the face just passed, on the side that the line leads to
-        least = dr.gather(Float, geometry.offsets, dr.gather(UInt32, geometry.primitive_faces, new.primitive, passes), passes)
+        least = dr.gather(
+            Float, geometry.faces.offsets, dr.gather(UInt32, geometry.faces.primitive_faces, new.primitive, passes), passes
+        )
         onward = normal * dr.select(new.front, Float(-1.0 / NORMAL_ONE), Float(1.0 / NORMAL_ONE))
         step = before(origin + direction * new.distance, onward, least)
         return dr.select(passes, step, origin), passes, (*kept[:5], travelled, *kept[6:])
@@ -63,10 +66,10 @@ def land(geometry: Geometry, origin, direction, *, coherent: bool = False, activ
     none, zero, whole = dr.full(Bool, False, width), dr.zeros(Float, width), dr.zeros(UInt32, width)
     state = (types.Array3f(origin), dr.full(Bool, True, width) & active, (none, whole, zero, zero, none, zero, whole, whole))
     _, _, hit = loop(state, lambda origin, going, hit: going, body)
-    return Landing(*hit)
+    return Hit(*hit)
 
 
-def _fields(hit: Landing):
+def _fields(hit: Hit):
     return hit.valid, hit.primitive, hit.u, hit.v, hit.front, hit.distance, hit.first, hit.packed
 
 
@@ -79,7 +82,7 @@ def _hit(geometry: Geometry, origin, direction, coherent: bool, active):
     return _chosen(hit, met, fields), dr.select(met, along, normal)
 
 
-def both_sides(geometry: Geometry, origin, direction, coherent: bool, active) -> tuple[Landing, Landing]:
+def both_sides(geometry: Geometry, origin, direction, coherent: bool, active) -> tuple[Hit, Hit]:
     """The nearest hit, and what a line from the other side would hit there: another face, where two lie in one plane."""
     hit, _, tied = _found(geometry, origin, direction, coherent, active)
     turned = replace(hit, front=~hit.front)
@@ -89,15 +92,15 @@ def both_sides(geometry: Geometry, origin, direction, coherent: bool, active) ->
     return _chosen(hit, *near[:2]), _chosen(turned, *far[:2])
 
 
-def _chosen(hit: Landing, met, fields) -> Landing:
-    return Landing(hit.valid, *(dr.select(met, new, old) for new, old in zip(fields[1:], _fields(hit)[1:], strict=True)))
+def _chosen(hit: Hit, met, fields) -> Hit:
+    return Hit(hit.valid, *(dr.select(met, new, old) for new, old in zip(fields[1:], _fields(hit)[1:], strict=True)))
 
 
 def _found(geometry: Geometry, origin, direction, coherent: bool, active):
     """What the caster gives: the nearest hit, the face's normal, and whether the face shares its plane with others."""
     types = geometry.device.types
     Float, Int32 = types.Float, types.Int
-    mi, caster = classes(geometry.device), geometry.tree.caster
+    mi, caster = classes(geometry.device), geometry.bvh.scene
     ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
     found = caster.ray_intersect_preliminary(ray, coherent=coherent, active=active)
     valid = found.is_valid() & active
@@ -109,11 +112,11 @@ def _found(geometry: Geometry, origin, direction, coherent: bool, active):
     half = ((found.prim_index & 1) if geometry.all_quads else (packed & SECOND_HALF)) != 0
     u, v = found.prim_uv.x, found.prim_uv.y
     u, v = dr.select(half, 1 - u, u), dr.select(half, 1 - v, v)
-    hit = Landing(valid, found.prim_index, u, v, dr.dot(direction, normal) < 0, found.t, first, packed)
+    hit = Hit(valid, found.prim_index, u, v, dr.dot(direction, normal) < 0, found.t, first, packed)
     return hit, normal, valid & ((high & TIED) != 0)
 
 
-def patch_of(geometry: Geometry, hit: Landing, absorbed: int, escaped: int):
+def patch_of(geometry: Geometry, hit: Hit, absorbed: int, escaped: int):
     """The patch that lines land on, as in `patches.cells.number`; or the code for an absorbing back or for none."""
     types = geometry.device.types
     Float, UInt32 = types.Float, types.UInt32
@@ -134,7 +137,7 @@ def patch_of(geometry: Geometry, hit: Landing, absorbed: int, escaped: int):
     return _side(geometry, hit, hit.first + cell, columns * rows, absorbed, escaped)
 
 
-def _side(geometry: Geometry, hit: Landing, patch, cells, absorbed: int, escaped: int):
+def _side(geometry: Geometry, hit: Hit, patch, cells, absorbed: int, escaped: int):
     """From the patch in front to that on the side which lines land on."""
     UInt32 = geometry.device.types.UInt32
     if geometry.some_backs_radiate:
@@ -143,12 +146,12 @@ def _side(geometry: Geometry, hit: Landing, patch, cells, absorbed: int, escaped
     return dr.select(hit.valid, patch, UInt32(escaped))
 
 
-def place_of(geometry: Geometry, hit: Landing):
+def place_of(geometry: Geometry, hit: Hit):
     """Where on its face a line landed: the face (top bit: its back), and face coordinates in cells, as `departure.Frame` takes
     them."""
     types = geometry.device.types
     Float, UInt32 = types.Float, types.UInt32
-    face = dr.gather(UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
+    face = dr.gather(UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid)
     if geometry.some_backs_radiate:
         face = dr.select(hit.back(Back.RADIATES), face | BACK, face)
     s, t = dr.clip(hit.u, 0, 1), dr.clip(hit.v, 0, 1)

@@ -3,7 +3,7 @@
 import math
 import warnings
 
-from ..algorithms.process import AbstractProcess, Swept
+from ..algorithms.base import AbstractAlgorithm, Swept
 from ..errors import RadiosityWarning
 from .budget import LEAST_QUANTA
 
@@ -11,17 +11,17 @@ ENOUGH = 20.0  # times sqrt(patches): quanta from which on a number of lines is 
 MOST = 1 << 15  # quanta of the trial, or an eighth of a replicate's budget
 
 
-def few_quanta(rays: float, replicates: int, process: AbstractProcess, tried: Swept) -> int:
+def few_quanta(rays: float, replicates: int, algorithm: AbstractAlgorithm, tried: Swept) -> int:
     """N of each replicate for ``rays`` lines of all replicates.
 
     Args:
         process: of one replicate; it is used up.
         tried: called as the trial goes on.
     """
-    each, patches = rays / replicates, len(process.problem.patches)
+    each, patches = rays / replicates, len(algorithm.problem.patches)
     trial = max(min(math.ceil(each), LEAST_QUANTA), min(int(each) // 8, MOST))
-    process.advance(trial, tried)
-    lines = process.tally.about_lines(process.problem, process.capture())
+    algorithm.advance(trial, tried)
+    lines = algorithm.tally.about_lines(algorithm.problem, algorithm.capture())
     found = max(1, round(trial * each / max(lines, 1)))
     enough = ENOUGH * math.sqrt(patches)
     if found < enough:

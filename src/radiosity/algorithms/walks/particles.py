@@ -14,17 +14,17 @@ import numpy as np
 from ...device.backend import upload
 from ...sampling.numbers.shuffle import key, mix, shuffled
 from ...sampling.streams import Purpose, stream
-from ...tracing.departure import Frame
-from ...tracing.lines import land, local_line, place_of
-from ..firing.counters import Engine
+from ...tracing.hits import first_hit, place_of
+from ...tracing.line_tracer import LineTracer
+from ...tracing.ray_generation import Frame
 
-LEGS = 64  # randomisations; the orders of later legs still differ
+SEGMENTS = 64  # randomisations; the orders of later legs still differ
 INDEX_BITS = 32
 GOLDEN = 0x9E3779B9  # (sqrt(5) - 1) / 2 times 2^32
 
 
 @dataclass(frozen=True)
-class Flock:
+class ParticleBank:
     """Particles about to leave: columns of Dr.Jit arrays, one entry each.
 
     Attributes:
@@ -46,13 +46,13 @@ class Flock:
     def columns(self) -> tuple:
         return self.walk, self.index, *self.place, *self.weights
 
-    def having(self, columns) -> "Flock":
+    def having(self, columns) -> "ParticleBank":
         """The same, with other columns."""
         walk, index, *rest = columns
         n = len(self.place)
-        return Flock(walk, index, tuple(rest[:n]), tuple(rest[n:]))
+        return ParticleBank(walk, index, tuple(rest[:n]), tuple(rest[n:]))
 
-    def at(self, rows) -> "Flock":
+    def at(self, rows) -> "ParticleBank":
         """Those at some indices."""
         chosen = self.having([dr.gather(type(column), column, rows) for column in self.columns()])
         dr.eval(chosen.columns())
@@ -61,53 +61,53 @@ class Flock:
 
 @dataclass(frozen=True)
 class Step:
-    """What a leg led to: the landing's slot of `Engine.arrivals`, the numbers drawn, and the place to go on from."""
+    """What a leg led to: the landing's slot of `LineTracer`, the numbers drawn, and the place to go on from."""
 
     landed: Any
     numbers: Any
     place: tuple
 
 
-class Legs:
+class PathSegments:
     """Traces legs of walks in kernels."""
 
-    def __init__(self, engine: Engine, *, continuous: bool):
-        self.engine, self.continuous = engine, continuous
+    def __init__(self, tracer: LineTracer, *, continuous: bool):
+        self.tracer, self.continuous = tracer, continuous
         drawn = []
-        for replicate in range(engine.replicates):
-            streams = stream(engine.seed, replicate, Purpose.LATER_LEGS).spawn(LEGS)
-            drawn += [engine.numbers.randomisation(stream) for stream in streams]
-        self.randomisations = upload(engine.types.UInt32, np.array(drawn, np.uint32))
+        for replicate in range(tracer.replicates):
+            streams = stream(tracer.seed, replicate, Purpose.LATER_SEGMENTS).spawn(SEGMENTS)
+            drawn += [tracer.numbers.randomisation(stream) for stream in streams]
+        self.randomisations = upload(tracer.types.UInt32, np.array(drawn, np.uint32))
 
     def first(self, number, index, record, bits: int) -> Step:
         """The first leg of a walk, from a uniform point of its patch."""
-        engine = self.engine
-        replicate = engine.replicate(number)
-        numbers = engine.points(number, index, replicate, record, bits)
-        numbers[4:] = self._moved(numbers[4:], number - replicate * engine.n_opaque)
-        return self._land(local_line(engine.geometry, record, numbers), replicate, numbers)
+        tracer = self.tracer
+        replicate = tracer.replicate(number)
+        numbers = tracer.points(number, index, replicate, record, bits)
+        numbers[4:] = self._moved(numbers[4:], number - replicate * tracer.n_opaque)
+        return self._land(tracer.leave(record)(numbers), replicate, numbers)
 
-    def later(self, flock: Flock, leg) -> Step:
+    def later(self, particles: ParticleBank, segment) -> Step:
         """Leg number ``leg`` (UInt32, 1 and up), from where the particles are."""
-        engine, types = self.engine, self.engine.types
-        replicate = engine.replicate(flock.walk)
-        patch = flock.walk - replicate * engine.n_opaque
-        row = (replicate * LEGS + (leg & (LEGS - 1))) * 2
+        tracer, types = self.tracer, self.tracer.types
+        replicate = tracer.replicate(particles.walk)
+        patch = particles.walk - replicate * tracer.n_opaque
+        row = (replicate * SEGMENTS + (segment & (SEGMENTS - 1))) * 2
         randomisation = [word for half in (0, 1) for word in dr.gather(types.Array4u, self.randomisations, row + half)]
-        index = shuffled(flock.index, key(randomisation, leg))
-        numbers = engine.numbers.points(index, patch + leg * engine.n_opaque, randomisation, INDEX_BITS)
-        numbers = self._moved(numbers, patch + leg * engine.n_opaque)
+        index = shuffled(particles.index, key(randomisation, segment))
+        numbers = tracer.numbers.points(index, patch + segment * tracer.n_opaque, randomisation, INDEX_BITS)
+        numbers = self._moved(numbers, patch + segment * tracer.n_opaque)
         if self.continuous:
-            face, s, t = flock.place
-            line = Frame.of(engine.geometry, face).leave(s, t, numbers)
+            face, s, t = particles.place
+            line = Frame.of(tracer.geometry, face).leave(s, t, numbers)
         else:
-            line = local_line(engine.geometry, engine.record(flock.place[0]), numbers)
+            line = tracer.leave(tracer.record(particles.place[0]))(numbers)
         return self._land(line, replicate, numbers)
 
     def _moved(self, numbers, stream):
         """Numbers moved modulo 1 by hashes of a stream, the birth patch and leg. The k-th walks of all patches would live and die
         together else, and turn into the same directions: measured, that costs a factor of up to 1.8 in error."""
-        Float, word, result = self.engine.types.Float, mix(stream), []
+        Float, word, result = self.tracer.types.Float, mix(stream), []
         for number in numbers:
             value = number + Float(word >> 8) * 2.0**-24
             result.append(value - dr.floor(value))
@@ -115,7 +115,7 @@ class Legs:
         return result
 
     def _land(self, line, replicate, numbers) -> Step:
-        engine = self.engine
-        hit = land(engine.geometry, *line)
-        landed = engine.slot(hit, replicate)
-        return Step(landed, numbers, place_of(engine.geometry, hit) if self.continuous else (landed,))
+        tracer = self.tracer
+        hit = first_hit(tracer.geometry, *line)
+        landed = tracer.slot(hit, replicate)
+        return Step(landed, numbers, place_of(tracer.geometry, hit) if self.continuous else (landed,))

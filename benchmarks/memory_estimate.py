@@ -1,11 +1,14 @@
-"""Memory of runs at their peak, and as `radiosity.run.demand` expects it: ``python benchmarks/demand.py [METHOD ...]``."""
+"""Memory of runs at their peak, and as `run.memory_estimate` expects it.
+
+python benchmarks/memory_estimate.py [METHOD ...]
+"""
 
 import sys
 
 import radiosity as rd
 from radiosity.lab.footprint import footprints, scene_of
 from radiosity.problem.model import Problem
-from radiosity.run.demand import demand
+from radiosity.run.memory_estimate import demand
 
 METHODS = ("random-walk", "particle-tracing", "stochastic-jacobi", "global-multipath", "transillumination", "global-form-factors")
 SIZES, REPLICATES, RAYS = (15_000, 200_000), (1, 8), 4_000_000

@@ -14,8 +14,12 @@ State = dict[str, np.ndarray]
 Swept = Callable[[int], None]
 
 
+class Interrupted(Exception):
+    """The run was asked to stop where its state is whole."""
+
+
 @dataclass(eq=False)
-class AbstractProcess(ABC):
+class AbstractAlgorithm(ABC):
     """The counters of all replicates of a method, on the device or the host.
 
     Attributes:
@@ -39,7 +43,7 @@ class AbstractProcess(ABC):
 
     @property
     @abstractmethod
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         """The state after N depends on N alone, not on the stages that led there."""
 
     @abstractmethod
@@ -74,11 +78,11 @@ class AbstractTally(ABC):
 
     Attributes:
         settles: with several replicates, results are quick to read and smaller than the state they are read from.
-        counts_landings: arrivals are lines that landed, and a patch's power comes with them.
+        counts_hits: arrivals are lines that landed, and a patch's power comes with them.
     """
 
     settles: ClassVar[bool] = False
-    counts_landings: ClassVar[bool] = True
+    counts_hits: ClassVar[bool] = True
 
     @abstractmethod
     def lines(self, problem: Problem, state: State) -> int:

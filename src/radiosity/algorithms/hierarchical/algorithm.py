@@ -5,14 +5,14 @@ import numpy as np
 from ...errors import MethodError
 from ...factors.missed import missed
 from ...patches import Hierarchy
+from ..base import AbstractAlgorithm, State, Swept
 from ..baseline_tally import SolvedTally
-from ..process import AbstractProcess, State, Swept
 from . import roots
 from .parameters import Hierarchical as Parameters
 from .rounds import Rounds
 
 
-class Hierarchical(AbstractProcess):
+class Hierarchical(AbstractAlgorithm):
     """N rounds, or as many as there are; each begins where the last one ended, so N alone tells the result."""
 
     def __init__(self, *arguments):
@@ -37,7 +37,7 @@ class Hierarchical(AbstractProcess):
         return self.wanted
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return True
 
     def advance(self, quanta: int, swept: Swept) -> None:

@@ -18,26 +18,30 @@ from ..scene.model import Scene
 # no divisor below 1e-18: in a scene of size 1, hits of faces a billionth as long had wrong coordinates.
 REACH = 20
 
-_trees: "WeakKeyDictionary[Scene, dict[str, Tree]]" = WeakKeyDictionary()
+_trees: "WeakKeyDictionary[Scene, dict[str, Bvh]]" = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
-class Tree:
+class Bvh:
     """Embree's (or OptiX's) tree over the faces of a scene.
 
     Attributes:
-        caster: the Mitsuba scene.
+        scene: the Mitsuba scene, which finds first hits.
         centre, scale: a point x in metres is (x - centre) * scale for the caster.
         vertices: (n_vertices, 3) float32, as the caster has them.
     """
 
-    caster: Any
+    scene: Any
     centre: np.ndarray
     scale: float
     vertices: np.ndarray
 
+    def place(self, points: np.ndarray) -> np.ndarray:
+        """Points in metres, (..., 3), as the caster has them: float32."""
+        return ((points - self.centre) * self.scale).astype(np.float32)
 
-def tree(scene: Scene, device: Device) -> Tree:
+
+def bvh(scene: Scene, device: Device) -> Bvh:
     """The scene's tree on a device; built once."""
     known = _trees.setdefault(scene, {})
     if device.name not in known:
@@ -45,7 +49,7 @@ def tree(scene: Scene, device: Device) -> Tree:
     return known[device.name]
 
 
-def _build(scene: Scene, device: Device) -> Tree:
+def _build(scene: Scene, device: Device) -> Bvh:
     centre = scene.centre
     scale = 2.0 ** (REACH - np.ceil(np.log2(max(scene.reach, 1e-300))))
     vertices = ((scene.vertices - centre) * scale).astype(np.float32)
@@ -57,7 +61,7 @@ def _build(scene: Scene, device: Device) -> Tree:
         parameters["faces"] = upload(device.types.UInt32, triangles.astype(np.uint32))
         parameters.update()
         caster = mi.load_dict({"type": "scene", "embree_use_robust_intersections": True, "mesh": mesh})
-    return Tree(caster, centre, scale, vertices)
+    return Bvh(caster, centre, scale, vertices)
 
 
 def primitives(scene: Scene) -> tuple[np.ndarray, np.ndarray]:

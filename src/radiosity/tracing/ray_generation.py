@@ -6,7 +6,8 @@ from typing import Any
 import drjit as dr
 
 from ..sampling.hemisphere import hemisphere, triangle
-from .geometry import COLUMN_BITS, INVERTED, OFFSET, QUAD, Geometry
+from .faces import COLUMN_BITS, INVERTED, OFFSET, QUAD
+from .geometry import Geometry
 
 MASK = (1 << COLUMN_BITS) - 1
 BACK = 1 << 31  # of a face number: its back

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..algorithms.matrix.process import LIMIT
+from ..algorithms.matrix.algorithm import LIMIT
 from ..device import memory
 from ..method import Baseline, Method
 from ..patches import Patches
@@ -22,7 +22,7 @@ PAIR = 24  # of a pair of patches that is counted, while counts are merged
 
 
 @dataclass(frozen=True)
-class Demand:
+class MemoryEstimate:
     """Bytes: whatever is solved; a patch, and each band of it; a patch in a replicate, and each group of bands of it."""
 
     fixed: float
@@ -32,15 +32,15 @@ class Demand:
     group: float
 
 
-# peaks of fresh processes, 16 000 and 220 000 patches, 1 and 8 replicates, grey and RGB (benchmarks/demand.py)
-DEMANDS = {
-    "firing": Demand(50e6, 60, 80, 15, 27),  # of the fixed part, 20e6 while kernels of long runs are compiled
-    "walks": Demand(90e6, 60, 80, 36, 17),
-    "gathering": Demand(120e6, 60, 80, 88, 10),
-    "iteration": Demand(10e6, 60, 80, 82, 135),
-    "multipath": Demand(115e6, 60, 80, 18, 46),
-    "pooling": Demand(100e6, 60, 80, 211, 213),
-    "matrix": Demand(120e6, 60, 80, 20, 20),
+# peaks of fresh processes, 16 000 and 220 000 patches, 1 and 8 replicates, grey and RGB (benchmarks/memory_estimate.py)
+MEMORY_ESTIMATES = {
+    "firing": MemoryEstimate(50e6, 60, 80, 15, 27),  # of the fixed part, 20e6 while kernels of long runs are compiled
+    "walks": MemoryEstimate(90e6, 60, 80, 36, 17),
+    "gathering": MemoryEstimate(120e6, 60, 80, 88, 10),
+    "iteration": MemoryEstimate(10e6, 60, 80, 82, 135),
+    "multipath": MemoryEstimate(115e6, 60, 80, 18, 46),
+    "pooling": MemoryEstimate(100e6, 60, 80, 211, 213),
+    "matrix": MemoryEstimate(120e6, 60, 80, 20, 20),
 }
 
 
@@ -54,7 +54,7 @@ def demand(method: Method, patches: Patches, groups: int, replicates: int, rays:
         replicates: of it.
         rays: lines in all, where they are known: pairs of patches that counts are kept of are no more.
     """
-    one, n = DEMANDS[method.machine], len(patches)
+    one, n = MEMORY_ESTIMATES[method.machine], len(patches)
     fixed = one.fixed * max(1.0, (os.cpu_count() or 1) / 4)  # launches grow with the cores
     total = fixed + FACE * patches.scene.n_faces + n * (one.patch + one.band * len(patches.scene.bands))
     total += n * replicates * (one.replicate + one.group * groups)
@@ -68,10 +68,10 @@ def demand(method: Method, patches: Patches, groups: int, replicates: int, rays:
     return total
 
 
-def _cells_reached(patches: Patches, landings: float) -> float:
+def _cells_reached(patches: Patches, hit_tally: float) -> float:
     """By the kernels of all patches together, where landings are spread evenly; kernels are widest where there are few."""
     regions = Regions.find(patches)
-    width = regions.bandwidth(landings * patches.area / patches.area.sum())
+    width = regions.bandwidth(hit_tally * patches.area / patches.area.sum())
     share = np.minimum(np.pi * width**2 / regions.area, 1.0)
     return float((share * np.bincount(regions.of, minlength=regions.count) ** 2.0).sum())
 

@@ -45,26 +45,26 @@ def first_hits(scene: Scene, origins: np.ndarray, directions: np.ndarray, device
     import drjit as dr
 
     from .geometry import Geometry
-    from .lines import land
+    from .hits import first_hit
 
     geometry = Geometry(subdivide(scene, cells=1), chosen)
-    types, tree = chosen.types, geometry.tree
+    types, bvh = chosen.types, geometry.bvh
     origins, directions = (np.asarray(a, np.float64).reshape(-1, 3) for a in (origins, directions))
     length = np.linalg.norm(directions, axis=1, keepdims=True)
     unit = (directions / np.where(length > 0, length, 1)).astype(np.float32)
-    start = ((origins - tree.centre) * tree.scale).astype(np.float32)
+    start = ((origins - bvh.centre) * bvh.scale).astype(np.float32)
     parts = []
     for at in range(0, len(start), CHUNK):
         rows = slice(at, at + CHUNK)
         rays = [types.Array3f(*(upload(types.Float, a[rows, i]) for i in range(3))) for a in (start, unit)]
-        hit = land(geometry, *rays)
-        face = dr.gather(types.UInt32, geometry.primitive_faces, hit.primitive, hit.valid)
+        hit = first_hit(geometry, *rays)
+        face = dr.gather(types.UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid)
         outputs = (face, hit.u, hit.v, hit.front, hit.distance, hit.valid)
         dr.eval(outputs)
         face, u, v, front, distance, valid = (np.array(x) for x in outputs)
         u, v = np.where(valid, u, 0), np.where(valid, v, 0)
         parts.append(
-            (np.where(valid, face.astype(np.int64), -1), u, v, front & valid, np.where(valid, distance / tree.scale, np.inf))
+            (np.where(valid, face.astype(np.int64), -1), u, v, front & valid, np.where(valid, distance / bvh.scale, np.inf))
         )
     if not parts:
         parts = [tuple(np.zeros(0) for _ in range(5))]

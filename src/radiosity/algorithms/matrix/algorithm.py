@@ -8,15 +8,14 @@ import numpy as np
 from ...errors import MethodError
 from ...factors.counts import PairCounts
 from ...factors.lines import GlobalLines, LocalLines
-from ...run.progress import Interrupted
-from ..process import AbstractProcess, State, Swept
+from ..base import AbstractAlgorithm, Interrupted, State, Swept
 from .tally import MatrixTally
 
 LIMIT = 1 << 28  # pairs that are kept: 3 GiB, and as much again while they are merged
 LAUNCH = 1 << 22  # lines between two looks at the clock
 
 
-class Matrix(AbstractProcess):
+class Matrix(AbstractAlgorithm):
     """Counts of lines between patches. N lines a replicate give the same counts in any stages."""
 
     def __init__(self, *arguments):
@@ -36,7 +35,7 @@ class Matrix(AbstractProcess):
         return self.wanted
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return True
 
     def advance(self, quanta: int, swept: Swept) -> None:

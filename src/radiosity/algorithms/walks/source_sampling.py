@@ -6,13 +6,13 @@ import numpy as np
 
 from ...device.backend import upload
 from ...problem.model import Problem
-from ...problem.quanta import Source, owed, phases
+from ...problem.quanta import Source, phases, target_counts
 from ...tracing.lanes import Batch
-from ..firing.counters import Engine
+from ...tracing.line_tracer import LineTracer
 
 
 @dataclass(frozen=True, eq=False)
-class Births:
+class SourceSampling:
     """Walks of patch i at N quanta: floor(N share_i + phase_i), as patches of the firing engine emit (contract 2); so the walks
     of any N are among those of a larger one.
 
@@ -25,29 +25,29 @@ class Births:
     phase: np.ndarray
 
     @staticmethod
-    def of_power(problem: Problem, seed: int, replicates: int) -> "Births":
+    def of_power(problem: Problem, seed: int, replicates: int) -> "SourceSampling":
         """Particles leave lights in proportion to their power."""
-        return Births(problem.source, phases(seed, replicates, len(problem.patches)))
+        return SourceSampling(problem.source, phases(seed, replicates, len(problem.patches)))
 
     @staticmethod
-    def of_area(problem: Problem, seed: int, replicates: int) -> "Births":
+    def of_area(problem: Problem, seed: int, replicates: int) -> "SourceSampling":
         """Gathering walks leave all patches in proportion to their area."""
         area = problem.patches.area
         source = Source(area / area.sum(), problem.source.rho, problem.source.power)
-        return Births(source, phases(seed, replicates, len(area)))
+        return SourceSampling(source, phases(seed, replicates, len(area)))
 
     def count(self, quanta: int) -> np.ndarray:
         """(replicates, n_patches) uint32 at N quanta."""
         if quanta == 0:
             return np.zeros(self.phase.shape, np.uint32)
-        return owed(self.source, quanta, np.zeros(self.phase.shape[1], np.uint32), self.phase).astype(np.uint32)
+        return target_counts(self.source, quanta, np.zeros(self.phase.shape[1], np.uint32), self.phase).astype(np.uint32)
 
-    def batch(self, engine: Engine, before: int, quanta: int) -> tuple[Batch | None, int]:
+    def batch(self, tracer: LineTracer, before: int, quanta: int) -> tuple[Batch | None, int]:
         """Walks that N = quanta has and N = before had not, and the largest index among them."""
         old, now = self.count(before).ravel(), self.count(quanta).ravel()
         rows = np.flatnonzero(now > old)
         if not len(rows):
             return None, 0
         columns = (rows.astype(np.uint32), (now - old)[rows], old[rows])
-        numbers, counts, fired = (upload(engine.types.UInt32, column) for column in columns)
-        return Batch.of(engine.types, numbers, counts, fired, engine.record), int(now.max())
+        numbers, counts, fired = (upload(tracer.types.UInt32, column) for column in columns)
+        return Batch.of(tracer.types, numbers, counts, fired, tracer.record), int(now.max())

@@ -3,7 +3,7 @@
 The k-th line of a patch is a function of (seed, replicate, patch, k), counted over the whole run, as in contract 2; where there
 are several sequences, each counts its own lines and has points of its own, independent of the others'. What is
 received is summed in 64-bit fixed point, so no sum depends on an order or on threads. Numbers of patches and slots are those
-of `firing`: replicate r of patch i is r n + i; then two slots a replicate, for lines escaped and lines lost.
+of `LineTracer`.
 """
 
 from collections.abc import Callable
@@ -13,14 +13,16 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from ...device.backend import frozen, upload
-from ...method import Method
-from ...problem.quanta import Source
-from ...sampling.streams import Purpose, stream
-from ...tally.landings import DENSE
-from ...tracing.geometry import Geometry
-from ...tracing.lanes import Batch, Chunk
-from ..firing.counters import FEW, Engine
+from ..device.backend import frozen, upload
+from ..method import Method
+from ..sampling.streams import Purpose, stream
+from ..tracing.geometry import Geometry
+from ..tracing.lanes import Batch, Launch
+from ..tracing.line_tracer import LineTracer
+from .hit_counts import HitCounts
+from .hit_tally import DENSE
+
+FEW = 1 << 13  # lines of a launch that shares its kernel with others of so few
 
 Pairs = Callable[[np.ndarray, np.ndarray], None]
 
@@ -42,28 +44,28 @@ class Shooter:
     """Counters of lines, and the kernel that fires them.
 
     Attributes:
-        engine: an `Engine` of which ``arrivals`` and ``fired`` are used, and what knows lines.
+        tracer: lines of the patches, with the numbers of the sequence that is taken now.
+        hits: where lines landed. fired: UInt32 (total,), lines of each patch in that sequence.
         received: (slots * n_groups,) Int64, of the last shot, group g of slot s at s * n_groups + g.
     """
 
-    def __init__(
-        self, geometry: Geometry, source: Source, method: Method, seed: int, replicates: int, n_groups: int, sequences: int = 1
-    ):
-        self.engine = Engine(geometry, source, method, seed, replicates)
-        self.types, self.total, self.groups = self.engine.types, self.engine.total, n_groups
-        self.slots = self.total + 2 * replicates
+    def __init__(self, geometry: Geometry, method: Method, seed: int, replicates: int, n_groups: int, sequences: int = 1):
+        self.tracer = tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates)
+        self.types, self.total, self.slots, self.groups = tracer.types, tracer.total, tracer.slots, n_groups
+        self.hits = HitCounts(tracer)
+        self.fired = dr.opaque(self.types.UInt32, 0, self.total)
         self.received = dr.opaque(self.types.Int64, 0, self.slots * n_groups) if n_groups else None
-        self.sequence, self._randomisations, self._fired = 0, [self.engine.randomisation], [self.engine.fired]
+        self.sequence, self._tracers, self._fired = 0, [tracer], [self.fired]
         for more in range(1, sequences):
             streams = [stream(seed, r, Purpose.SEQUENCE, more) for r in range(replicates)]
-            drawn = [self.engine.numbers.randomisation(one) for one in streams]
-            self._randomisations.append(upload(self.types.UInt32, np.array(drawn, np.uint32)))
+            drawn = [tracer.numbers.randomisation(one) for one in streams]
+            self._tracers.append(tracer.moved_by(upload(self.types.UInt32, np.array(drawn, np.uint32))))
             self._fired.append(dr.opaque(self.types.UInt32, 0, self.total))
 
     def take(self, sequence: int) -> None:
         """Fire lines of this sequence from now on."""
-        self._fired[self.sequence] = self.engine.fired
-        self.engine.fired, self.engine.randomisation = self._fired[sequence], self._randomisations[sequence]
+        self._fired[self.sequence] = self.fired
+        self.fired, self.tracer = self._fired[sequence], self._tracers[sequence]
         self.sequence = sequence
 
     def shoot(self, counts, weights=None, ends: Ends | None = None, pairs: Pairs | None = None) -> int:
@@ -76,31 +78,31 @@ class Shooter:
             pairs: called for every launch with patch numbers and the slots where their lines landed, (m,) uint32 each; they
                 may be looked at until it returns.
         """
-        types, engine = self.types, self.engine
+        types, tracer = self.types, self.tracer
         if self.groups:
             self.received = dr.opaque(types.Int64, 0, self.slots * self.groups)
         dr.eval(counts, weights)
         rows: Any = dr.compress(counts > 0)
         if dr.width(rows) == 0:
             return 0
-        columns = dr.gather(types.UInt32, counts, rows), dr.gather(types.UInt32, engine.fired, rows)
+        columns = dr.gather(types.UInt32, counts, rows), dr.gather(types.UInt32, self.fired, rows)
         largest = dr.max(columns[0] + columns[1])
-        batch = Batch.of(types, rows, *columns, engine.record)
+        batch = Batch.of(types, rows, *columns, tracer.record)
         # launches of few lines share one kernel, whatever their indices
-        bits = engine.numbers.bits_for(int(largest[0]))
+        bits = tracer.numbers.bits_for(int(largest[0]))
         mode = dr.ReduceMode.Expand if batch.total > DENSE * self.total else dr.ReduceMode.Direct
-        for chunk in batch.chunks(types):
-            self._fire(chunk, 32 if batch.total <= FEW else bits, weights, ends, pairs, mode)
-        dr.scatter(engine.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
-        dr.eval(engine.fired)
+        for launch in batch.launches(types):
+            self._fire(launch, 32 if batch.total <= FEW else bits, weights, ends, pairs, mode)
+        dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
+        dr.eval(self.fired)
         return batch.total
 
-    def _fire(self, chunk: Chunk, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode) -> None:
-        types, engine = self.types, self.engine
-        number, index, record = chunk.read(types)
-        landed = engine.trace(number, index, record, bits)
-        real = chunk.mask(types)
-        dr.scatter_add(engine.arrivals, types.UInt32(1), landed, active=real, mode=mode)
+    def _fire(self, launch: Launch, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode) -> None:
+        types, tracer = self.types, self.tracer
+        number, index, record = launch.read(types)
+        landed = tracer.trace(number, index, record, bits)
+        real = launch.mask(types)
+        self.hits.add(landed, real, mode)
         for g in range(self.groups):
             here, there = number * self.groups + g, landed * self.groups + g
             if ends is None:
@@ -112,9 +114,9 @@ class Shooter:
             self._add(types.Int64(dr.round(back)), here, real, mode)
         if pairs is not None:
             dr.schedule(number, landed)
-        dr.eval(engine.arrivals, self.received)
+        dr.eval(self.hits.arrivals, self.received)
         if pairs is not None:
-            pairs(frozen(number)[: chunk.lanes], frozen(landed)[: chunk.lanes])
+            pairs(frozen(number)[: launch.lanes], frozen(landed)[: launch.lanes])
 
     def _add(self, value, index, real, mode) -> None:
         dr.scatter_add(self.received, value, index, active=real, mode=mode)
@@ -122,7 +124,8 @@ class Shooter:
     def capture(self) -> dict[str, np.ndarray]:
         """arrivals and fired (replicates, n_patches), missed (2, replicates); where there are several sequences
         fired_apart, (sequences, replicates, n_patches), of which fired is the sum."""
-        arrivals, fired, missed = self.engine.counters()
+        arrivals, missed = self.hits.read()
+        fired = frozen(self.fired).reshape(arrivals.shape)
         if len(self._fired) == 1:
             return {"arrivals": arrivals, "fired": fired, "missed": missed}
         self.take(self.sequence)
@@ -131,6 +134,6 @@ class Shooter:
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Put captured counters back."""
-        self.engine.arrivals = upload(self.types.UInt32, np.concatenate([state["arrivals"].ravel(), state["missed"].ravel()]))
+        self.hits.write(state["arrivals"], state["missed"])
         self._fired = [upload(self.types.UInt32, column) for column in state.get("fired_apart", state["fired"][None])]
-        self.engine.fired = self._fired[self.sequence]
+        self.fired = self._fired[self.sequence]

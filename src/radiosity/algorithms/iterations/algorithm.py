@@ -8,7 +8,7 @@ K. U. Leuven 1999.
 import numpy as np
 
 from ...errors import MethodError
-from ..process import AbstractProcess, State, Swept
+from ..base import AbstractAlgorithm, State, Swept
 from .control import Control
 from .exchange import Exchange
 from .incremental import Incremental
@@ -16,7 +16,7 @@ from .regular import Regular
 from .tally import IterationTally
 
 
-class Iteration(AbstractProcess):
+class Iteration(AbstractAlgorithm):
     """Orders ``incremental`` and ``regular``, which share how power is sent, and differ in what is."""
 
     def __init__(self, *arguments):
@@ -39,7 +39,7 @@ class Iteration(AbstractProcess):
         return self.scheme.quanta
 
     @property
-    def nested(self) -> bool:
+    def stage_independent(self) -> bool:
         return False
 
     def advance(self, quanta: int, swept: Swept) -> None:

@@ -1,0 +1,30 @@
+"""CSV files of like rows: UTF-8, comma separated, a header row; what is unknown is ``nan``."""
+
+import csv
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TextIO
+
+from .replacing import replacing
+
+
+def write_rows(rows: list[dict], path, titles: Iterable[str] | None = None) -> None:
+    """Write a table, a line for each row.
+
+    Args:
+        rows: one at least, all with the same keys.
+        path: of the file.
+        titles: of the columns; default: the keys.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    with replacing(path) as temporary, open_text(temporary) as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(rows[0] if titles is None else titles)
+        writer.writerows(row.values() for row in rows)
+
+
+def open_text(path: Path) -> TextIO:
+    """A CSV file, open for writing."""
+    return path.open("w", encoding="utf-8", errors="backslashreplace", newline="")

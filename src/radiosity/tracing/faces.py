@@ -1,0 +1,101 @@
+"""The faces of a scene in the caster's coordinates."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..device.backend import Device, upload
+from ..patches.model import Patches
+from ..scene.model import Scene, unit_normals
+from ..scene.precision import EPSILON, plane_reach
+from .bvh import Bvh, bvh, primitives
+
+OFFSET = 8 * EPSILON  # of the largest number that places a point or its plane: lines begin this far in front of it
+NEAR = 1.0  # of 2^20 that the scene reaches to: smaller numbers count as this, or lines would stay where all are zero
+
+COLUMN_BITS = 14
+QUAD, SECOND_HALF, INVERTED = 1 << 28, 1 << 29, 1 << 30
+BACK_BIT = 30  # of a hit record's flags: two bits, a `Back`
+NORMAL_BITS = 21  # of each component of a normal in a hit record: only the side that a line comes from is asked of it
+NORMAL_ONE = (1 << NORMAL_BITS - 1) - 1
+
+
+@dataclass(frozen=True, eq=False)
+class Faces:
+    """Faces, cut into the cells of patches, and the tree over them."""
+
+    patches: Patches
+    device: Device
+
+    @property
+    def scene(self) -> Scene:
+        return self.patches.scene
+
+    @cached_property
+    def bvh(self) -> Bvh:
+        return bvh(self.scene, self.device)
+
+    @cached_property
+    def frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Origin and edges of the faces in the caster's coordinates, float64 from its own vertices."""
+        scene, vertices = self.scene, self.bvh.vertices.astype(np.float64)
+        origin = vertices[scene.faces[:, 0]]
+        first = vertices[scene.faces[:, 1]] - origin
+        second = vertices[np.where(scene.is_quad, scene.faces[:, 3], scene.faces[:, 2])] - origin
+        return origin, first, second
+
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """(n_faces, 3) float64, of the caster's vertices."""
+        _, first, second = self.frames
+        return unit_normals(first, second)
+
+    @cached_property
+    def corners(self) -> np.ndarray:
+        """(n_faces, 4, 3) in the caster's coordinates."""
+        origin, first, second = self.frames
+        fourth = origin + first + second * self.scene.is_quad[:, None]
+        return np.stack([origin, origin + first, origin + second, fourth], axis=1)
+
+    @cached_property
+    def plane_offsets(self) -> np.ndarray:
+        """(n_faces,) float64, the caster's units: the least by which lines begin in front of a face, from what its plane is
+        rounded by."""
+        return OFFSET * np.maximum(plane_reach(self.normals, self.corners), NEAR)
+
+    def offset(self, face: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """(m,) float64, the caster's units: how far in front of faces lines begin.
+
+        Args:
+            face: (m,) int. points: (m, ..., 3) in the caster's coordinates; of several points for a face the largest offset.
+        """
+        reach = np.abs(points).reshape(len(points), -1).max(axis=1)
+        return np.maximum(OFFSET * reach, self.plane_offsets[face])
+
+    @cached_property
+    def steps(self) -> np.ndarray:
+        """(n_faces, 3) int64: normals in units of hit records."""
+        return np.round(self.normals * NORMAL_ONE).astype(np.int64)
+
+    @cached_property
+    def packed(self) -> np.ndarray:
+        """(n_faces,) int64: cell counts and flags of hit records."""
+        packed = self.patches.columns | (self.patches.rows.astype(np.int64) << COLUMN_BITS)
+        return packed | np.where(self.scene.is_quad, QUAD, 0) | self.scene.back.astype(np.int64) << BACK_BIT
+
+    @property
+    def first_primitives(self) -> np.ndarray:
+        """(n_faces,) int64: the first of each face's triangles."""
+        many = 1 + self.scene.is_quad.astype(np.int64)
+        return np.cumsum(many) - many
+
+    @cached_property
+    def primitive_faces(self):
+        """(n_primitives,) UInt32: the face of each of the caster's triangles."""
+        return upload(self.device.types.UInt32, primitives(self.scene)[1].astype(np.uint32))
+
+    @cached_property
+    def offsets(self):
+        """(n_faces,) Float: `plane_offsets`."""
+        return upload(self.device.types.Float, self.plane_offsets.astype(np.float32))

@@ -1,0 +1,199 @@
+"""From a source row and an index to the slot where the line lands: the one place that knows lines of patches and of lights."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ..device.backend import upload
+from ..errors import MethodError
+from ..problem.lights import AbstractLights
+from ..problem.quanta import LIMIT
+from ..sampling.numbers import AbstractNumbers, ready
+from ..sampling.streams import Purpose, stream
+from .geometry import Geometry
+from .hits import first_hit, patch_of
+from .ray_generation import BACK, local_lines, place_number
+
+ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # no patch has these numbers
+LIGHTS = 1 << 30  # from here on the first word of a row's record is no face: a light's number follows
+
+
+@dataclass(frozen=True, eq=False)
+class LineTracer:
+    """Lines of source rows: patches, then lights without area. It counts nothing.
+
+    Row i of replicate r has number r * n + i in every array: replicates go through the same kernels as extra rows. Lines land in
+    slots: slot r * n + i is patch i of replicate r; after ``total`` come two slots a replicate, for lines that escaped, and for
+    lines lost on absorbing backs. The k-th line of a row is a function of (seed, replicate, row, k) alone (contract 2).
+
+    Attributes:
+        geometry: the scene on a device.
+        numbers: the points of the unit cube, their tables on the device.
+        randomisation: UInt32, eight words a replicate that move them.
+        by_patch: each row moves them by its own shift, too.
+        seed, replicates: as in a run.
+        lights: rows after those of the patches, or None.
+    """
+
+    geometry: Geometry
+    numbers: AbstractNumbers
+    randomisation: Any
+    by_patch: bool
+    seed: int
+    replicates: int
+    lights: AbstractLights | None = None
+
+    @staticmethod
+    def of(
+        geometry: Geometry, numbers: str, randomisation: str, seed: int, replicates: int, lights: AbstractLights | None = None
+    ) -> "LineTracer":
+        """Of the choices of a `Method`: its numbers and their randomisation.
+
+        Raises:
+            MethodError: more rows than 32 bits count.
+        """
+        points, types = ready(numbers, geometry.device.types), geometry.device.types
+        drawn = [points.randomisation(stream(seed, r, Purpose.NUMBERS)) for r in range(replicates)]
+        words = upload(types.UInt32, np.array(drawn, np.uint32))
+        tracer = LineTracer(geometry, points, words, randomisation == "by-patch", seed, replicates, lights)
+        tracer.prepare()
+        return tracer
+
+    def prepare(self) -> None:
+        """Make what kernels read, before any loop is recorded."""
+        if self.slots > 2**31:
+            raise MethodError(f"{self.n} patches times {self.replicates} replicates are too many to count; take fewer of either")
+        if self.lights is not None:
+            self.lights.prepare(self.geometry)
+        _ = self.n_opaque, self._magic, self._own_lines, self._records
+
+    def moved_by(self, randomisation) -> "LineTracer":
+        """The same lines' patches with other numbers: eight words a replicate."""
+        return replace(self, randomisation=randomisation)
+
+    @property
+    def types(self) -> Any:
+        return self.geometry.device.types
+
+    @property
+    def n_patches(self) -> int:
+        return len(self.geometry.patches)
+
+    @property
+    def n(self) -> int:
+        """Rows of a replicate."""
+        return self.n_patches + (0 if self.lights is None else len(self.lights.power))
+
+    @property
+    def total(self) -> int:
+        """Rows of all replicates."""
+        return self.n * self.replicates
+
+    @property
+    def slots(self) -> int:
+        """Places where lines land."""
+        return self.total + 2 * self.replicates
+
+    @cached_property
+    def n_opaque(self):
+        """UInt32, ``n`` on the device."""
+        return dr.opaque(self.types.UInt32, self.n)
+
+    @cached_property
+    def _magic(self):
+        return dr.opaque(self.types.UInt32, (2**32 - 1) // self.n)
+
+    @cached_property
+    def _own_lines(self):
+        return dr.opaque(self.types.UInt32, own_lines(self.n))
+
+    @cached_property
+    def _records(self):
+        """(n * 2,) UInt32, see `Geometry.patch_records`; of lights their number, and 0."""
+        if self.lights is None:
+            return self.geometry.patch_records
+        lights = np.zeros((len(self.lights.power), 2), np.uint32)
+        lights[:, 0] = LIGHTS + np.arange(len(lights))
+        records = dr.concat([self.geometry.patch_records, upload(self.types.UInt32, lights)])
+        dr.eval(records)
+        return records
+
+    # ---- rows, in kernels ------------------------------------------------------------------------------------------
+
+    def record(self, number):
+        """Two words of a row's number: face and place, see `Geometry.patch_records`."""
+        return dr.gather(self.types.Array2u, self._records, number - self.replicate(number) * self.n_opaque)
+
+    def replicate(self, number):
+        """Of a row's number: its quotient by n, from a product by the reciprocal that is one short at most."""
+        quotient = dr.mul_hi(number, self._magic)
+        one = self.types.UInt32(1)
+        return quotient + dr.select(number - quotient * self.n_opaque >= self.n_opaque, one, self.types.UInt32(0))
+
+    def replicate_or_none(self, number):
+        """The same, where one replicate needs no division."""
+        return self.types.UInt32(0) if self.replicates == 1 else self.replicate(number)
+
+    # ---- lines, in kernels -----------------------------------------------------------------------------------------
+
+    def leave(self, record) -> Callable[[Any], tuple[Any, Any]]:
+        """Of rows: a function from numbers to the origin and direction of a line, made before a loop and called in it."""
+        if self.lights is None:
+            return local_lines(self.geometry, record)
+        lights, UInt32 = self.lights, self.types.UInt32
+        is_light = (record[0] & (BACK - 1)) >= LIGHTS
+        of_patch = local_lines(self.geometry, self.types.Array2u(dr.select(is_light, UInt32(0), record[0]), record[1]))
+        light = dr.select(is_light, record[0] - LIGHTS, UInt32(0))
+
+        def line(numbers):
+            return tuple(
+                dr.select(is_light, there, here)
+                for there, here in zip(lights.leave(light, numbers), of_patch(numbers), strict=True)
+            )
+
+        return line
+
+    def points(self, number, index, replicate, record, bits: int):
+        """The numbers of the ``index``-th line (from 1) of each row, whose record it is."""
+        row, randomisation = self._stream(number, replicate, record)
+        return self.numbers.points(index, row, randomisation(index), bits)
+
+    def points_in_turn(self, first, number, replicate, record, bits: int, turns: int):
+        """Those of a few lines of each row from the ``first``-th on, see `AbstractNumbers.in_turn`."""
+        return self.numbers.in_turn(first, *self._stream(number, replicate, record), bits, turns)
+
+    def trace(self, number, index, record, bits: int):
+        """The slot where the ``index``-th line (from 1) of each row lands."""
+        replicate = self.replicate_or_none(number)
+        return self.land_in(self.leave(record)(self.points(number, index, replicate, record, bits)), replicate)
+
+    def land_in(self, line, replicate, coherent: bool = False, active: Any = True):
+        """The slot where lines land, from their origins and directions."""
+        return self.slot(first_hit(self.geometry, *line, coherent=coherent, active=active), replicate)
+
+    def slot(self, hit, replicate):
+        """The slot of lines of a replicate, from where they land."""
+        landed, UInt32 = patch_of(self.geometry, hit, LOST, ESCAPED), self.types.UInt32
+        missed = dr.select(landed == ESCAPED, UInt32(self.total), UInt32(self.total + self.replicates)) + replicate
+        return dr.select(landed >= LOST, missed, landed + replicate * self.n_opaque)
+
+    def _stream(self, number, replicate, record):
+        """Row, and its randomisation as a function of the index: its own for its first lines, then that of all rows."""
+        types = self.types
+        row = number if self.replicates == 1 else number - replicate * self.n_opaque
+        halves = [dr.gather(types.Array4u, self.randomisation, replicate * 2 + half) for half in (0, 1)]
+        words = [word for half in halves for word in half]
+        if not self.by_patch:
+            return row, lambda index: words
+        place = place_number(record)
+        return row, lambda index: self.numbers.of_patch(words, dr.select(index <= self._own_lines, place, 0))
+
+
+def own_lines(n: int) -> int:
+    """How many lines of a row take its own randomisation: a power of two between twice and four times as many as there are rows.
+    With more lines than that, one for all is as good for means over surfaces, and better for patches."""
+    return min(1 << (4 * n).bit_length() - 1, LIMIT)
