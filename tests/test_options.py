@@ -6,15 +6,21 @@ from dataclasses import fields, replace
 from pathlib import Path
 
 import pytest
+from members import accepted
 
 import radiosity as rd
+from radiosity.algorithms.firing.orders import FIRED
+from radiosity.algorithms.table import ALGORITHMS
 from radiosity.cli.app import run
 from radiosity.cli.solve import solve
+from radiosity.factors.solvers import SOLVERS
+from radiosity.factors.sources import ROWS
 from radiosity.method.option import Option
 from radiosity.method.options import BASELINE, METHOD
 from radiosity.method.schemes import SCHEMES
 
 PAGE = Path(__file__).parents[1] / "docs" / "methods.md"
+OF_CHOICES = {"gathering"}  # algorithms that no preset is run by, but one of its estimators
 TABLES = {rd.Method: METHOD, rd.Baseline: BASELINE}
 EVERY = [pytest.param(cls, option, id=name) for cls, table in TABLES.items() for name, option in table.items()]
 WRONG = {
@@ -76,6 +82,15 @@ def test_a_choice_of_a_baseline_belongs_to_the_schemes_that_its_option_names():
             else:
                 with pytest.raises(rd.MethodError, match=f"^{name}: not a choice of {scheme}"):
                     rd.Baseline(scheme, **{name: others[option.kind](option)})
+
+
+def test_what_the_tables_name_is_there():
+    """Names and meanings are told by `method`, and what they stand for is in folders above it."""
+    assert set(METHOD["order"].values) >= set(FIRED)
+    assert set(BASELINE["solver"].values) == set(SOLVERS)
+    assert set(BASELINE["factors"].values) == set(ROWS)
+    machines = {method.machine for method in accepted()} | {rd.Baseline(scheme).machine for scheme in SCHEMES}
+    assert machines == set(ALGORITHMS) == {preset.method.machine for preset in (rd.PRESETS | rd.BASELINES).values()} | OF_CHOICES
 
 
 def test_help_has_every_option_and_says_what_the_table_says(capsys, monkeypatch):

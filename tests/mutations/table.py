@@ -1626,6 +1626,20 @@ MISTAKES = (
         "method/option.py", "1 <= value <= self.most", "1 <= value < self.most", ("test_options.py",), "the most is too many"
     ),
     Mistake(
+        "algorithms/global_lines/first_shot.py",
+        "numbers=method.points",
+        "numbers=method.numbers",
+        ("test_scrambling.py",),
+        "a first shot forgets the scrambling",
+    ),
+    Mistake(
+        "method/presets/__init__.py",
+        'given = {"scrambling": None} | given',
+        "pass",
+        ("test_scrambling.py",),
+        "another sequence keeps the scrambling of the one before",
+    ),
+    Mistake(
         "cli/solve_options.py",
         '"flag": Chosen',
         '"flag": bool | None',

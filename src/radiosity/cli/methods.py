@@ -9,22 +9,22 @@ def methods(name: str | None = None, /) -> int:
     Parameters
     ----------
     name
-        Of a method, or of one of the four axes: equation, lines, order, numbers; or randomisation.
+        Of a method, or of one of the four axes: equation, lines, order, numbers; or of another choice, such as scrambling.
     """
     from ..errors import MethodError
     from ..method import BASELINES, PRESETS
-    from ..method.model import AXES
+    from ..method.options import BASELINE, METHOD
 
     known = PRESETS | BASELINES
+    axes = [option.name for option in (METHOD | BASELINE).values() if option.kind == "choice"]
     if name is None:
         _list()
-    elif name in AXES or name == "randomisation":
+    elif name in axes:
         _axis(name)
     elif name in known:
         _explain(name)
     else:
-        axes = ", ".join((*AXES, "randomisation"))
-        raise MethodError(f"method '{name}' does not exist; known are {', '.join(known)}; and the axes {axes}")
+        raise MethodError(f"method '{name}' does not exist; known are {', '.join(known)}; and the axes {', '.join(axes)}")
     return 0
 
 
@@ -72,26 +72,23 @@ def _plain(text: str) -> str:
 
 
 def _axis(axis: str) -> None:
-    from ..method.equation import EQUATIONS
-    from ..method.lines import LINES
-    from ..method.order import ORDERS
-    from ..method.randomisation import RANDOMISATIONS
-    from ..sampling.numbers import NUMBERS
+    from ..method.options import BASELINE, METHOD
 
-    known = {"equation": EQUATIONS, "lines": LINES, "order": ORDERS, "randomisation": RANDOMISATIONS}
-    texts = known.get(axis) or {name: _numbers(name) for name in NUMBERS}
-    width = max(map(len, texts))
-    for value, text in texts.items():
-        print(f"{value:<{width}}  {text}")
+    values = (METHOD | BASELINE)[axis].values
+    width = max(map(len, values))
+    for value, text in values.items():
+        print(f"{value:<{width}}  {_numbers(value) if axis == 'numbers' else text}")
 
 
 def _numbers(name: str) -> str:
     from importlib import import_module
 
-    from ..sampling.numbers import NUMBERS
+    from ..sampling.numbers import NUMBERS, SCRAMBLED, parts_of
 
     module = import_module(f"radiosity.sampling.numbers.{NUMBERS[name].split(':')[0]}")
-    return " ".join((module.__doc__ or "").split("\n\n")[0].split())
+    text = " ".join((module.__doc__ or "").split("\n\n")[0].split())
+    sequence, scrambling = parts_of(name)
+    return f"{text} The same as --numbers {sequence} --scrambling {scrambling}." if name in SCRAMBLED else text
 
 
 def _explain(name: str) -> None:
@@ -104,7 +101,7 @@ def _explain(name: str) -> None:
     for text in (preset.about, f"When: {preset.when}"):
         print(textwrap.fill(text, 100) + "\n")
     if preset.parameters:
-        axes = "" if name in BASELINES else ", besides equation, lines, order, numbers and randomisation"
+        axes = "" if name in BASELINES else ", besides equation, lines, order, numbers, scrambling and randomisation"
         print(f"Its own parameters{axes}:")
         for parameter, meaning in preset.parameters:
             print(f"  {parameter:<16} {meaning}")

@@ -1,6 +1,6 @@
 """What Monte Carlo radiosity is set against: methods that form the matrix F, row by row or in links, with axes of their own."""
 
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 
 from ..errors import MethodError
 from .option import documented
@@ -55,6 +55,11 @@ class Baseline:
     def _given(self) -> list[str]:
         """Names of what differs from the default."""
         return [field.name for field in fields(self) if getattr(self, field.name) != field.default]
+
+    @property
+    def choices(self) -> dict:
+        """All choices by their names, as files hold them."""
+        return asdict(self)
 
     @property
     def lines_of_pair(self) -> int:

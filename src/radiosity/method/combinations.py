@@ -106,8 +106,8 @@ def _refuse_options(method, found: str) -> None:
         found != "walks" or method.equation != "continuous" or method.estimator == "gathering"
     ):
         raise MethodError("density estimation needs landing points of particles: equation continuous, local lines, shooting")
-    if method.coherent and (found != "firing" or method.order != "breadth-first" or method.numbers != "halton"):
+    if method.coherent and (found != "firing" or method.order != "breadth-first" or method.points != "halton"):
         raise MethodError(
             "coherent firing needs strata of the Halton sequence and whole sweeps: discrete/local/breadth-first/"
-            f"halton, not {method.lines}/{method.order}/{method.numbers}; leave one out"
+            f"halton, not {method.lines}/{method.order}/{method.points}; leave one out"
         )

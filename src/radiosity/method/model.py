@@ -1,7 +1,9 @@
 """A method is a choice on four axes (Bekaert, Cools, Willems, "An empirical comparison of Monte Carlo radiosity algorithms")."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
 
+from ..errors import MethodError
+from ..sampling.numbers import name_of, parts_of
 from .combinations import machine
 from .option import documented
 from .options import METHOD, choices
@@ -28,6 +30,7 @@ class Method:
     lines: str = "local"
     order: str = "breadth-first"
     numbers: str = "halton"
+    scrambling: str | None = field(default=None, kw_only=True)  # None: none, once it is made
     randomisation: str = "by-patch"
     estimator: str = "collision"
     absorption: str = "auto"
@@ -40,6 +43,15 @@ class Method:
     def __post_init__(self):
         for name, option in METHOD.items():
             option.check(getattr(self, name))
+        sequence, scrambling = parts_of(self.numbers)
+        if sequence != self.numbers and self.scrambling not in (None, scrambling):
+            raise MethodError(
+                f"numbers '{self.numbers}' are {sequence} with scrambling '{scrambling}', not '{self.scrambling}'; take numbers "
+                f"'{sequence}', or leave scrambling out"
+            )
+        name = name_of(sequence, self.scrambling or scrambling)
+        object.__setattr__(self, "numbers", sequence)
+        object.__setattr__(self, "scrambling", None if name == sequence else self.scrambling or scrambling)
         machine(self)
 
     @property
@@ -52,6 +64,16 @@ class Method:
         """The process that runs it, a name of `algorithms.table.ALGORITHMS`."""
         return machine(self)
 
+    @property
+    def points(self) -> str:
+        """The name of the sequence as it is scrambled, in `sampling.numbers.NUMBERS`."""
+        return name_of(self.numbers, self.scrambling or "none")
+
+    @property
+    def choices(self) -> dict:
+        """All choices by their names, as files hold them: the scrambling is in the name of the numbers."""
+        return {name: value for name, value in asdict(self).items() if name != "scrambling"} | {"numbers": self.points}
+
     def __str__(self) -> str:
         extras = [self.randomisation] if self.randomisation != "by-patch" else []
         extras += [] if self.estimator == "collision" else [self.estimator]
@@ -59,4 +81,4 @@ class Method:
         extras += [f"first-shot={self.first_shot:g}"] if self.first_shot else []
         extras += [self.reconstruction] if self.reconstruction != "patches" else []
         extras += [name.replace("_", "-") for name in ("control_variate", "warm_up", "coherent") if getattr(self, name)]
-        return "/".join([*(getattr(self, axis) for axis in AXES), *extras])
+        return "/".join([self.equation, self.lines, self.order, self.points, *extras])

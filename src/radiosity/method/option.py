@@ -81,7 +81,10 @@ def documented(options: Mapping[str, Option]) -> Callable[[type[Described]], typ
     def change(cls: type[Described]) -> type[Described]:
         if cls.__doc__:  # python -OO leaves none
             first, *rest = inspect.cleandoc(cls.__doc__).split("\n\n", 1)
-            entries = (textwrap.fill(option.entry, WIDTH, subsequent_indent="    ") for option in options.values())
+            entries = (
+                textwrap.fill(option.entry, WIDTH, subsequent_indent="    ", break_on_hyphens=False)
+                for option in options.values()
+            )
             attributes = "Attributes:\n" + textwrap.indent("\n".join(entries), "    ")
             cls.__doc__ = "\n\n".join([first, attributes, *rest])
         return cls

@@ -12,6 +12,7 @@ from .order import ORDERS
 from .randomisation import RANDOMISATIONS
 from .reconstruction import RECONSTRUCTIONS
 from .schemes import FACTORS, REFINEMENTS, SCHEMES, SOLVERS
+from .scrambling import SCRAMBLINGS
 
 AUTO = {"auto": "rounded where patches can round, else drawn"}
 
@@ -26,7 +27,16 @@ METHOD = table(
     Option(
         "numbers",
         "Sequence of points that lines are made from; `radiosity methods numbers` lists the choices.",
-        values=NUMBERS,
+        values=dict.fromkeys(NUMBERS, ""),  # the docstrings of their modules say what they are
+        details="Two are older names: generalized-faure is faure with scrambling linear, scrambled-halton is halton with "
+        "scrambling permuted-digits.",
+    ),
+    Option(
+        "scrambling",
+        "How the sequence is scrambled: none, permuted-digits (halton) or linear (faure).",
+        values=SCRAMBLINGS,
+        optional=True,
+        details="It is the same in every replicate. None: none, or as an older name in numbers says.",
     ),
     Option(
         "randomisation",

@@ -4,7 +4,7 @@ import math
 import time
 import warnings
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -301,7 +301,7 @@ class Run:
             "scene": self.patches.scene.hash,
             "source": self.patches.scene.source,
             "method": str(self.method),
-            "choices": asdict(self.method),
+            "choices": self.method.choices,
             "seed": self.seed,
             "replicates": self.replicates,
             "device": self.device.name,

@@ -50,7 +50,7 @@ class Shooter:
     """
 
     def __init__(self, geometry: Geometry, method: Method, seed: int, replicates: int, n_groups: int, sequences: int = 1):
-        self.tracer = tracer = LineTracer.of(geometry, method.numbers, method.randomisation, seed, replicates)
+        self.tracer = tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates)
         self.types, self.total, self.slots, self.groups = tracer.types, tracer.total, tracer.slots, n_groups
         self.hits = HitCounts(tracer)
         self.fired = dr.opaque(self.types.UInt32, 0, self.total)

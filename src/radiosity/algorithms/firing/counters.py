@@ -42,7 +42,7 @@ class FiringCounters:
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int):
         self.problem, self.source, self.coherent = problem, problem.source, method.coherent
-        self.tracer = LineTracer.of(geometry, method.numbers, method.randomisation, seed, replicates, problem.lights)
+        self.tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates, problem.lights)
         self.types, self.total = self.tracer.types, self.tracer.total
         u32 = self.types.UInt32
         self.rho = upload(u32, self.source.rho)

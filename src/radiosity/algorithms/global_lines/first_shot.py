@@ -32,7 +32,7 @@ class FirstShot:
             rows=replace(rows, reflectance=np.zeros_like(rows.reflectance)),
             source=replace(source, rho=np.zeros_like(source.rho)),
         )
-        local = Method(numbers=method.numbers, randomisation=method.randomisation)
+        local = Method(numbers=method.points, randomisation=method.randomisation)
         self.counters = FiringCounters(geometry, black, local, seed + APART, replicates)
 
     def fire(self, lines: int, swept: Swept) -> None:

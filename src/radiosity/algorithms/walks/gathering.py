@@ -45,7 +45,7 @@ class Gathering(AbstractWalks):
 
     def _prepare(self) -> None:
         method = self.method
-        self.tracer = LineTracer.of(self.geometry, method.numbers, method.randomisation, self.seed, self.replicates)
+        self.tracer = LineTracer.of(self.geometry, method.points, method.randomisation, self.seed, self.replicates)
         self.types = types = self.tracer.types
         self.hits, self.fired = HitCounts(self.tracer), dr.opaque(types.UInt32, 0, self.tracer.total)
         self.segments = PathSegments(self.tracer, continuous=self.method.equation == "continuous")

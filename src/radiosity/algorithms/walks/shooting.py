@@ -34,7 +34,7 @@ class Walks(AbstractWalks):
         method = self.method
         if method.absorption == "fractional":  # walk n takes point n, its birth patch too: patches have no points of their own
             method = replace(method, randomisation="shared")
-        self.tracer = LineTracer.of(self.geometry, method.numbers, method.randomisation, self.seed, self.replicates)
+        self.tracer = LineTracer.of(self.geometry, method.points, method.randomisation, self.seed, self.replicates)
         self.hits = HitCounts(self.tracer)
         self.types = self.tracer.types
         self.segments = PathSegments(self.tracer, continuous=self.method.equation == "continuous")

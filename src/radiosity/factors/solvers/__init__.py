@@ -5,12 +5,11 @@ from importlib import import_module
 import numpy as np
 
 from ...errors import MethodError
-from ...method.schemes import SOLVERS
 from .model import Solved, System
 
 __all__ = ["SOLVERS", "Solved", "System", "solve"]
 
-FILES = {
+SOLVERS = {  # the file of each; what they are is told by `method.schemes`
     "jacobi": "jacobi",
     "gauss-seidel": "gauss_seidel",
     "southwell": "southwell",
@@ -28,4 +27,4 @@ def solve(name: str, system: System) -> Solved:
         raise MethodError(f"solver '{name}' does not exist; known are {', '.join(SOLVERS)}")
     if not np.isfinite(system.factors.data).all():
         raise MethodError("some form factors are not finite numbers")
-    return import_module(f".{FILES[name]}", __package__).solve(system)
+    return import_module(f".{SOLVERS[name]}", __package__).solve(system)

@@ -42,6 +42,8 @@ def resolve(method: "str | Method | Baseline" = "random-walk", **choices) -> "Me
             raise MethodError(f"{', '.join(unused)}: not a choice of {scheme}, which has {', '.join(USED[scheme])}")
     if isinstance(method, Method) and any(given.get(c, getattr(method, c)) != getattr(method, c) for c in ("order", "lines")):
         given = {"warm_up": False} | given  # belongs to what was replaced
+    if "numbers" in given and isinstance(method, Method):
+        given = {"scrambling": None} | given  # likewise
     if isinstance(method, Baseline) and given.get("factors", method.factors) != method.factors:
         belonging = ("samples", "resolution", "rotated")  # to the factors that were replaced
         given = {field.name: field.default for field in fields(method) if field.name in belonging} | given

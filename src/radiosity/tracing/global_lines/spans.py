@@ -155,7 +155,7 @@ class Spans:
 
     @cached_property
     def _numbers(self):
-        return ready(self.method.numbers, self.geometry.device.types)
+        return ready(self.method.points, self.geometry.device.types)
 
     @cached_property
     def _randomisation(self):
@@ -171,7 +171,7 @@ class Spans:
         bundled = self.method.lines == "bundles"
         last = first + count if not bundled else (first + count - 1) // self.bundle + 1
         points = partial(self._numbers.points, patch=UInt32(0), randomisation=words, bits=self._numbers.bits_for(last))
-        lane = ordered(types, self.method.lines, self.method.numbers, begin, count)
+        lane = ordered(types, self.method.lines, self.method.points, begin, count)
         dr.eval(lane)
         if self.method.lines == "spans":
             return self.surfaces.spans(self.crossings, lambda lane: points(begin + lane), lane, count)
