@@ -142,3 +142,12 @@ def test_the_site_builds_without_a_warning(tmp_path):
     for page in ("start", "changelog", "contributing", "reporting", "conduct", "report"):
         assert (tmp_path / "site" / f"{page}.html").exists()
         assert page == "report" or f'href="{page}.html"' in index
+
+
+def test_every_scene_format_is_told():
+    """Where a user looks for it: the docstring of `load_scene`, and the help of the command line."""
+    from radiosity.cli import solve
+    from radiosity.scene.formats import FORMATS
+
+    for text in (rd.load_scene.__doc__, solve.solve.__doc__):
+        assert [suffix for suffix in FORMATS if not re.search(rf"{re.escape(suffix)}\b", str(text))] == []

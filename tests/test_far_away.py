@@ -172,7 +172,7 @@ def test_lines_get_past_the_centre_of_a_face_that_they_begin_in():
     scene = rd.Scene.from_arrays([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], 0.5, 1.0, back=[int(rd.Back.PASSES)])
     patches = rd.subdivide(scene, cells=1)
     assert np.array_equal(patches.centroid[0], scene.centre)
-    assert (Geometry(patches, choose("cpu")).plane_offsets > 0).all()
+    assert (Geometry(patches, choose("cpu")).faces.plane_offsets > 0).all()
     hits = first_hits(scene, np.tile(scene.centre, (2, 1)), np.array([(0.1, 0.2, 1), (-0.3, 0.1, 2)]))
     assert hits.face.tolist() == [-1, -1]
     solution = rd.solve(patches, "progressive-refinement", resolution=2)
