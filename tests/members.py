@@ -15,9 +15,16 @@ import pytest
 
 import radiosity as rd
 from radiosity.method.model import CHOICES
+from radiosity.method.options import METHOD
 
 DECIDING = ("equation", "lines", "order", "estimator", "absorption")  # which process runs a method; numbers have their own suite
-OPTIONS = {"first_shot": 0.25, "control_variate": True, "warm_up": True, "reconstruction": "local-linear"}  # not coherent
+NUMBERS = ("numbers", "scrambling", "randomisation")  # likewise
+ON = {"switch": True, "flag": True, "share": 0.25, "whole": 2}
+OPTIONS = {  # a value of each other option that is not its default; not what changes the speed alone
+    name: list(option.values)[-1] if option.kind == "choice" else ON[option.kind]
+    for name, option in METHOD.items()
+    if name not in (*DECIDING, *NUMBERS) and not option.tuning
+}
 PLAIN = rd.Method()
 
 

@@ -10,6 +10,11 @@ from radiosity.sampling.numbers.binary import Binary
 
 NONE, DEGREES = dict.fromkeys(range(2, 6), 0), {2: 0, 3: 1, 4: 3, 5: 5}  # the sum of the polynomials' degrees less one
 T = {"faure": NONE, "generalized-faure": NONE, "niederreiter": DEGREES, "sobol": DEGREES}  # t of the first s dimensions
+COMPARED = {  # the others: what their points are compared with, and where
+    "halton": "scipy and whole numbers, test_numbers_halton.py",
+    "scrambled-halton": "whole numbers and other programs' permutations, test_numbers_halton.py",
+    "random": "known answers of Philox, test_numbers.py",
+}
 BASE = {"faure": 5, "generalized-faure": 5, "niederreiter": 2, "sobol": 2}
 
 

@@ -15,6 +15,7 @@ from radiosity.cli.app import run
 from radiosity.cli.solve import solve
 from radiosity.factors.solvers import SOLVERS
 from radiosity.factors.sources import ROWS
+from radiosity.method.combinations import FIRING_ORDERS, GLOBAL_ORDERS, ITERATIONS, WALK_ORDERS
 from radiosity.method.option import Option
 from radiosity.method.options import BASELINE, METHOD
 from radiosity.method.schemes import SCHEMES
@@ -86,7 +87,8 @@ def test_a_choice_of_a_baseline_belongs_to_the_schemes_that_its_option_names():
 
 def test_what_the_tables_name_is_there():
     """Names and meanings are told by `method`, and what they stand for is in folders above it."""
-    assert set(METHOD["order"].values) >= set(FIRED)
+    assert set(FIRED) == set(FIRING_ORDERS)
+    assert set(METHOD["order"].values) == {*FIRING_ORDERS, *WALK_ORDERS, *ITERATIONS, *GLOBAL_ORDERS}
     assert set(BASELINE["solver"].values) == set(SOLVERS)
     assert set(BASELINE["factors"].values) == set(ROWS)
     machines = {method.machine for method in accepted()} | {rd.Baseline(scheme).machine for scheme in SCHEMES}

@@ -4,7 +4,7 @@ Say here what the algorithm is in one sentence, then its paper: author, title, w
 This one is the series E + rho F E + (rho F)^2 E + ..., with form factors from counted lines; it is here to be read, not used.
 
 To make it yours: copy it to a folder of its own, rename the class, put a line into `ALGORITHMS` (`algorithms/table.py`), and let
-`method/combinations.py` or `method/baseline.py` say which choices it serves. `tests/test_skeleton.py` shows what to test first.
+`method/combinations.py` or `method/schemes.py` say which choices it serves. `tests/test_skeleton.py` shows what to test first.
 """
 
 import numpy as np

@@ -2,9 +2,11 @@
 
 from ..errors import MethodError
 
+# Which orders each kind of run takes; an order that no list names is refused
 FIRING_ORDERS = ("depth-first", "breadth-first", "staged", "well-distributed")
 WALK_ORDERS = ("depth-first", "breadth-first", "staged")
 ITERATIONS = ("incremental", "regular")
+GLOBAL_ORDERS = ("multipath", "matrix", "regular")
 
 
 def machine(method) -> str:
@@ -29,7 +31,7 @@ def _local(method) -> str:
             )
         return "matrix" if method.order == "matrix" else "iteration"
     fires = method.equation == "discrete" and method.estimator == "collision" and method.absorption in ("auto", "rounded")
-    if fires:
+    if fires and method.order in FIRING_ORDERS:
         return "firing"
     if method.order not in WALK_ORDERS:
         raise MethodError(
@@ -66,7 +68,7 @@ def _global(method) -> str:
             "a global line leaves each patch where it happens to cross it, which is a fresh uniform point: "
             "global lines solve the discrete equation only"
         )
-    if method.order in (*WALK_ORDERS, "well-distributed", "incremental"):
+    if method.order not in GLOBAL_ORDERS:
         raise MethodError(
             f"order '{method.order}' chooses the patch that fires next, but global lines cross patches as they "
             "come; take multipath, matrix or regular"
