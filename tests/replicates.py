@@ -3,7 +3,7 @@
 import numpy as np
 
 import radiosity as rd
-from radiosity.algorithms.base import AbstractTally
+from radiosity.algorithms.base import AbstractAlgorithm, AbstractTally
 from radiosity.algorithms.table import make
 from radiosity.device.backend import choose
 from radiosity.problem.model import Problem
@@ -14,12 +14,17 @@ def powers(solution: rd.Solution, *, key=None, tally: AbstractTally | None = Non
     """(replicates, k) power that arrives, W, summed over patches of an equal key, in the
     order of keys: the surface, unless another is given."""
     patches, problem = solution.patches, Problem.of(solution.patches)
-    if tally is None:
-        method = rd.Method(**solution.provenance["choices"])
-        tally = make(Geometry(patches, choose("cpu")), problem, method, solution.provenance["seed"], solution.replicates).tally
-    values, unit = tally.irradiance(problem, solution.state, group)
+    algorithm = process_of(solution, problem)
+    state = algorithm.read(solution.state, algorithm.sizes)
+    values, unit = (algorithm.tally if tally is None else tally).irradiance(problem, state, group)
     _, key = np.unique(patches.surface if key is None else key, return_inverse=True)
     return np.stack([np.bincount(key, row) for row in np.asarray(values, float)]) * unit
+
+
+def process_of(solution: rd.Solution, problem: Problem) -> AbstractAlgorithm:
+    """A new one of the solution's method."""
+    method, seed = rd.Method(**solution.provenance["choices"]), solution.provenance["seed"]
+    return make(Geometry(solution.patches, choose("cpu")), problem, method, seed, solution.replicates)
 
 
 def difference(one: np.ndarray, other: np.ndarray) -> np.ndarray:

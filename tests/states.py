@@ -11,7 +11,8 @@ import numpy as np
 from iterations import open_room
 
 import radiosity as rd
-from radiosity.algorithms.base import AbstractAlgorithm, Interrupted, State
+from radiosity.algorithms.base import AbstractAlgorithm, Interrupted
+from radiosity.algorithms.state import AbstractState
 from radiosity.algorithms.table import make
 from radiosity.device.backend import choose
 from radiosity.problem.model import Problem
@@ -63,7 +64,7 @@ def begun(method: rd.Method, seed: int = 4) -> AbstractAlgorithm:
     return make(*scene_of(method), method, seed, 2)
 
 
-def whole(method: rd.Method, stages=STAGES, seed: int = 4) -> State:
+def whole(method: rd.Method, stages=STAGES, seed: int = 4) -> AbstractState:
     """The state after these stages, never interrupted."""
     algorithm = begun(method, seed)
     for quanta in stages:
@@ -71,16 +72,16 @@ def whole(method: rd.Method, stages=STAGES, seed: int = 4) -> State:
     return algorithm.capture()
 
 
-def filed(state: State) -> State:
-    """Through the bytes of an NPZ file."""
+def filed(state: AbstractState) -> dict[str, np.ndarray]:
+    """Its arrays, through the bytes of an NPZ file."""
     file = io.BytesIO()
-    np.savez(file, **state)
+    np.savez(file, **state.arrays())
     file.seek(0)
     with np.load(file, allow_pickle=False) as read:
         return {name: read[name] for name in read.files}
 
 
-def interrupted(method: rd.Method) -> tuple[State, int]:
+def interrupted(method: rd.Method) -> tuple[AbstractState, int]:
     """The same, stopped wherever the process can be, each time saved, loaded and put into a new one; and how often."""
 
     def stop(lines):
@@ -93,17 +94,19 @@ def interrupted(method: rd.Method) -> tuple[State, int]:
                 algorithm.advance(quanta, stop)
                 break
             except Interrupted:
-                state = filed(algorithm.capture())
+                arrays = filed(algorithm.capture())
                 stops += 1
                 algorithm = begun(method)
-                algorithm.restore(state)
+                algorithm.restore(algorithm.read(arrays, algorithm.sizes))
                 assert algorithm.quanta == quanta
     return algorithm.capture(), stops
 
 
-def same(one: State, other: State, sums: float = 0.0) -> bool:
-    return one.keys() == other.keys() and all(
-        np.array_equal(one[name], other[name])
-        or (sums > 0 and one[name].dtype.kind == "f" and np.allclose(one[name], other[name], rtol=sums, atol=0))
-        for name in one
+def same(one: AbstractState, other: AbstractState, sums: float = 0.0) -> bool:
+    """All arrays are equal; sums in doubles up to rounding."""
+    ours, theirs = one.arrays(), other.arrays()
+    return ours.keys() == theirs.keys() and all(
+        np.array_equal(ours[name], theirs[name])
+        or (sums > 0 and ours[name].dtype.kind == "f" and np.allclose(ours[name], theirs[name], rtol=sums, atol=0))
+        for name in ours
     )

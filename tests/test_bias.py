@@ -69,11 +69,12 @@ def excess(patches, method: rd.Method, reference, error=0.0, lines: int = LINES)
     """(SURFACES,) how far the mean of all runs is off, beyond the bias that is stated, in standard errors."""
     solution = rd.solve(patches, method, rays=RUNS * lines, replicates=RUNS, seed=7)
     power, problem = powers(solution), Problem.of(patches)
-    tally = make(Geometry(patches, choose("cpu")), problem, method, 7, RUNS).tally
+    algorithm = make(Geometry(patches, choose("cpu")), problem, method, 7, RUNS)
+    tally, state = algorithm.tally, algorithm.read(solution.state, algorithm.sizes)
     stated = START_UP * reference * (method.order == "regular" and method.lines == "local" and not method.warm_up)
     if isinstance(tally, AbstractBiasedTally):
-        _, unit = tally.irradiance(problem, solution.state, 0)
-        stated = stated + np.bincount(patches.surface, tally.bias(problem, solution.state, 0)) * unit
+        _, unit = tally.irradiance(problem, state, 0)
+        stated = stated + np.bincount(patches.surface, tally.bias(problem, state, 0)) * unit
     spread = np.hypot(power.std(axis=0, ddof=1) / RUNS**0.5, error)
     return np.maximum(np.abs(power.mean(axis=0) - reference) - stated, 0) / spread
 

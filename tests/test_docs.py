@@ -40,6 +40,16 @@ def test_the_tutorial_runs():
         drjit.set_thread_count(threads)
 
 
+def test_parts_of_a_run_are_merged_as_the_page_shows(tmp_path, monkeypatch):
+    """To the bits of one run."""
+    monkeypatch.chdir(tmp_path)
+    names: dict = {"__name__": "parts"}
+    (block,) = blocks(DOCS / "long-runs.md")
+    exec(compile(block, "long-runs.md", "exec"), names)
+    whole = rd.solve(names["solution"].patches, quanta=2**18, replicates=8)
+    assert np.array_equal(names["solution"].irradiance_standard_error, whole.irradiance_standard_error)
+
+
 @pytest.mark.parametrize("name", [name for name in rd.__all__ if name not in TABLES])
 def test_examples_of_public_names(name, tmp_path, monkeypatch):
     """Each public name has an example in its docstring, and it shows what it says."""

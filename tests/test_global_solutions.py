@@ -11,7 +11,6 @@ from replicates import powers
 from test_lines import stack
 
 import radiosity as rd
-from radiosity.algorithms.global_lines import first_shot
 from radiosity.algorithms.global_lines.exchange import Exchange
 from radiosity.algorithms.global_lines.mixing import Mixed
 from radiosity.device.backend import choose, frozen, upload
@@ -202,4 +201,4 @@ def test_every_line_of_a_closed_scene_lands(method):
 def test_a_first_shot_has_its_share_of_all_lines(order, share):
     patches = rd.subdivide(cube(0.5, [1.0, 0, 0, 0, 0, 0]), cells=2)
     solution = rd.solve(patches, rd.Method(lines="spans", order=order, first_shot=share), rays=20_000)
-    assert first_shot.fired(solution.state) / solution.rays == pytest.approx(share, abs=0.01)
+    assert solution.state["shot_fired"].sum() / solution.rays == pytest.approx(share, abs=0.01)

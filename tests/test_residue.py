@@ -82,7 +82,7 @@ def limit() -> float:
 def not_sent(counters, problem, state, begun) -> residue_walks.Sent:
     """A wrong implementation."""
     groups = problem.groups.n_groups
-    received = state["received"] if "received" in state else state["arrivals"][..., None] * np.int64(QUANTUM)
+    received = state.arrivals[..., None] * np.int64(QUANTUM) if state.bands is None else state.bands.received
     missed = np.zeros((2, counters.tracer.replicates, groups), np.int64)
     return residue_walks.Sent(received.astype(np.int64), missed, [0] * groups, 0)
 
@@ -128,12 +128,12 @@ def test_the_residue_is_what_the_contract_owes_less_what_was_fired():
     algorithm = process_of(patches, 2, seed=5)
     state, phase = advanced(algorithm, 700), phases(5, 2, len(patches))
     source = algorithm.problem.source
-    assert np.array_equal(target_counts(source, 700, state["arrivals"], phase), state["fired"])
+    assert np.array_equal(target_counts(source, 700, state.arrivals, phase), state.fired)
     whole, fraction = source.emitted(700)
     read = residue.Residue.of(algorithm.problem, state, phase).read(1, slice(0, len(patches)))[1][:, 0]
     for i in range(len(patches)):
-        exact = (int(whole[i]) << 32) + int(fraction[i]) + int(source.rho[i]) * int(state["arrivals"][1, i])
-        assert read[i] == exact - (int(state["fired"][1, i]) << 32)
+        exact = (int(whole[i]) << 32) + int(fraction[i]) + int(source.rho[i]) * int(state.arrivals[1, i])
+        assert read[i] == exact - (int(state.fired[1, i]) << 32)
 
 
 @pytest.mark.parametrize("quanta", [100, 3_000, 300_000])
@@ -286,7 +286,7 @@ def test_intermediate_stages_send_nothing(monkeypatch):
     taken, send = [], firing_process.send
 
     def counted(counters, problem, state, begun):
-        taken.append(int(state["quanta"]))
+        taken.append(state.quanta)
         return send(counters, problem, state, begun)
 
     monkeypatch.setattr(firing_process, "send", counted)

@@ -53,8 +53,8 @@ def test_it_ends_at_the_exact_value(made):
     process = made()
     process.advance(10_000, silent)
     state = process.capture()
-    assert state["done"]
-    assert not process.unfinished(state)
+    assert state.solved.done
+    assert not state.unfinished
     assert process.steps < 50
     values, unit = process.tally.irradiance(process.problem, state, 0)
     assert (values * unit).mean(axis=0) / process.area == pytest.approx(1, abs=0.15)  # 256 lines a patch
@@ -76,11 +76,11 @@ def test_a_captured_state_stays_as_it_is(made):
     process, other = made(), made()
     process.advance(1, silent)
     state = process.capture()
-    kept = {name: value.copy() for name, value in state.items()}
+    kept = {name: value.copy() for name, value in state.arrays().items()}
     other.restore(state)
     for run in (process, other):
         run.advance(2, silent)
-        assert all(np.array_equal(state[name], value) for name, value in kept.items())
+        assert all(np.array_equal(state.arrays()[name], value) for name, value in kept.items())
 
 
 def test_an_interrupted_run_goes_on_to_the_same_bits(made):
@@ -94,15 +94,16 @@ def test_an_interrupted_run_goes_on_to_the_same_bits(made):
     whole.advance(4, silent)
     with pytest.raises(Enough):
         part.advance(4, stop)
-    assert part.unfinished(part.capture())
+    assert part.capture().unfinished
     rest.restore(part.capture())
     rest.advance(4, silent)
-    assert rest.capture().keys() == whole.capture().keys()
-    for name, value in whole.capture().items():
-        assert np.array_equal(value, rest.capture()[name]), name
+    found, wanted = rest.capture().arrays(), whole.capture().arrays()
+    assert found.keys() == wanted.keys()
+    for name, value in wanted.items():
+        assert np.array_equal(value, found[name]), name
 
 
 def test_a_state_of_another_size_is_refused(made):
     process = made()
     with pytest.raises(rd.MethodError, match="start anew"):
-        process.restore(process.capture() | {"unsent": np.zeros((1, 1, 1))})
+        process.read(process.capture().arrays() | {"unsent": np.zeros((1, 1, 1))}, process.sizes)

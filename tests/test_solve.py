@@ -54,7 +54,8 @@ def test_error_is_the_area_weighted_rms(patches, solution):
     expected = np.sqrt((area @ solution.standard_error[:, 0] ** 2) / (area @ reflected[:, 0] ** 2))
     assert solution.error == pytest.approx(expected)
     algorithm = make(Geometry(patches, choose("cpu")), Problem.of(patches), rd.Method(), 0, 8)
-    values, unit = algorithm.tally.irradiance(algorithm.problem, solution.state, 0)  # hits, and what the residue brings
+    state = algorithm.read(solution.state, algorithm.sizes)
+    values, unit = algorithm.tally.irradiance(algorithm.problem, state, 0)  # hits, and what the residue brings
     assert unit == pytest.approx(25.6 / solution.quanta / QUANTUM)
     spread = values.astype(float).std(axis=0, ddof=1) / np.sqrt(8)
     unit = unit / area

@@ -124,16 +124,16 @@ def test_a_furnace_of_walls_and_lights(skeleton, geometry_of):
 
 def test_rows_of_lights_receive_nothing(skeleton, geometry_of):
     state = run(skeleton, room(0.5), np.array([[3.0], [1.5]]), MIDDLE.repeat(2, axis=0), geometry_of).capture()
-    assert state["arrivals"].shape == (REPLICATES, 98)
-    assert (state["arrivals"][:, 96:] == 0).all()
-    assert (state["fired"][:, 96:] > 0).all()
-    assert state["fired"].sum() == state["arrivals"].sum() + state["missed"].sum()
+    assert state.arrivals.shape == (REPLICATES, 98)
+    assert (state.arrivals[:, 96:] == 0).all()
+    assert (state.fired[:, 96:] > 0).all()
+    assert state.fired.sum() == state.arrivals.sum() + state.missed.sum()
 
 
 @pytest.mark.parametrize("order", ["depth-first", "well-distributed"])
 def test_integers_do_not_depend_on_the_order(skeleton, geometry_of, order):
     one, other = (run(skeleton, room(0.7), 2.0, geometry_of=geometry_of, order=o).capture() for o in ("breadth-first", order))
-    assert all(np.array_equal(one[key], other[key]) for key in ("arrivals", "fired", "missed"))
+    assert all(np.array_equal(one.arrays()[key], other.arrays()[key]) for key in ("arrivals", "fired", "missed"))
 
 
 def test_stages_and_a_restored_state_end_in_the_same_integers(skeleton, geometry_of):
@@ -143,7 +143,8 @@ def test_stages_and_a_restored_state_end_in_the_same_integers(skeleton, geometry
     again.restore(state)
     again.advance(QUANTA, lambda lines: None)
     whole = run(skeleton, room(0.7), 2.0, geometry_of=geometry_of).capture()
-    assert all(np.array_equal(again.capture()[key], whole[key]) for key in ("arrivals", "fired", "missed"))
+    found = again.capture().arrays()
+    assert all(np.array_equal(found[key], whole.arrays()[key]) for key in ("arrivals", "fired", "missed"))
 
 
 def test_bands_of_lights_and_walls(skeleton, geometry_of):

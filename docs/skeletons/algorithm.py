@@ -7,17 +7,40 @@ To make it yours: copy it to a folder of its own, rename the class, put a line i
 `method/combinations.py` or `method/schemes.py` say which choices it serves. `tests/test_skeleton.py` shows what to test first.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from radiosity.algorithms.base import AbstractAlgorithm, State, Swept
+from radiosity.algorithms.base import AbstractAlgorithm, Swept
+from radiosity.algorithms.baseline_state import AbstractSolvedState, Solved
 from radiosity.algorithms.baseline_tally import SolvedTally
+from radiosity.algorithms.state import Arrays, Sizes, array, number
 from radiosity.errors import MethodError
 from radiosity.factors.sources import rows_for
 
 LEFT = 1e-6  # of the emitted power: what is less than that is not sent on
 
 
-class Reflections(AbstractAlgorithm):
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ReflectionsState(AbstractSolvedState):
+    """What a run needs to go on, with what it has found. Names of fields are those of arrays in files.
+
+    Each field says how its array lies, so that files are checked and runs of other replicates can be merged (`array`).
+
+    Attributes:
+        steps: reflections so far.
+        unsent: (replicates, n_patches, groups) float64, W or lm.
+    """
+
+    steps: int = number(int)
+    unsent: np.ndarray = array("replicates", "rows", "groups")
+
+    @property
+    def unfinished(self) -> bool:
+        return self.solved is None or (self.steps < self.quanta and not self.solved.done)
+
+
+class Reflections(AbstractAlgorithm[ReflectionsState]):
     """N reflections. The state after N depends on N alone: every stage goes on where the last one ended."""
 
     def __init__(self, *arguments):
@@ -63,27 +86,30 @@ class Reflections(AbstractAlgorithm):
             self.lines += rows.lines
         self.steps += 1
 
-    def capture(self) -> State:
+    def capture(self) -> ReflectionsState:
         """Copies: the run may go on while a checkpoint is written."""
-        return {
-            "quanta": np.array(self.wanted),
-            "steps": np.array(self.steps),
-            "done": np.array(self._done),
-            "lines": np.array(self.lines),
-            "received": self.received.copy(),
-            "missed": self.missed.copy(),
-            "unsent": self.unsent.copy(),
-            "seen": np.full(len(self.area), len(self.area) - 1),
-        }
+        solved = Solved(
+            sizes=self.sizes,
+            done=self._done,
+            lines=self.lines,
+            received=self.received.copy(),
+            missed=self.missed.copy(),
+            seen=np.full(len(self.area), len(self.area) - 1),
+            history=np.zeros((0, 2)),
+        )
+        return ReflectionsState(sizes=self.sizes, quanta=self.wanted, solved=solved, steps=self.steps, unsent=self.unsent.copy())
 
-    def restore(self, state: State) -> None:
-        if "unsent" not in state or state["unsent"].shape != self.unsent.shape:
-            raise MethodError("the solution to go on from lacks the unsent power of its patches, or has other sizes; start anew")
-        self.wanted, self.steps, self.lines = (int(state[name]) for name in ("quanta", "steps", "lines"))
-        self.received, self.missed, self.unsent = (state[name].copy() for name in ("received", "missed", "unsent"))
+    def read(self, arrays: Arrays, sizes: Sizes) -> ReflectionsState:
+        """Arrays of a file become a state, or are refused."""
+        if lacking := ReflectionsState.lacking(arrays, sizes, ("solved",)):
+            raise MethodError(f"the solution to go on from lacks the power of its patches ({lacking}); start anew")
+        return ReflectionsState.read(arrays, sizes)
 
-    def unfinished(self, state: State) -> bool:
-        return int(state["steps"]) < int(state["quanta"]) and not state["done"]
+    def restore(self, state: ReflectionsState) -> None:
+        solved = state.solved
+        assert solved is not None
+        self.wanted, self.steps, self.lines = state.quanta, state.steps, solved.lines
+        self.received, self.missed, self.unsent = solved.received.copy(), solved.missed.copy(), state.unsent.copy()
 
     @property
     def tally(self) -> SolvedTally:

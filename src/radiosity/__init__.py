@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
+    from .run.merge import merge
     from .run.refine import refine_check
     from .run.solve import solve
     from .scene import Back, Camera, Scene, load_scene
@@ -38,6 +39,7 @@ HOOKS["export"] = _export  # of `Solution.export`
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
+    "run.merge": ("merge",),
     "run.refine": ("refine_check",),
     "run.solve": ("solve",),
     "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
@@ -66,6 +68,7 @@ __all__ = [
     "Solution",
     "load_scene",
     "load_solution",
+    "merge",
     "refine_check",
     "solve",
     "subdivide",

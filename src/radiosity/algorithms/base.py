@@ -3,14 +3,16 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
 from ..problem.model import Problem
+from ..sampling.streams import Seed
 from ..tracing.geometry import Geometry
+from .state import AbstractState, Arrays, Sizes
 
-State = dict[str, np.ndarray]
+S = TypeVar("S", bound=AbstractState)
 Swept = Callable[[int], None]
 
 
@@ -19,22 +21,27 @@ class Interrupted(Exception):
 
 
 @dataclass(eq=False)
-class AbstractAlgorithm(ABC):
+class AbstractAlgorithm(ABC, Generic[S]):
     """The counters of all replicates of a method, on the device or the host.
 
     Attributes:
         geometry: the scene on the device.
         problem: what is solved.
         method: how.
-        seed: of all randomisation.
+        seed: of all randomisation, and the first of its replicates.
         replicates: independent randomised runs.
     """
 
     geometry: Geometry
     problem: Problem
     method: Any  # a Method, or a Baseline
-    seed: int
+    seed: Seed | int
     replicates: int
+
+    @property
+    def sizes(self) -> Sizes:
+        """Of its states."""
+        return Sizes(self.replicates, *self.problem.rows.emission.shape)
 
     @property
     @abstractmethod
@@ -52,28 +59,32 @@ class AbstractAlgorithm(ABC):
         since; what it raises ends the stage early, and `capture` then holds what is there."""
 
     @abstractmethod
-    def capture(self) -> State:
-        """All that is needed to go on, and to read the result. ``done`` in it says that more quanta would change nothing."""
+    def capture(self) -> S:
+        """All that is needed to go on, and to read the result. The run may go on, and the state stays as it is."""
 
     @abstractmethod
-    def restore(self, state: State) -> None:
-        """Put a captured state back.
+    def read(self, arrays: Arrays, sizes: Sizes) -> S:
+        """The state of a run of this method that `AbstractState.arrays` wrote, with so many replicates.
 
         Raises:
-            MethodError: the state is empty or of another shape.
+            MethodError: arrays are missing or of another shape.
         """
 
     @abstractmethod
-    def unfinished(self, state: State) -> bool:
-        """The state was captured within a stage."""
+    def restore(self, state: S) -> None:
+        """Put a captured state back.
+
+        Raises:
+            MethodError: there is no going on from a state of this method.
+        """
 
     @property
     @abstractmethod
-    def tally(self) -> "AbstractTally":
+    def tally(self) -> "AbstractTally[S]":
         """How states are read."""
 
 
-class AbstractTally(ABC):
+class AbstractTally(ABC, Generic[S]):
     """What a process's state means.
 
     Attributes:
@@ -85,14 +96,14 @@ class AbstractTally(ABC):
     counts_hits: ClassVar[bool] = True
 
     @abstractmethod
-    def lines(self, problem: Problem, state: State) -> int:
+    def lines(self, problem: Problem, state: S) -> int:
         """Lines of all replicates, as the paper counts them: a local line 1, a span of a global line 2."""
 
-    def about_lines(self, problem: Problem, state: State) -> float:
+    def about_lines(self, problem: Problem, state: S) -> float:
         """The same where it is quick to tell, else an estimate."""
         return self.lines(problem, state)
 
-    def swept_lines(self, problem: Problem, state: State) -> int:
+    def swept_lines(self, problem: Problem, state: S) -> int:
         """The same without lines that are traced where results are read."""
         return self.lines(problem, state)
 
@@ -101,38 +112,43 @@ class AbstractTally(ABC):
         return
 
     @abstractmethod
-    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
+    def arrivals(self, problem: Problem, state: S) -> np.ndarray:
         """(n_patches,) int64: lines that landed on each patch, replicates together."""
 
     @abstractmethod
-    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
+    def irradiance(self, problem: Problem, state: S, group: int) -> tuple[np.ndarray, float]:
         """(replicates, n_patches) values of a group of bands, and their unit: irradiance times area is value times unit."""
 
-    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+    def line(self, problem: Problem, state: S, group: int) -> np.ndarray | float:
         """W or lm that one line more from the lights would bring where it lands, to the irradiance times area of a replicate: one
         number, or (n_patches,). It is what is known of patches where none landed. Default: the largest share that a group has in
         a quantum."""
-        largest = problem.groups.emission.max(axis=1)
-        share = problem.groups.emission[:, group] / np.where(largest > 0, largest, 1)
-        return float(share.max()) * problem.source.power / max(int(state["quanta"]), 1)
+        return line_of_quanta(problem, state.quanta, group)
 
     @abstractmethod
-    def books(self, problem: Problem, state: State, group: int) -> dict:
+    def books(self, problem: Problem, state: S, group: int) -> dict:
         """Emitted, rounding, absorbed, escaped and lost power of a group, and ``closes`` (see `Solution.books`)."""
 
 
-class AbstractBiasedTally(AbstractTally):
+class AbstractBiasedTally(AbstractTally[S]):
     """A tally whose values have a bias that it can tell the size of."""
 
     @abstractmethod
-    def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
+    def bias(self, problem: Problem, state: S, group: int) -> np.ndarray:
         """(n_patches,) the size of the bias of the values' mean, in the unit of `irradiance`; NaN where unknown. Stated standard
         errors hold it."""
 
 
-class AbstractMeanTally(AbstractBiasedTally):
+class AbstractMeanTally(AbstractBiasedTally[S]):
     """A tally of means over the lines of each patch; patches without lines take those of their face (`unmet`)."""
 
     @abstractmethod
-    def measured(self, problem: Problem, state: State) -> np.ndarray:
+    def measured(self, problem: Problem, state: S) -> np.ndarray:
         """(replicates, n_patches): lines that each patch's value is the mean of."""
+
+
+def line_of_quanta(problem: Problem, quanta: int, group: int) -> float:
+    """W or lm: the largest share that a group has in a quantum of N."""
+    largest = problem.groups.emission.max(axis=1)
+    share = problem.groups.emission[:, group] / np.where(largest > 0, largest, 1)
+    return float(share.max()) * problem.source.power / max(quanta, 1)

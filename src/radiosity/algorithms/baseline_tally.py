@@ -4,28 +4,32 @@ import numpy as np
 
 from ..problem.model import Problem
 from ..solution.books import by_difference
-from .base import AbstractTally, State
+from .base import AbstractTally
+from .baseline_state import AbstractSolvedState, Solved
 
 
-class SolvedTally(AbstractTally):
-    """Keys of a state: quanta; done; lines (one number); received (replicates, n_patches, groups), W; missed (replicates, 2,
-    groups), W that escaped and was lost; seen (n_patches,), how many of others each patch exchanges light with; history (k, 2):
-    steps, and the largest residual relative to the largest radiosity."""
+class SolvedTally(AbstractTally[AbstractSolvedState]):
+    """Reads `Solved`."""
 
     counts_hits = False
 
-    def lines(self, problem: Problem, state: State) -> int:
-        return int(state["lines"])
+    def lines(self, problem: Problem, state: AbstractSolvedState) -> int:
+        return _of(state).lines
 
-    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
-        return state["seen"].astype(np.int64)
+    def arrivals(self, problem: Problem, state: AbstractSolvedState) -> np.ndarray:
+        return _of(state).seen.astype(np.int64)
 
-    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        return state["received"][..., group], 1.0
+    def irradiance(self, problem: Problem, state: AbstractSolvedState, group: int) -> tuple[np.ndarray, float]:
+        return _of(state).received[..., group], 1.0
 
-    def books(self, problem: Problem, state: State, group: int) -> dict:
+    def books(self, problem: Problem, state: AbstractSolvedState, group: int) -> dict:
         emitted = float(problem.groups.emission[:, group] @ problem.patches.area)
-        received = state["received"][..., group].mean(axis=0)
+        received = _of(state).received[..., group].mean(axis=0)
         absorbed = float(received @ (1 - problem.groups.reflectance[:, group]))
-        escaped, lost = state["missed"][..., group].mean(axis=0)
+        escaped, lost = _of(state).missed[..., group].mean(axis=0)
         return by_difference(emitted, absorbed, float(escaped), float(lost))
+
+
+def _of(state: AbstractSolvedState) -> Solved:
+    assert state.solved is not None
+    return state.solved

@@ -15,12 +15,15 @@ from ..factors.balance import restored
 from ..factors.model import Factors
 from ..factors.polygons.matrix import exact
 from ..factors.sources import rows_for
+from ..sampling.streams import Seed
 from . import estimate
-from .base import AbstractAlgorithm, State, Swept
+from .base import AbstractAlgorithm, Swept
+from .baseline_state import FullMatrixState, Solved
 from .baseline_tally import SolvedTally
+from .state import Arrays, Sizes
 
 
-class FullMatrix(AbstractAlgorithm):
+class FullMatrix(AbstractAlgorithm[FullMatrixState]):
     """One stage: replicate after replicate, the matrix is made, solved and forgotten."""
 
     def __init__(self, *arguments):
@@ -56,8 +59,7 @@ class FullMatrix(AbstractAlgorithm):
             swept(lines)
 
         if self.method.factors == "polygons":  # each pair once
-            seed = self.seed + (replicate << 32)
-            made = exact(self.geometry, self.method.lines_of_pair, seed, swept=counted)
+            made = exact(self.geometry, self.method.lines_of_pair, Seed.of(self.seed).number_of(replicate), swept=counted)
         else:
             made = self.rows.make(np.arange(self.n), replicate, counted).factors
         area = self.problem.patches.area
@@ -81,25 +83,29 @@ class FullMatrix(AbstractAlgorithm):
         seen = np.bincount(matrix.columns, minlength=self.n)
         return received, missed, seen, np.column_stack([np.arange(len(found.history)) + 1, found.history])
 
-    def capture(self) -> State:
+    def capture(self) -> FullMatrixState:
         if len(self.solved) < self.replicates:
-            return {"quanta": np.array(0)}
+            return FullMatrixState(sizes=self.sizes, quanta=0)
         received, missed, seen, history = zip(*self.solved, strict=True)
-        return {
-            "quanta": np.array(1),
-            "done": np.array(True),
-            "lines": np.array(self.lines),
-            "received": np.array(received),
-            "missed": np.array(missed),
-            "seen": np.sum(seen, axis=0),
-            "history": history[0],
-        }
+        solved = Solved(
+            sizes=self.sizes,
+            done=True,
+            lines=self.lines,
+            received=np.array(received),
+            missed=np.array(missed),
+            seen=np.sum(seen, axis=0),
+            history=history[0],
+        )
+        return FullMatrixState(sizes=self.sizes, quanta=1, solved=solved)
 
-    def restore(self, state: State) -> None:
+    def read(self, arrays: Arrays, sizes: Sizes) -> FullMatrixState:
+        lacking = FullMatrixState.lacking(arrays, sizes, ("solved",))
+        if lacking:
+            raise MethodError(f"the solution lacks what its full matrix gave ({lacking}); solve it anew")
+        return FullMatrixState.read(arrays, sizes)
+
+    def restore(self, state: FullMatrixState) -> None:
         raise MethodError("a full matrix is made whole or not at all: there is nothing to go on from")
-
-    def unfinished(self, state: State) -> bool:
-        return "received" not in state
 
     @property
     def tally(self) -> SolvedTally:

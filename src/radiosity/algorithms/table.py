@@ -5,6 +5,7 @@ from importlib import import_module
 from ..errors import MethodError
 from ..method import Baseline, Method
 from ..problem.model import Problem
+from ..sampling.streams import Seed
 from ..tracing.geometry import Geometry
 from .base import AbstractAlgorithm
 
@@ -25,7 +26,7 @@ ALGORITHMS = {
 LIGHTS = ("firing",)  # those that fire all source rows
 
 
-def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: int, replicates: int) -> AbstractAlgorithm:
+def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: Seed | int, replicates: int) -> AbstractAlgorithm:
     """The process that runs a method.
 
     Raises:

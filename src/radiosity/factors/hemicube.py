@@ -17,7 +17,7 @@ import numpy as np
 from ..device.backend import upload
 from ..errors import MethodError
 from ..patches.model import Patches
-from ..sampling.streams import Purpose, stream
+from ..sampling.streams import Purpose, Seed, stream
 from ..tracing.geometry import Geometry
 from ..tracing.hits import first_hit, patch_of
 from ..tracing.lanes import CHUNK
@@ -40,7 +40,7 @@ class Hemicube:
 
     resolution: int = 64
     turned: bool = True
-    seed: int = 0
+    seed: Seed | int = 0
     replicate: int = 0
 
     def __post_init__(self):

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..method import Baseline
 from ..problem.model import Problem
+from ..sampling.streams import Seed
 from ..tracing.geometry import Geometry
 from .hemicube import Hemicube
 from .rows import AbstractRows, Rows, Swept
@@ -14,7 +15,7 @@ LAUNCH = 1 << 20  # lines between two looks at the clock
 class HemicubeRows(AbstractRows):
     """A hemicube on the middle of each patch, see `factors.hemicube`."""
 
-    def __init__(self, geometry: Geometry, problem: Problem, method: Baseline, seed: int, replicates: int):
+    def __init__(self, geometry: Geometry, problem: Problem, method: Baseline, seed: Seed | int, replicates: int):
         self.geometry = geometry
         self.cubes = [Hemicube(method.resolution, method.rotated, seed, replicate) for replicate in range(replicates)]
 

@@ -5,6 +5,7 @@ import numpy as np
 from ..device.backend import upload
 from ..method import Baseline, Method
 from ..problem.model import Problem
+from ..sampling.streams import Seed
 from ..tally.shooter import Shooter
 from ..tracing.geometry import Geometry
 from .rows import AbstractRows, Rows, Swept
@@ -16,7 +17,7 @@ class LineRows(AbstractRows):
     """F_ij = n_ij / n_i, from the first n_i lines of patch i; the k-th is a function of seed, replicate, i and k (contract 2)."""
 
     def __init__(
-        self, geometry: Geometry, problem: Problem, method: Baseline, seed: int, replicates: int, lines: int | None = None
+        self, geometry: Geometry, problem: Problem, method: Baseline, seed: Seed | int, replicates: int, lines: int | None = None
     ):
         self.n, self.replicates, self.lines = len(problem.patches), replicates, lines or method.lines_of_patch
         self.shooter = Shooter(geometry, Method(), seed, replicates, 0)

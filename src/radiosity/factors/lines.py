@@ -8,6 +8,7 @@ from ..device.backend import upload
 from ..method import Method
 from ..problem.model import Problem
 from ..problem.quanta import phases
+from ..sampling.streams import Seed
 from ..tally.shooter import Shooter
 from ..tracing.geometry import Geometry
 from ..tracing.global_lines.spans import ESCAPED, LOST, ONE_WAY, Spans
@@ -26,7 +27,7 @@ class LocalLines:
     """
 
     def __init__(
-        self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int, *, both_ways: bool = True
+        self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int, *, both_ways: bool = True
     ):
         self.n, self.total = len(problem.patches), len(problem.patches) * replicates
         self.shooter = Shooter(geometry, method, seed, replicates, 0)
@@ -58,7 +59,7 @@ class LocalLines:
 class GlobalLines:
     """N global lines a replicate; each end of a span on a patch is a line of that patch (Sbert 1993)."""
 
-    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int):
+    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
         self.n, self.replicates = len(problem.patches), replicates
         self.spans = Spans(geometry, method, seed, replicates)
 

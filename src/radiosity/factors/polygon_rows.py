@@ -6,6 +6,7 @@ import numpy as np
 
 from ..method import Baseline
 from ..problem.model import Problem
+from ..sampling.streams import Seed
 from ..tracing.geometry import Geometry
 from ..tracing.visibility import Polygons, visible_share
 from .missed import missed
@@ -19,8 +20,8 @@ class PolygonRows(AbstractRows):
     """F_ij = (exact factor without obstacles) * (visible share of the pair). For a whole matrix see `factors.matrix.exact`, which
     makes each pair once."""
 
-    def __init__(self, geometry: Geometry, problem: Problem, method: Baseline, seed: int, replicates: int):
-        self.geometry, self.samples, self.seed = geometry, method.lines_of_pair, seed
+    def __init__(self, geometry: Geometry, problem: Problem, method: Baseline, seed: Seed | int, replicates: int):
+        self.geometry, self.samples, self.seed = geometry, method.lines_of_pair, Seed.of(seed)
         self.polygons, self.area = Polygons.of(problem.patches), problem.patches.area
 
     @property
@@ -30,7 +31,7 @@ class PolygonRows(AbstractRows):
     @cached_property
     def missed(self) -> tuple[np.ndarray, np.ndarray]:
         """Shares escaped and lost of all patches."""
-        return missed(self.geometry, seed=self.seed)
+        return missed(self.geometry, seed=self.seed.value)
 
     def make(self, numbers: np.ndarray, replicate: int, swept: Swept) -> Rows:
         rows, columns, values, lines = [], [], [], 0
@@ -42,7 +43,7 @@ class PolygonRows(AbstractRows):
             faces = np.flatnonzero(value)
             row, one, other, value = row[faces], one[faces], other[faces], value[faces]
             ends = self.polygons.take(one), self.polygons.take(other)
-            value *= visible_share(self.geometry, *ends, self.samples, self.seed + (replicate << 32)) / self.area[one]
+            value *= visible_share(self.geometry, *ends, self.samples, self.seed.number_of(replicate)) / self.area[one]
             seen = value > 0
             rows, columns, values = [*rows, row[seen]], [*columns, other[seen]], [*values, value[seen]]
             lines += len(row) * self.samples

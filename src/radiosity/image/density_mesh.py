@@ -57,13 +57,17 @@ def display(solution, quantity: str) -> tuple[DisplayMesh, np.ndarray, np.ndarra
 
 def _landed(solution) -> np.ndarray:
     """(n_patches, n_bands) irradiance as counted, before it was smoothed, mean over replicates."""
+    from ..algorithms.state import Sizes
+    from ..algorithms.walks.state import WalkState
     from ..algorithms.walks.tally import WalkTally
     from ..problem.model import Problem
     from ..run.snapshot import Snapshot
 
     collisions = solution.provenance["choices"]["estimator"] == "collision"
     counted = WalkTally(collisions, solution.provenance["choices"]["absorption"] == "fractional")
-    return Snapshot(Problem.of(solution.patches), counted, solution.state).irradiance[0]
+    problem = Problem.of(solution.patches)
+    state = WalkState.read(solution.state, Sizes(solution.replicates, *problem.rows.emission.shape))
+    return Snapshot(problem, counted, state).irradiance[0]
 
 
 def merged(solution, mesh: DisplayMesh, values: np.ndarray, tolerance: float = TOLERANCE) -> tuple[DisplayMesh, np.ndarray]:

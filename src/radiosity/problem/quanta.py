@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import SceneError
 from ..patches.model import Patches
 from ..pieces import pieces
-from ..sampling.streams import Purpose, stream
+from ..sampling.streams import Purpose, Seed, stream
 
 ONE = 2.0**32
 LIMIT = 2**32 - 1  # of every counter
@@ -81,7 +81,7 @@ class Source:
             yield part, whole.astype(np.uint64), np.floor((lines - whole) * ONE).astype(np.uint64)
 
 
-def phases(seed: int, replicates: int, n_patches: int) -> np.ndarray:
+def phases(seed: Seed | int, replicates: int, n_patches: int) -> np.ndarray:
     """(replicates, n_patches) uint32, uniform: the rounding offset of each patch."""
     result = np.empty((replicates, n_patches), np.uint32)
     for replicate in range(replicates):

@@ -2,6 +2,8 @@
 
 import warnings
 
+from ..algorithms.baseline_state import AbstractSolvedState
+from ..algorithms.progressive.state import ProgressiveState
 from ..errors import MethodError, RadiosityWarning
 from ..method import Baseline, Method
 from .budget import DONE, Budget
@@ -34,11 +36,11 @@ def cut_for(method: "Method | Baseline") -> dict:
     return {"about": PATCHES, "powers_of_two": method.needs_powers_of_two}
 
 
-def warn_of_missing(method: Baseline, books: tuple[dict, ...], state: dict) -> None:
+def warn_of_missing(method: Baseline, books: tuple[dict, ...], state: AbstractSolvedState) -> None:
     """Tell of power that form factors lose or make, or that had to be cut (`algorithms.progressive`)."""
     off = max((abs(book["rounding"]) / book["emitted"] for book in books if book["emitted"] > 0), default=0.0)
-    off = max(off, float(state.get("cut", 0.0)))
-    if off > MISSING and state.get("done", False):
+    off = max(off, state.cut if isinstance(state, ProgressiveState) else 0.0)
+    if off > MISSING and state.solved is not None and state.solved.done:
         way_out = "factors polygons (a hemicube is one point)" if method.factors == "hemicube" else "more samples"
         warnings.warn(
             f"{off:.1%} of the emitted power is out of balance: form factors are inaccurate by this much; "

@@ -102,6 +102,14 @@ def rung_after(quanta: int, first: int) -> int:
     return first if quanta < first else 1 << (quanta.bit_length())
 
 
+def stages(quanta: int, first: int) -> list[int]:
+    """Stages that lead to N: rungs below it, then N."""
+    found = [first]
+    while found[-1] < quanta:
+        found.append(rung_after(found[-1], first))
+    return [*found[:-1], quanta]
+
+
 def on_ladder(quanta: int, first: int) -> bool:
     """N is a rung."""
     return quanta >= first and quanta & (quanta - 1) == 0

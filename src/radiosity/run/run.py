@@ -8,7 +8,9 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
-from ..algorithms.base import AbstractAlgorithm, AbstractMeanTally, Interrupted, State
+from ..algorithms.base import AbstractAlgorithm, AbstractMeanTally, Interrupted
+from ..algorithms.merging import merge as merge_states
+from ..algorithms.state import AbstractState
 from ..algorithms.table import make
 from ..device.backend import choose, give_back_memory
 from ..device.turn import turn
@@ -16,6 +18,7 @@ from ..errors import DeviceError, MethodError, RadiosityWarning, result_kept
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..problem.model import Problem
+from ..sampling.streams import Seed
 from ..solution.model import Solution
 from ..solution.status import NOT_REACHED
 from ..solution.without_results import without_results
@@ -23,9 +26,10 @@ from ..tally import unmet
 from ..tracing.geometry import TRACING, Geometry
 from . import memory_estimate
 from .baseline_budget import warn_of_missing
-from .budget import FULL, Budget, Progressed, first_rung, next_quanta, on_ladder, rung_after
+from .budget import FULL, Budget, Progressed, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .error_target import Target, nothing_before_lights
+from .part import Part, check_stages
 from .pilot import few_quanta
 from .progress import Listener, Stop, Teller
 from .same import check_same
@@ -52,16 +56,15 @@ class Run:
         patches: Patches,
         method: Method | Baseline,
         budget: Budget,
-        replicates: int,
-        seed: int,
+        part: Part,
         device: str,
-        listener: Listener | None,
-        resume: Solution | None,
-        checkpoint: Checkpoint | None,
+        listener: Listener | None = None,
+        resume: Solution | None = None,
+        checkpoint: Checkpoint | None = None,
         error_of: str | None = None,
     ):
-        self.patches, self.method, self.budget, self.seed = patches, method, budget, seed
-        self.replicates, self.resume, self.checkpoint = replicates, resume, checkpoint
+        self.patches, self.method, self.budget, self.part = patches, method, budget, part
+        self.replicates, self.resume, self.checkpoint = part.replicates, resume, checkpoint
         self.snapshot: Snapshot | None = None  # of the last complete stage
         self.also: Callable[[Snapshot], Any] | None = None  # what else is read of a stage
         self.seconds_before = 0.0 if resume is None else resume.seconds
@@ -72,15 +75,16 @@ class Run:
                 f"order '{method.order}' cannot carry {bands} different bands: "
                 "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
             )
-        memory_estimate.check(method, patches, bands, replicates, budget.rays)
+        memory_estimate.check(method, patches, bands, part.replicates, budget.rays)
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
-        self.rung = first_rung(method.order, replicates, self.problem.source.share)
+        self.rung = part.rung(method.order, self.problem.source.share)
+        part.check(method, budget, self.rung)
         self.teller, self.stop = Teller(budget, listener), Stop()
         self.error_of, self.target = error_of, Target.of(patches, error_of)
         self.teller.tell("compiling")
         self.device = choose(device)
         if resume is not None:
-            check_same(resume.provenance, self._provenance())
+            check_same(resume.provenance, self.provenance)
         self.geometry = Geometry(patches, self.device)
 
     def solve(self) -> Solution:
@@ -89,18 +93,15 @@ class Run:
             return self._stages()
 
     def _stages(self) -> Solution:
-        algorithm, target = self._process(self.problem, self.replicates), 0
+        algorithm, target = self._process(self.problem, self.part), 0
         self.algorithm = algorithm
         if self.resume is None:
             target = self._first_quanta()
         else:
-            algorithm.restore(self.resume.state)
+            resumed = algorithm.read(self.resume.state, algorithm.sizes)
+            algorithm.restore(resumed)
             target = algorithm.quanta
-            last = (
-                not algorithm.stage_independent
-                and not algorithm.unfinished(self.resume.state)
-                and not on_ladder(target, self.rung)
-            )
+            last = not algorithm.stage_independent and not resumed.unfinished and not on_ladder(target, self.rung)
             if last and (self.budget.seconds is not None or self._budget != self.resume.provenance.get("budget")):
                 raise MethodError(
                     f"a run by {self.method} in {self.problem.groups.n_groups} groups of bands cannot go on from {target} quanta "
@@ -108,7 +109,7 @@ class Run:
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
         self.teller.begin(0 if self.resume is None else algorithm.tally.swept_lines(self.problem, algorithm.capture()))
-        status, pending, steps = "complete", {}, [target]
+        status, pending, steps = "complete", None, [target]
         while target:
             started = time.perf_counter()
             try:
@@ -135,7 +136,7 @@ class Run:
             at = Progressed(target, lines, self.teller.elapsed, stage, error * margin, slope)
             replay = not algorithm.stage_independent
             if replay and self._missed(at):
-                self.algorithm = algorithm = self._process(self.problem, self.replicates)
+                self.algorithm = algorithm = self._process(self.problem, self.part)
                 steps = self._climb(target)
                 target = steps[-1]
                 continue
@@ -147,7 +148,7 @@ class Run:
         if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
             raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
         if self.snapshot is None:
-            solution = self._so_far(status, pending)
+            solution = self._so_far(status, pending or algorithm.capture())
         else:
             if status in ("complete", COUNTERS_FULL) and not self._reached(self.snapshot):
                 status = COUNTERS_FULL if self.budget.error is None else NOT_REACHED
@@ -158,18 +159,38 @@ class Run:
             raise KeyboardInterrupt
         return solution
 
+    def merged(self, quanta: int, parts: list[tuple[dict, Part]]) -> Solution:
+        """The solution of this run after N quanta, from arrays of the states of its parts, in the order of their replicates.
+
+        Raises:
+            MethodError: see `run.merge.merge`.
+        """
+        algorithm = self._process(self.problem, self.part)
+        states = [algorithm.read(arrays, replace(algorithm.sizes, replicates=part.replicates)) for arrays, part in parts]
+        for state, (_, part) in zip(states, parts, strict=True):
+            if state.quanta != quanta:
+                raise MethodError(
+                    f"cannot merge replicates {part.range}: they are within the stage of {state.quanta} quanta, after {quanta}; "
+                    "go on to the end (resume)"
+                )
+        state = merge_states(states)
+        if not algorithm.stage_independent:
+            share = self.problem.source.share
+            check_stages(self.method, quanta, self.rung, [(part, part.rung(self.method.order, share)) for _, part in parts])
+        return self._solution(Snapshot(self.problem, algorithm.tally, state, self.replicates), "complete", None)
+
     @property
     def _had_results(self) -> bool:
         return self.resume is not None and self.resume.quanta > 0
 
-    def _so_far(self, status: str, state: State) -> Solution:
+    def _so_far(self, status: str, state: AbstractState) -> Solution:
         """Results of the last complete stage, if any, and a state to go on from."""
         seconds = self.teller.elapsed + self.seconds_before
         if self.snapshot is not None:
             return self._read(self.snapshot, status, state)
         if self.resume is not None and self._had_results:
-            return replace(self.resume, seconds=seconds, status=status, state=state, provenance=self._provenance())
-        return without_results(self.patches, self.replicates, seconds, status, self._provenance(), state)
+            return replace(self.resume, seconds=seconds, status=status, state=state.arrays(), provenance=self.provenance)
+        return without_results(self.patches, self.replicates, seconds, status, self.provenance, state.arrays())
 
     def _missed(self, at: Progressed) -> bool:
         """The stage was to be the last, and its error is above what was asked for; the limit leaves room for another run."""
@@ -208,8 +229,8 @@ class Run:
         """No patch can receive anything, and there is no error to wait for."""
         return self.budget.error is not None and not snapshot.irradiance[0].any() and nothing_before_lights(self.patches)
 
-    def _process(self, problem: Problem, replicates: int) -> AbstractAlgorithm:
-        return make(self.geometry, problem, self.method, self.seed, replicates)
+    def _process(self, problem: Problem, part: Part) -> AbstractAlgorithm:
+        return make(self.geometry, problem, self.method, part.seed, part.replicates)
 
     @property
     def _error_matters(self) -> bool:
@@ -238,7 +259,9 @@ class Run:
         if self.budget.rays is None or self.budget.rays >= MANY * self.rung * self.replicates:
             return self.rung
         counted = self.problem.scalar if self.method.machine == "firing" else self.problem
-        found = few_quanta(self.budget.rays, self.replicates, self._process(counted, 1), self._tried)
+        found = few_quanta(
+            self.budget.rays, self.replicates, self._process(counted, Part(Seed(self.part.seed.value), 1)), self._tried
+        )
         return min(self.rung, found)
 
     def _tried(self, count: int) -> None:
@@ -246,7 +269,7 @@ class Run:
         if self.stop.asked:
             raise KeyboardInterrupt
 
-    def _solution(self, snapshot: Snapshot, status: str, pending) -> Solution:
+    def _solution(self, snapshot: Snapshot, status: str, pending: AbstractState | None) -> Solution:
         solution = self._read(snapshot, status, pending or snapshot.state)
         with result_kept():
             if self.resume is None:
@@ -271,7 +294,7 @@ class Run:
                 warn_of_missing(self.method, snapshot.books, snapshot.state)
         return solution
 
-    def _read(self, snapshot: Snapshot, status: str, state: State) -> Solution:
+    def _read(self, snapshot: Snapshot, status: str, state: AbstractState) -> Solution:
         if any(book["closes"] is False for book in snapshot.books):
             raise DeviceError(LOST_HITS)
         mean, error = snapshot.irradiance
@@ -286,8 +309,8 @@ class Run:
             self.replicates,
             snapshot.books,
             status,
-            self._provenance(),
-            state,
+            self.provenance,
+            state.arrays(),
             snapshot.surface_power,
             snapshot.side_power,
         )
@@ -296,14 +319,15 @@ class Run:
     def _budget(self) -> dict:
         return {name: value for name, value in {**vars(self.budget), "error_of": self.error_of}.items() if value is not None}
 
-    def _provenance(self) -> dict:
+    @property
+    def provenance(self) -> dict:
+        """See `Solution.provenance`."""
         return {
             "scene": self.patches.scene.hash,
             "source": self.patches.scene.source,
             "method": str(self.method),
             "choices": self.method.choices,
-            "seed": self.seed,
-            "replicates": self.replicates,
+            **self.part.facts(),
             "device": self.device.name,
             "patches": len(self.patches),
             "cut": self.patches.hash,

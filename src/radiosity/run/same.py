@@ -3,7 +3,8 @@
 from ..errors import MethodError
 
 OLDER = {"randomisation": "shared"}  # of solutions written before there was a choice
-SAME = ("scene", "cut", "seed", "replicates", "device", "tracing")  # like devices give like bits
+SAME = ("scene", "cut", "seed", "replicates", "first_replicate", "all_replicates", "device", "tracing")  # like devices, like bits
+WHOLE = {"first_replicate": 0}  # where nothing is said
 
 
 def check_same(before: dict, now: dict) -> None:
@@ -12,10 +13,22 @@ def check_same(before: dict, now: dict) -> None:
     Raises:
         MethodError: what differs.
     """
-    choices, chosen = OLDER | (before.get("choices") or {}), now["choices"]
-    different = [f"{key} ({before.get(key)} then, {now[key]} now)" for key in SAME if before.get(key) != now[key]]
-    different += [f"{key} ({choices.get(key)} then, {value} now)" for key, value in chosen.items() if choices.get(key) != value]
-    versions = before.get("versions", {})
-    different += [f"{name} {versions.get(name)} then, {v} now" for name, v in now["versions"].items() if versions.get(name) != v]
+    different = differences(before, now, SAME, ("then", "now"))
     if different:
         raise MethodError(f"cannot go on from that solution: {'; '.join(different)}")
+
+
+def differences(before: dict, now: dict, keys: tuple[str, ...], when: tuple[str, str]) -> list[str]:
+    """What differs between the provenances of two runs, in words; ``when`` says which is which."""
+    one, other = WHOLE | before, WHOLE | now
+    then, here = when
+    different = [f"{key} ({one.get(key)} {then}, {other.get(key)} {here})" for key in keys if one.get(key) != other.get(key)]
+    choices, chosen = OLDER | (before.get("choices") or {}), now.get("choices") or {}
+    different += [
+        f"{key} ({choices.get(key)} {then}, {value} {here})" for key, value in chosen.items() if choices.get(key) != value
+    ]
+    versions, versions_now = before.get("versions") or {}, now.get("versions") or {}
+    different += [
+        f"{name} {versions.get(name)} {then}, {v} {here}" for name, v in versions_now.items() if versions.get(name) != v
+    ]
+    return different

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..algorithms.base import AbstractBiasedTally, AbstractTally, State
+from ..algorithms.base import AbstractBiasedTally, AbstractTally
+from ..algorithms.baseline_state import AbstractSolvedState
 from ..pieces import pieces
 from ..problem.model import Problem
 from ..solution.errors import inner_products, margin, mean_and_error, relative_error
@@ -20,7 +21,7 @@ class Snapshot:
 
     problem: Problem
     tally: AbstractTally
-    state: State
+    state: Any  # an `AbstractState`, as the tally reads it; None after `settle`
     replicates: int = 1
     also: Callable[["Snapshot"], Any] | None = None
 
@@ -30,17 +31,17 @@ class Snapshot:
         if self.tally.settles:
             _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power
             _ = self.books, self.asked
-            self.state = {}
+            self.state = None
             self.tally.forget()
 
     @cached_property
     def quanta(self) -> int:
-        return int(self.state["quanta"])
+        return self.state.quanta
 
     @property
     def done(self) -> bool:
         """More quanta would change nothing."""
-        return bool(self.state.get("done", False))
+        return isinstance(self.state, AbstractSolvedState) and self.state.solved is not None and self.state.solved.done
 
     @cached_property
     def lines(self) -> int:

@@ -12,12 +12,15 @@ from ..diagnostics.contact_findings import tell
 from ..errors import MethodError, shown
 from ..method import Baseline, Method, resolve
 from ..patches import Patches, subdivide
+from ..sampling.streams import Seed
 from ..scene.model import Back, Scene
 from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
 from .checkpoint import Checkpoint
+from .part import Part
 from .progress import Listener
+from .whole_number import whole
 
 if TYPE_CHECKING:
     from .run import Run
@@ -36,6 +39,8 @@ def solve(
     quanta: int | None = None,
     replicates: int | None = None,
     seed: int = 0,
+    first_replicate: int = 0,
+    all_replicates: int | None = None,
     device: str = "auto",
     progress: Listener | None = None,
     resume: Solution | None = None,
@@ -62,6 +67,10 @@ def solve(
             "mean:NAME": that of the mean irradiance over it, as `Solution.surface_interval` tells it.
         replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
         seed: with the same inputs, the same bits.
+        first_replicate: the run has the replicates from this one on of all those of its seed: a part, to be put together with
+            others by `merge`. Give ``quanta``, so that all parts have as many.
+        all_replicates: how many replicates all parts have together. Results that depend on their stages (see ``resume``) need it,
+            since the first stage depends on the number of replicates.
         device: "auto", "cpu" or "cuda".
         progress: called with a `Progress` after each sweep.
         resume: a solution of the same scene, method, seed and replicates to go on from, also an interrupted one; the
@@ -100,6 +109,8 @@ def solve(
             quanta=quanta,
             replicates=replicates,
             seed=seed,
+            first_replicate=first_replicate,
+            all_replicates=all_replicates,
             device=device,
             progress=progress,
             resume=resume,
@@ -119,6 +130,8 @@ def prepared(
     quanta=None,
     replicates=None,
     seed=0,
+    first_replicate=0,
+    all_replicates=None,
     device="auto",
     progress=None,
     resume=None,
@@ -128,8 +141,10 @@ def prepared(
 ) -> "Run":
     """A checked run that has not begun; arguments and errors are those of `solve`."""
     usual = 1 if isinstance(chosen, Baseline) else 8
-    replicates = usual if replicates is None else _whole(replicates, "replicates", 1)
-    seed = _whole(seed, "seed", 0)
+    replicates = usual if replicates is None else whole(replicates, "replicates", 1)
+    in_all = None if all_replicates is None else whole(all_replicates, "all_replicates", 1)
+    first = whole(first_replicate, "first_replicate", 0)
+    part = Part(Seed(whole(seed, "seed", 0), first), replicates, in_all)
     if isinstance(chosen, Baseline):
         budget = chosen_budget(chosen, rays=rays, seconds=seconds, error=error, quanta=quanta)
     else:
@@ -150,7 +165,7 @@ def prepared(
     tell(scene.scene)
     from .run import Run
 
-    return Run(scene, chosen, budget, replicates, seed, device, progress, resume, keeper, error_of)
+    return Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of)
 
 
 def _refuse_open(scene: Scene, method: Method | Baseline) -> None:
@@ -181,13 +196,3 @@ def _keeper(path, every, method: Method | Baseline) -> Checkpoint:
         raise MethodError(f"checkpoint is {path!r}; it must be the path of an .npz file") from None
     keeper.check(method)
     return keeper
-
-
-def _whole(value, name: str, least: int) -> int:
-    try:
-        good = not isinstance(value, bool) and int(value) == value and value >= least
-    except (TypeError, ValueError, OverflowError):
-        good = False
-    if not good:
-        raise MethodError(f"{name} is {value!r}; it must be a whole number of {least} or more")
-    return int(value)

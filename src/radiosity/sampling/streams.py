@@ -3,9 +3,43 @@
 The number of a purpose is part of what a seed means: another number would change the bits of all runs that use it.
 """
 
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
+
+
+@dataclass(frozen=True)
+class Seed:
+    """What all random numbers of a run follow from, and which of the seed's replicates the run has.
+
+    A run of R replicates has the replicates ``first_replicate`` to ``first_replicate + R - 1`` of its seed. Within the run they
+    are counted from 0 on. So runs of other replicates of one seed are parts of one run of them all.
+
+    Attributes:
+        value: a whole number of 0 or more.
+        first_replicate: the run's first one.
+    """
+
+    value: int
+    first_replicate: int = 0
+
+    @staticmethod
+    def of(seed: "Seed | int") -> "Seed":
+        """A whole number is a seed whose replicates begin with the first."""
+        return seed if isinstance(seed, Seed) else Seed(seed)
+
+    def moved(self, by: int) -> "Seed":
+        """Another value, the same replicates."""
+        return replace(self, value=self.value + by)
+
+    def split(self, parts: int) -> "Seed":
+        """For streams of parts of replicates: part p of replicate r is counted as r * parts + p."""
+        return replace(self, first_replicate=self.first_replicate * parts)
+
+    def number_of(self, replicate: int) -> int:
+        """A whole number of 64 bits for a replicate, where a number is all that can be given."""
+        return self.value + ((self.first_replicate + replicate) << 32)
 
 
 class Purpose(IntEnum):
@@ -23,6 +57,8 @@ class Purpose(IntEnum):
     ROUNDING = 2  # iterations: how many lines a patch fires, a child each step; they never meet the other purpose of this number
 
 
-def stream(seed: int, replicate: int, purpose: Purpose, *child: int) -> np.random.SeedSequence:
-    """An independent stream of a replicate, or a child of it. The number of replicates does not matter."""
-    return np.random.SeedSequence([seed, replicate, int(purpose)], spawn_key=child)
+def stream(seed: Seed | int, replicate: int, purpose: Purpose, *child: int) -> np.random.SeedSequence:
+    """An independent stream of a run's replicate (counted from 0 on within the run), or a child of it. The number of replicates
+    does not matter."""
+    seed = Seed.of(seed)
+    return np.random.SeedSequence([seed.value, seed.first_replicate + replicate, int(purpose)], spawn_key=child)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..device.backend import frozen, upload
 from ..method import Method
-from ..sampling.streams import Purpose, stream
+from ..sampling.streams import Purpose, Seed, stream
 from ..tracing.geometry import Geometry
 from ..tracing.lanes import Batch, Launch
 from ..tracing.line_tracer import LineTracer
@@ -49,7 +49,7 @@ class Shooter:
         received: (slots * n_groups,) Int64, of the last shot, group g of slot s at s * n_groups + g.
     """
 
-    def __init__(self, geometry: Geometry, method: Method, seed: int, replicates: int, n_groups: int, sequences: int = 1):
+    def __init__(self, geometry: Geometry, method: Method, seed: Seed | int, replicates: int, n_groups: int, sequences: int = 1):
         self.tracer = tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates)
         self.types, self.total, self.slots, self.groups = tracer.types, tracer.total, tracer.slots, n_groups
         self.hits = HitCounts(tracer)
@@ -121,19 +121,19 @@ class Shooter:
     def _add(self, value, index, real, mode) -> None:
         dr.scatter_add(self.received, value, index, active=real, mode=mode)
 
-    def capture(self) -> dict[str, np.ndarray]:
-        """arrivals and fired (replicates, n_patches), missed (2, replicates); where there are several sequences
-        fired_apart, (sequences, replicates, n_patches), of which fired is the sum."""
+    def read(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
+        """On the host: arrivals and fired, (replicates, n_patches) uint32; missed, (2, replicates); and where there are several
+        sequences, fired in each, (sequences, replicates, n_patches), of which ``fired`` is the sum."""
         arrivals, missed = self.hits.read()
         fired = frozen(self.fired).reshape(arrivals.shape)
         if len(self._fired) == 1:
-            return {"arrivals": arrivals, "fired": fired, "missed": missed}
+            return arrivals, fired, missed, None
         self.take(self.sequence)
         apart = np.stack([np.array(column).reshape(fired.shape) for column in self._fired])
-        return {"arrivals": arrivals, "fired": apart.sum(axis=0, dtype=np.uint32), "missed": missed, "fired_apart": apart}
+        return arrivals, apart.sum(axis=0, dtype=np.uint32), missed, apart
 
-    def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Put captured counters back."""
-        self.hits.write(state["arrivals"], state["missed"])
-        self._fired = [upload(self.types.UInt32, column) for column in state.get("fired_apart", state["fired"][None])]
+    def write(self, arrivals: np.ndarray, fired: np.ndarray, missed: np.ndarray, apart: np.ndarray | None) -> None:
+        """Put back what `read` gave."""
+        self.hits.write(arrivals, missed)
+        self._fired = [upload(self.types.UInt32, column) for column in (fired[None] if apart is None else apart)]
         self.fired = self._fired[self.sequence]

@@ -13,7 +13,7 @@ from ..errors import MethodError
 from ..problem.lights import AbstractLights
 from ..problem.quanta import LIMIT
 from ..sampling.numbers import AbstractNumbers, ready
-from ..sampling.streams import Purpose, stream
+from ..sampling.streams import Purpose, Seed, stream
 from .geometry import Geometry
 from .hits import first_hit, patch_of
 from .ray_generation import BACK, local_lines, place_number
@@ -43,13 +43,18 @@ class LineTracer:
     numbers: AbstractNumbers
     randomisation: Any
     by_patch: bool
-    seed: int
+    seed: Seed | int
     replicates: int
     lights: AbstractLights | None = None
 
     @staticmethod
     def of(
-        geometry: Geometry, numbers: str, randomisation: str, seed: int, replicates: int, lights: AbstractLights | None = None
+        geometry: Geometry,
+        numbers: str,
+        randomisation: str,
+        seed: Seed | int,
+        replicates: int,
+        lights: AbstractLights | None = None,
     ) -> "LineTracer":
         """Of the choices of a `Method`: its numbers and their randomisation.
 

@@ -8,15 +8,17 @@ from ...problem.bands import QUANTUM
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...solution.books import Books, exact_sum, signed_totals
-from ..base import AbstractAlgorithm, AbstractTally, State, Swept
+from ..base import AbstractAlgorithm, AbstractTally, Swept
+from ..state import Arrays, Sizes
 from . import state as firing_state
 from .counters import FiringCounters
 from .orders import fire_all
 from .residue import Starts
 from .residue_walks import LONGER, Sent, send, starts
+from .state import FiringState
 
 
-class Firing(AbstractAlgorithm):
+class Firing(AbstractAlgorithm[FiringState]):
     """Integers that do not depend on order (contract 2), or powers of bands that travel with sweeps (contract 3)."""
 
     def __init__(self, *arguments):
@@ -37,21 +39,21 @@ class Firing(AbstractAlgorithm):
             self.counters.set_quanta(quanta)
         fire_all(self.method.order, self.counters, swept)
 
-    def capture(self) -> State:
+    def capture(self) -> FiringState:
         return firing_state.capture(self.counters)
 
-    def restore(self, state: State) -> None:
-        firing_state.restore(self.counters, state)
+    def read(self, arrays: Arrays, sizes: Sizes) -> FiringState:
+        return firing_state.read(arrays, sizes)
 
-    def unfinished(self, state: State) -> bool:
-        return "within" in state
+    def restore(self, state: FiringState) -> None:
+        firing_state.restore(self.counters, state)
 
     @cached_property
     def tally(self) -> "Arrivals":
         return Arrivals(self.counters, self.problem)
 
 
-class Arrivals(AbstractTally):
+class Arrivals(AbstractTally[FiringState]):
     """Arrivals, each a quantum, or the power of bands that they brought; and what the residue brings (contract 12), which is sent
     on where results are read."""
 
@@ -62,52 +64,51 @@ class Arrivals(AbstractTally):
         self.forget()
 
     def forget(self) -> None:
-        self._state: State | None = None
+        self._state: FiringState | None = None
         self._begun: Starts | None = None
         self._sent: Sent | None = None
 
-    def begun(self, state: State) -> Starts:
+    def begun(self, state: FiringState) -> Starts:
         """Where lines begin that send the residue of a state on."""
         if self._begun is None or self._state is not state:
             self.forget()  # first, for the sake of memory
             self._state, self._begun = state, starts(self.counters, self.problem, state)
         return self._begun
 
-    def sent(self, state: State) -> Sent:
+    def sent(self, state: FiringState) -> Sent:
         """What the residue of a state brings."""
         begun = self.begun(state)
         if self._sent is None:
             self._sent = send(self.counters, self.problem, state, begun)
         return self._sent
 
-    def lines(self, problem: Problem, state: State) -> int:
+    def lines(self, problem: Problem, state: FiringState) -> int:
         return self.swept_lines(problem, state) + self.sent(state).lines
 
-    def swept_lines(self, problem: Problem, state: State) -> int:
-        return exact_sum(state["fired"])
+    def swept_lines(self, problem: Problem, state: FiringState) -> int:
+        return exact_sum(state.fired)
 
-    def about_lines(self, problem: Problem, state: State) -> float:
-        fired, begun = exact_sum(state["fired"]), self.begun(state)
-        packets = self.counters.tracer.replicates * int(state["quanta"])
+    def about_lines(self, problem: Problem, state: FiringState) -> float:
+        fired, begun = exact_sum(state.fired), self.begun(state)
+        packets = self.counters.tracer.replicates * state.quanta
         of_one = fired / max(packets - begun.net, packets / 2)  # what is fired lacks those of the residue
         return fired + LONGER * len(begun.line) * of_one
 
-    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
-        return state["arrivals"][:, : problem.rows.n_patches].sum(axis=0, dtype=np.int64)
+    def arrivals(self, problem: Problem, state: FiringState) -> np.ndarray:
+        return state.arrivals[:, : problem.rows.n_patches].sum(axis=0, dtype=np.int64)
 
-    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        return self.sent(state).received[:, : problem.rows.n_patches, group], problem.source.power / int(
-            state["quanta"]
-        ) / QUANTUM
+    def irradiance(self, problem: Problem, state: FiringState, group: int) -> tuple[np.ndarray, float]:
+        received = self.sent(state).received[:, : problem.rows.n_patches, group]
+        return received, problem.source.power / state.quanta / QUANTUM
 
-    def books(self, problem: Problem, state: State, group: int) -> dict:
-        source, rows, quanta = problem.source, problem.rows, int(state["quanta"])
-        replicates, sent = len(state["arrivals"]), self.sent(state)
-        if "received" not in state:
-            missed, fired, unit = state["missed"], exact_sum(state["fired"]), QUANTUM
+    def books(self, problem: Problem, state: FiringState, group: int) -> dict:
+        source, rows, quanta = problem.source, problem.rows, state.quanta
+        replicates, sent, bands = len(state.arrivals), self.sent(state), state.bands
+        if bands is None:
+            missed, fired, unit = state.missed, exact_sum(state.fired), QUANTUM
             emitted = source.emitted_in_all(quanta) * replicates * QUANTUM
         else:
-            missed, fired, unit = state["received_missed"][..., group], exact_sum(state["fired_power"][group]), 1
+            missed, fired, unit = bands.received_missed[..., group], exact_sum(bands.fired_power[group]), 1
             share = rows.emission[:, group] * rows.area / source.power
             emitted = round(float(share.sum()) * quanta * QUANTUM) * replicates << 32
         arrived, reflected = signed_totals(sent.received[..., group], Source.fixed(rows.reflectance[:, group]))

@@ -15,6 +15,7 @@ from ...errors import MethodError
 from ...method.model import Method
 from ...problem.model import Problem
 from ...problem.quanta import phases
+from ...sampling.streams import Seed
 from ...tally.bands import BandTally
 from ...tally.hit_counts import HitCounts
 from ...tally.hit_tally import DENSE, AbstractHitTally, hit_tally
@@ -40,7 +41,7 @@ class FiringCounters:
         owes: some row may owe a line still.
     """
 
-    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int):
+    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
         self.problem, self.source, self.coherent = problem, problem.source, method.coherent
         self.tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates, problem.lights)
         self.types, self.total = self.tracer.types, self.tracer.total

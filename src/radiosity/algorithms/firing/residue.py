@@ -23,8 +23,8 @@ from ...pieces import PIECE, pieces
 from ...problem.bands import QUANTUM
 from ...problem.model import Problem
 from ...problem.quanta import Source
-from ...sampling.streams import Purpose, stream
-from ..base import State
+from ...sampling.streams import Purpose, Seed, stream
+from .state import FiringState
 
 SHARE = 0.025  # of a replicate's quanta: the lines that noise makes are to be no more
 MOST = 512  # patches of a group
@@ -48,7 +48,7 @@ class Starts:
     power: np.ndarray
 
     @staticmethod
-    def of(problem: Problem, state: State, phase: np.ndarray, seed: int) -> "Starts":
+    def of(problem: Problem, state: FiringState, phase: np.ndarray, seed: Seed | int) -> "Starts":
         """From a process's state after a stage.
 
         Args:
@@ -83,27 +83,28 @@ class Residue:
     problem: Problem
     quanta: int
     emitted: np.ndarray
-    state: State
+    state: FiringState
     phase: np.ndarray
 
     @staticmethod
-    def of(problem: Problem, state: State, phase: np.ndarray) -> "Residue":
+    def of(problem: Problem, state: FiringState, phase: np.ndarray) -> "Residue":
         """After a process's state."""
-        quanta = int(state["quanta"])
+        quanta = state.quanta
         whole, fraction = problem.source.emitted(quanta)
         return Residue(problem, quanta, (whole.astype(np.uint64) << np.uint64(32)) | fraction, state, phase)
 
     def read(self, replicate: int, part: slice) -> tuple[np.ndarray, np.ndarray]:
         """What some patches owe of the scalar problem, (k,) uint64, and what is left of each group, (k, n_groups) int64; both in
         2^-32 of a quantum."""
-        arrivals, phase = self.state["arrivals"][replicate, part], self.phase[replicate, part]
+        arrivals, phase = self.state.arrivals[replicate, part], self.phase[replicate, part]
         target_counts = self.problem.source.rho[part].astype(np.uint64) * arrivals + self.emitted[part]
-        if "received" not in self.state:
+        bands = self.state.bands
+        if bands is None:
             return target_counts, (((target_counts + phase) % ONE).astype(np.int64) - phase)[:, None]
-        rows, received = self.problem.rows, self.state["received"][replicate, part]
+        rows, received = self.problem.rows, bands.received[replicate, part]
         share = rows.emission[part] * (rows.area[part] / self.problem.source.power)[:, None]
         owed_of_each = share * (self.quanta * QUANTUM) + Source.fixed(rows.reflectance[part]) * 2.0**-32 * received
-        return target_counts, 2 * np.round(owed_of_each - self.state["sent"][replicate, part]).astype(np.int64)
+        return target_counts, 2 * np.round(owed_of_each - bands.sent[replicate, part]).astype(np.int64)
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,9 +18,9 @@ from ...problem.model import Problem
 from ...sampling.numbers import WORDS
 from ...sampling.numbers.random import philox
 from ...sampling.streams import Purpose, stream
-from ..base import State
 from .counters import FiringCounters
 from .residue import Starts
+from .state import FiringState
 
 LEAST = QUANTUM // 2  # 2^30
 LONGER = 1.6  # times as many lines as chance alone would take, 1.5 to 1.7 where reflectances are 0.5 to 1
@@ -43,13 +43,13 @@ class Sent:
     lines: int
 
 
-def starts(counters: FiringCounters, problem: Problem, state: State) -> Starts:
+def starts(counters: FiringCounters, problem: Problem, state: FiringState) -> Starts:
     """Where lines begin after the state's stage."""
     tracer = counters.tracer
     return Starts.of(problem, state, frozen(counters.phase).reshape(tracer.replicates, tracer.n), tracer.seed)
 
 
-def send(counters: FiringCounters, problem: Problem, state: State, begun: Starts) -> Sent:
+def send(counters: FiringCounters, problem: Problem, state: FiringState, begun: Starts) -> Sent:
     """Send the residues of a complete stage on.
 
     Args:
@@ -66,10 +66,10 @@ def send(counters: FiringCounters, problem: Problem, state: State, begun: Starts
     received = flat[: tracer.total].reshape(tracer.replicates, tracer.n, n_groups)
     for replicate, row in enumerate(received):
         for part in pieces(tracer.n):
-            if "received" in state:
-                row[part] += state["received"][replicate, part].astype(np.int64)
+            if state.bands is not None:
+                row[part] += state.bands.received[replicate, part].astype(np.int64)
             else:
-                row[part] += (state["arrivals"][replicate, part] * np.int64(QUANTUM))[:, None]
+                row[part] += (state.arrivals[replicate, part] * np.int64(QUANTUM))[:, None]
     return Sent(received, flat[tracer.total :].reshape(2, tracer.replicates, n_groups), fired, lines)
 
 

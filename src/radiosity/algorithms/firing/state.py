@@ -1,55 +1,91 @@
 """The integers of a run between two sweeps: all that is needed to go on, on this or a like machine (contract 6)."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...device.backend import frozen, upload
 from ...errors import MethodError
+from ..state import AbstractState, Arrays, Record, Sizes, array, number, part
 from .counters import FiringCounters
 
 
-def capture(counters: FiringCounters) -> dict[str, np.ndarray]:
-    """Counters on the host, as they are now.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BandState(Record):
+    """Powers of bands, where they differ, uint64 in fixed point (`BandTally`).
 
-    Keys: quanta, arrivals and fired (replicates, n_patches), missed (2, replicates). Where bands differ also received
-    and sent (replicates, n_patches, groups), received_missed (2, replicates, groups) and fired_power (groups, replicates); and,
-    within a stage, the key within.
+    Attributes:
+        received, sent: (replicates, n_rows, groups).
+        received_missed: (2, replicates, groups), escaped and lost.
+        fired_power: (groups, replicates), what left along lines.
+        within: True within a stage.
     """
+
+    received: np.ndarray = array("replicates", "rows", "groups")
+    received_missed: np.ndarray = array(2, "replicates", "groups")
+    sent: np.ndarray = array("replicates", "rows", "groups")
+    fired_power: np.ndarray = array("groups", "replicates")
+    within: bool | None = number(bool, optional=True)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FiringState(AbstractState):
+    """Counters on the host.
+
+    Attributes:
+        arrivals, fired: (replicates, n_rows) uint32, hit and fired counts.
+        missed: (2, replicates) uint32, lines that escaped and were lost.
+        bands: powers, where bands differ.
+    """
+
+    arrivals: np.ndarray = array("replicates", "rows")
+    fired: np.ndarray = array("replicates", "rows")
+    missed: np.ndarray = array(2, "replicates")
+    bands: BandState | None = part(BandState, optional=True)
+
+    @property
+    def unfinished(self) -> bool:
+        """Of bands alone: a stage of integers may be gone on from anywhere."""
+        return self.bands is not None and bool(self.bands.within)
+
+
+def capture(counters: FiringCounters) -> FiringState:
+    """Counters as they are now."""
     arrivals, fired, missed = counters.counters()
-    state = {"quanta": np.array(counters.quanta), "arrivals": arrivals, "fired": fired, "missed": missed}
-    bands = counters.bands
-    if bands is None:
-        return state
-    received = frozen(bands.received)
-    split, shape = counters.total * bands.n, (counters.tracer.replicates, counters.tracer.n)
-    state["received"] = received[:split].reshape(*shape, bands.n)
-    state["received_missed"] = received[split:].reshape(2, counters.tracer.replicates, bands.n)
-    state["sent"] = frozen(bands.sent).reshape(*shape, bands.n)
-    state["fired_power"] = frozen(bands.fired).reshape(bands.n, counters.tracer.replicates)
-    if counters.has_due:
-        state["within"] = np.array(True)
-    return state
-
-
-def restore(counters: FiringCounters, state: dict[str, np.ndarray]) -> None:
-    """Put counters back, at the state's number of quanta.
-
-    Raises:
-        MethodError: the state is empty or of another shape.
-    """
-    wanted = {"quanta", "arrivals", "fired", "missed"}
-    if counters.bands is not None:
-        wanted |= {"received", "received_missed", "sent", "fired_power"}
-    missing = sorted(wanted - set(state))
-    if missing or state["arrivals"].shape != (counters.tracer.replicates, counters.tracer.n):
-        raise MethodError(
-            f"the solution to go on from lacks the integers of its run ({', '.join(missing) or 'other sizes'}); start anew"
-        )
-    types = counters.types
-    counters.hits.write(state["arrivals"], state["missed"])
-    counters.fired = upload(types.UInt32, state["fired"])
-    bands = counters.bands
+    tracer, bands = counters.tracer, counters.bands
+    sizes = Sizes(tracer.replicates, tracer.n, 1 if bands is None else bands.n)
+    powers = None
     if bands is not None:
-        bands.received = upload(types.UInt64, np.concatenate([state["received"].ravel(), state["received_missed"].ravel()]))
-        bands.sent = upload(types.UInt64, state["sent"])
-        bands.fired = upload(types.UInt64, state["fired_power"])
-    counters.set_quanta(int(state["quanta"]))
+        received, split = frozen(bands.received), counters.total * bands.n
+        powers = BandState(
+            sizes=sizes,
+            received=received[:split].reshape(*arrivals.shape, bands.n),
+            received_missed=received[split:].reshape(2, tracer.replicates, bands.n),
+            sent=frozen(bands.sent).reshape(*arrivals.shape, bands.n),
+            fired_power=frozen(bands.fired).reshape(bands.n, tracer.replicates),
+            within=True if counters.has_due else None,
+        )
+    return FiringState(sizes=sizes, quanta=counters.quanta, arrivals=arrivals, fired=fired, missed=missed, bands=powers)
+
+
+def read(arrays: Arrays, sizes: Sizes) -> FiringState:
+    """See `AbstractAlgorithm.read`."""
+    wanted = ("bands",) if sizes.groups > 1 else ()
+    lacking = FiringState.lacking(arrays, sizes, wanted)
+    if lacking:
+        raise MethodError(f"the solution to go on from lacks the integers of its run ({lacking}); start anew")
+    return FiringState.read(arrays, sizes, wanted)
+
+
+def restore(counters: FiringCounters, state: FiringState) -> None:
+    """Put counters back, at the state's number of quanta."""
+    types, bands = counters.types, counters.bands
+    counters.hits.write(state.arrivals, state.missed)
+    counters.fired = upload(types.UInt32, state.fired)
+    if bands is not None:
+        powers = state.bands
+        assert powers is not None
+        bands.received = upload(types.UInt64, np.concatenate([powers.received.ravel(), powers.received_missed.ravel()]))
+        bands.sent = upload(types.UInt64, powers.sent)
+        bands.fired = upload(types.UInt64, powers.fired_power)
+    counters.set_quanta(state.quanta)

@@ -11,20 +11,21 @@ import numpy as np
 from ...method.model import Method
 from ...problem.bands import QUANTUM
 from ...problem.model import Problem
+from ...sampling.streams import Seed
 from ...tracing.geometry import Geometry
-from ..base import State, Swept
+from ..base import Swept
 from ..firing import state as firing_state
 from ..firing.counters import FiringCounters
 from ..firing.orders import fire_all
+from ..firing.state import FiringState
 
-PREFIX = "shot_"
 APART = 1 << 64  # added to the seed: local lines do not repeat the numbers of global ones
 
 
 class FirstShot:
     """Counters of the lines from the lights, of all replicates."""
 
-    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int):
+    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
         rows, source = problem.rows, problem.source
         black = replace(
             problem,
@@ -33,7 +34,7 @@ class FirstShot:
             source=replace(source, rho=np.zeros_like(source.rho)),
         )
         local = Method(numbers=method.points, randomisation=method.randomisation)
-        self.counters = FiringCounters(geometry, black, local, seed + APART, replicates)
+        self.counters = FiringCounters(geometry, black, local, Seed.of(seed).moved(APART), replicates)
 
     def fire(self, lines: int, swept: Swept) -> None:
         """Send each replicate's lights' power in so many lines, those fired before included."""
@@ -41,30 +42,30 @@ class FirstShot:
             self.counters.set_quanta(lines)
         fire_all("breadth-first", self.counters, swept)
 
-    def capture(self) -> State:
-        return {PREFIX + name: values for name, values in firing_state.capture(self.counters).items()}
+    def capture(self) -> FiringState:
+        return firing_state.capture(self.counters)
 
-    def restore(self, state: State) -> None:
-        firing_state.restore(self.counters, {k.removeprefix(PREFIX): v for k, v in state.items() if k.startswith(PREFIX)})
-
-
-def fired(state: State) -> int:
-    """Lines of all replicates, of a captured state; 0 where there was no shot."""
-    return int(state[PREFIX + "fired"].sum(dtype=np.uint64)) if PREFIX + "fired" in state else 0
+    def restore(self, state: FiringState) -> None:
+        firing_state.restore(self.counters, state)
 
 
-def arrivals(state: State) -> np.ndarray | int:
+def fired(shot: FiringState | None) -> int:
+    """Lines of all replicates; 0 where there was no shot."""
+    return 0 if shot is None else int(shot.fired.sum(dtype=np.uint64))
+
+
+def arrivals(shot: FiringState | None) -> np.ndarray | int:
     """(n_patches,) int64 landings, or 0."""
-    return state[PREFIX + "arrivals"].sum(axis=0, dtype=np.int64) if PREFIX + "fired" in state else 0
+    return 0 if shot is None else shot.arrivals.sum(axis=0, dtype=np.int64)
 
 
-def landed(problem: Problem, state: State, group: int) -> tuple[np.ndarray, np.ndarray]:
+def landed(problem: Problem, shot: FiringState, group: int) -> tuple[np.ndarray, np.ndarray]:
     """Power of a group, W or lm: (replicates, n_patches) that landed, and (2, replicates) escaped and lost."""
-    unit = problem.source.power / int(state[PREFIX + "quanta"])
-    if PREFIX + "received" in state:
+    unit = problem.source.power / shot.quanta
+    if shot.bands is not None:
         unit /= QUANTUM
-        return state[PREFIX + "received"][..., group] * unit, state[PREFIX + "received_missed"][..., group] * unit
-    return state[PREFIX + "arrivals"] * unit, state[PREFIX + "missed"] * unit
+        return shot.bands.received[..., group] * unit, shot.bands.received_missed[..., group] * unit
+    return shot.arrivals * unit, shot.missed * unit
 
 
 def lines_for(share: float, spans_lines: float) -> int:

@@ -4,8 +4,9 @@ import numpy as np
 
 from ...problem.model import Problem
 from ...solution.books import Books, by_difference, exact_sum
-from ..base import AbstractTally, State
+from ..base import AbstractTally
 from . import first_shot
+from .state import MultipathState
 
 HIGHEST = 34  # bits of the largest power that a span can carry
 
@@ -18,36 +19,36 @@ def unit(problem: Problem, ends_per_line: np.ndarray, group: int) -> float:
     return max(brightest, np.finfo(float).tiny) / (1 - float(groups.reflectance[:, group].max())) / 2.0**HIGHEST
 
 
-class Landed(AbstractTally):
+class Landed(AbstractTally[MultipathState]):
     """Power that landed along spans, after a first shot where there was one."""
 
-    def lines(self, problem: Problem, state: State) -> int:
-        return int(state["ends"].sum()) + first_shot.fired(state)
+    def lines(self, problem: Problem, state: MultipathState) -> int:
+        return int(state.ends.sum()) + first_shot.fired(state.shot)
 
-    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
-        return state["ends"].sum(axis=0) + first_shot.arrivals(state)
+    def arrivals(self, problem: Problem, state: MultipathState) -> np.ndarray:
+        return state.ends.sum(axis=0) + first_shot.arrivals(state.shot)
 
-    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        watts = unit(problem, state["ends_per_line"], group) / int(state["lines_done"])
-        if first_shot.PREFIX + "fired" not in state:
-            return state["landed"][group], watts
-        return state["landed"][group] * watts + first_shot.landed(problem, state, group)[0], 1.0
+    def irradiance(self, problem: Problem, state: MultipathState, group: int) -> tuple[np.ndarray, float]:
+        watts = unit(problem, state.ends_per_line, group) / state.lines_done
+        if state.shot is None:
+            return state.landed[group], watts
+        return state.landed[group] * watts + first_shot.landed(problem, state.shot, group)[0], 1.0
 
-    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+    def line(self, problem: Problem, state: MultipathState, group: int) -> np.ndarray | float:
         """What the brightest light sends along a span."""
-        emitted = problem.groups.emission[:, group] * problem.patches.area / state["ends_per_line"]
-        return float(emitted.max()) / max(int(state["lines_done"]), 1)
+        emitted = problem.groups.emission[:, group] * problem.patches.area / state.ends_per_line
+        return float(emitted.max()) / max(state.lines_done, 1)
 
-    def books(self, problem: Problem, state: State, group: int) -> dict:
-        counts, lines = state["landed"][group], int(state["lines_done"])
+    def books(self, problem: Problem, state: MultipathState, group: int) -> dict:
+        counts, lines = state.landed[group], state.lines_done
         replicates = len(counts)
         fired, reflected, escaped, lost = (
-            sum((int(high) << 32) + int(low) for high, low in rows) for rows in state["ledger"][group]
+            sum((int(high) << 32) + int(low) for high, low in rows) for rows in state.ledger[group]
         )
-        watts = unit(problem, state["ends_per_line"], group) / lines / replicates
+        watts = unit(problem, state.ends_per_line, group) / lines / replicates
         emission = problem.groups.emission[:, group] * problem.patches.area
-        if first_shot.PREFIX + "fired" in state:
-            power, missed = first_shot.landed(problem, state, group)
+        if state.shot is not None:
+            power, missed = first_shot.landed(problem, state.shot, group)
             rho = problem.groups.reflectance[:, group]
             absorbed = (exact_sum(counts) - reflected) * watts + float((power * (1 - rho)).sum()) / replicates
             escaped, lost = (x * watts + float(m.sum()) / replicates for x, m in zip((escaped, lost), missed, strict=True))

@@ -14,19 +14,21 @@ from ...device.backend import frozen, upload
 from ...errors import MethodError
 from ...problem.quanta import Source
 from ...tracing.global_lines.spans import ONE_WAY, Spans
-from ..base import AbstractAlgorithm, State, Swept
+from ..base import AbstractAlgorithm, Swept
+from ..state import Arrays, Sizes
 from . import first_shot
 from .exchange import LEDGER, Exchange
 from .first_shot import FirstShot
 from .landed import HIGHEST, Landed, unit
 from .mixing import Mixed
+from .state import MultipathState
 
 FULLEST = 63  # bits of a sum
 WARM_UP, MOST_WARM_UP = 4, 64  # ends of a mean patch, the first times 1 / (1 - mean reflectance)
 BATCH = 1 << 21  # spans of all replicates between two looks at the clock
 
 
-class Multipath(AbstractAlgorithm):
+class Multipath(AbstractAlgorithm[MultipathState]):
     """N is the number of global lines of a replicate (of spans, where they are drawn one by one). All lines, as they are counted,
     are proportional to it: each line has a fixed expected number of ends, and a first shot has its share of all.
 
@@ -100,7 +102,8 @@ class Multipath(AbstractAlgorithm):
         for g, exchange in enumerate(self.exchanges):
             rho = groups.reflectance[:, g]
             source = frozen(exchange.source).reshape(self.replicates, self.n).astype(float)
-            mean = source @ area / float((1 - rho) @ area)
+            # one by one: what is summed together differs in its last bits with the number of replicates
+            mean = np.array([row @ area for row in source]) / float((1 - rho) @ area)
             exchange.unshot = upload(types.UInt64, np.floor(mean[:, None] * rho).astype(np.uint64))
         visits = WARM_UP / (1 - float(np.average(groups.reflectance.max(axis=1), weights=area)))
         lines = ceil(min(visits, MOST_WARM_UP) / float(self.spans.ends_per_line.mean()) / self.mixed.block) * self.mixed.block
@@ -116,9 +119,9 @@ class Multipath(AbstractAlgorithm):
         shot = self.shot
         assert shot is not None
         shot.fire(first_shot.lines_for(self.method.first_shot, quanta * float(self.spans.ends_per_line.sum())), swept)
-        state = shot.capture()
+        landed = shot.capture()
         for g, exchange in enumerate(self.exchanges):
-            power, _ = first_shot.landed(self.problem, state, g)
+            power, _ = first_shot.landed(self.problem, landed, g)
             source = self._fixed(power * self.problem.groups.reflectance[:, g], g)
             exchange.source = upload(self.geometry.device.types.UInt64, source)
 
@@ -144,37 +147,38 @@ class Multipath(AbstractAlgorithm):
         """From the power of patches, W or lm, (..., n_patches), to what they emit at each span end, in units."""
         return np.round(power / self.spans.ends_per_line / unit(self.problem, self.spans.ends_per_line, group)).astype(np.uint64)
 
-    def capture(self) -> State:
+    def capture(self) -> MultipathState:
         shape = (len(self.exchanges), self.replicates, self.n)
         limbs = [[[divmod(x, 2**32) for x in ledger[name]] for name in LEDGER] for ledger in self.ledger]
-        state = {
-            "quanta": np.array(self._quanta),
-            "lines_done": np.array(self.done),
-            "ends": self.ends.copy(),
-            "ends_per_line": self.spans.ends_per_line,
-            "ledger": np.array(limbs, np.uint64),
-            "unshot": np.stack([frozen(x.unshot) for x in self.exchanges]).reshape(shape),
-            "landed": np.stack([frozen(x.landed) for x in self.exchanges]).reshape(shape),
-        }
-        return state if self.shot is None else state | self.shot.capture()
+        return MultipathState(
+            sizes=self.sizes,
+            quanta=self._quanta,
+            lines_done=self.done,
+            ends=self.ends.copy(),
+            ends_per_line=self.spans.ends_per_line,
+            ledger=np.array(limbs, np.uint64),
+            unshot=np.stack([frozen(x.unshot) for x in self.exchanges]).reshape(shape),
+            landed=np.stack([frozen(x.landed) for x in self.exchanges]).reshape(shape),
+            shot=None if self.shot is None else self.shot.capture(),
+        )
 
-    def restore(self, state: State) -> None:
-        wanted = {"quanta", "lines_done", "ends", "ledger", "unshot", "landed"}
-        if wanted - set(state) or state["ends"].shape != self.ends.shape:
+    def read(self, arrays: Arrays, sizes: Sizes) -> MultipathState:
+        wanted = () if self.shot is None else ("shot",)
+        if MultipathState.lacking(arrays, sizes, wanted):
             raise MethodError("the solution to go on from lacks the sums of its multipath run; start anew")
+        return MultipathState.read(arrays, sizes, wanted)
+
+    def restore(self, state: MultipathState) -> None:
         UInt64 = self.geometry.device.types.UInt64
-        self._quanta, self.done, self.ends = int(state["quanta"]), int(state["lines_done"]), state["ends"].astype(np.int64)
+        self._quanta, self.done, self.ends = state.quanta, state.lines_done, state.ends.astype(np.int64)
         for g, exchange in enumerate(self.exchanges):
-            exchange.unshot, exchange.landed = upload(UInt64, state["unshot"][g]), upload(UInt64, state["landed"][g])
+            exchange.unshot, exchange.landed = upload(UInt64, state.unshot[g]), upload(UInt64, state.landed[g])
             self.ledger[g] = {
                 name: [(int(high) << 32) + int(low) for high, low in rows]
-                for name, rows in zip(LEDGER, state["ledger"][g], strict=True)
+                for name, rows in zip(LEDGER, state.ledger[g], strict=True)
             }
-        if self.shot is not None:
-            self.shot.restore(state)
-
-    def unfinished(self, state: State) -> bool:
-        return int(state["lines_done"]) < int(state["quanta"])
+        if self.shot is not None and state.shot is not None:
+            self.shot.restore(state.shot)
 
     @property
     def tally(self) -> Landed:

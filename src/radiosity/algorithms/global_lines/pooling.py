@@ -8,15 +8,17 @@ why the result is consistent.
 import numpy as np
 
 from ...errors import MethodError
+from ...sampling.streams import Seed
 from ...tally.unmet import means, sides
 from ...tracing.global_lines.ends import Ends, of_lines
 from ...tracing.global_lines.spans import ESCAPED, LOST, Pairs, Spans
-from ..base import AbstractAlgorithm, State, Swept
+from ..base import AbstractAlgorithm, Swept
+from ..state import Arrays, Sizes
 from . import first_shot
 from .first_shot import FirstShot
 from .pooled import Pooled, units
+from .state import HALVES, PoolingState, lines_of_half
 
-HALVES = 2  # of a replicate: each carries what the other has found
 ENDS = 2  # of a mean patch in an iteration, at least
 LEAST = 1 << 8  # lines of an iteration
 MEMORY, BUNDLES = 16, 64  # iterations, or bundles, that the radiosity which lines carry remembers at least
@@ -27,7 +29,7 @@ SWEEPS, SETTLED = 200, 1e-4  # of the warm-up: at most, or until all change toge
 ARRAYS = ("carried", "recent", "recent_ends", "fresh", "fresh_ends", "received", "ends", "escaped", "lost")
 
 
-class Pooling(AbstractAlgorithm):
+class Pooling(AbstractAlgorithm[PoolingState]):
     """N is the number of global lines of a replicate (of spans, where they are drawn one by one). An iteration is one bundle;
     or, of other lines, a power of two, such that a mean patch has ENDS ends or more.
 
@@ -49,7 +51,7 @@ class Pooling(AbstractAlgorithm):
     def __init__(self, *arguments):
         super().__init__(*arguments)
         self.halves, self.n = HALVES * self.replicates, len(self.geometry.patches)
-        self.spans = Spans(self.geometry, self.method, self.seed, self.halves)
+        self.spans = Spans(self.geometry, self.method, Seed.of(self.seed).split(HALVES), self.halves)
         self.shot = None
         if self.method.first_shot:
             self.shot = FirstShot(self.geometry, self.problem, self.method, self.seed, self.replicates)
@@ -88,15 +90,15 @@ class Pooling(AbstractAlgorithm):
         self._quanta = quanta
         if self.shot is not None:
             self.shot.fire(first_shot.lines_for(self.method.first_shot, quanta * float(self.spans.ends_per_line.sum())), swept)
-            state, area = self.shot.capture(), self.geometry.patches.area
-            landed = [first_shot.landed(self.problem, state, g)[0] / area for g in range(self.n_groups)]
+            shot, area = self.shot.capture(), self.geometry.patches.area
+            landed = [first_shot.landed(self.problem, shot, g)[0] / area for g in range(self.n_groups)]
             self.direct = np.stack([np.repeat(power, HALVES, axis=0).ravel() for power in landed])
         if self.done == 0:
             self._warm_up()
         spans = max(float(self.spans.ends_per_line.sum()) / 2, 1e-3) * self.iteration * self.halves
         batch = max(1, round(BATCH / spans)) * self.iteration
-        while self.done < _each(quanta):
-            swept(self._gather(min(batch - self.done % batch, _each(quanta) - self.done)))
+        while self.done < lines_of_half(quanta):
+            swept(self._gather(min(batch - self.done % batch, lines_of_half(quanta) - self.done)))
 
     @property
     def source(self) -> np.ndarray:
@@ -166,30 +168,29 @@ class Pooling(AbstractAlgorithm):
         """The halves of each replicate in each other's place."""
         return values.reshape(self.n_groups, self.replicates, HALVES, self.n)[:, :, ::-1].reshape(values.shape)
 
-    def capture(self) -> State:
-        state = {name: getattr(self, name).copy() for name in ARRAYS}
-        numbers = {"quanta": self._quanta, "lines_done": self.done, "replicates": self.replicates}
-        state |= {name: np.array(number) for name, number in numbers.items()}
-        return state if self.shot is None else state | self.shot.capture()
+    def capture(self) -> PoolingState:
+        return PoolingState(
+            sizes=self.sizes,
+            quanta=self._quanta,
+            lines_done=self.done,
+            replicates=self.replicates,
+            shot=None if self.shot is None else self.shot.capture(),
+            **{name: getattr(self, name).copy() for name in ARRAYS},
+        )
 
-    def restore(self, state: State) -> None:
-        wanted = {"quanta", "lines_done", *ARRAYS}
-        if wanted - set(state) or state["ends"].shape != self.ends.shape:
+    def read(self, arrays: Arrays, sizes: Sizes) -> PoolingState:
+        wanted = () if self.shot is None else ("shot",)
+        if PoolingState.lacking(arrays, sizes, wanted):
             raise MethodError("the solution to go on from lacks the sums of its iterations; start anew")
-        for name in ARRAYS:
-            setattr(self, name, state[name].copy())
-        self._quanta, self.done = int(state["quanta"]), int(state["lines_done"])
-        if self.shot is not None:
-            self.shot.restore(state)
+        return PoolingState.read(arrays, sizes, wanted)
 
-    def unfinished(self, state: State) -> bool:
-        return int(state["lines_done"]) < _each(int(state["quanta"]))
+    def restore(self, state: PoolingState) -> None:
+        for name in ARRAYS:
+            setattr(self, name, getattr(state, name).copy())
+        self._quanta, self.done = state.quanta, state.lines_done
+        if self.shot is not None and state.shot is not None:
+            self.shot.restore(state.shot)
 
     @property
     def tally(self) -> Pooled:
         return Pooled()
-
-
-def _each(quanta: int) -> int:
-    """Lines of each half."""
-    return -(-quanta // HALVES)

@@ -5,14 +5,18 @@ import numpy as np
 from ...errors import MethodError
 from ...factors.missed import missed
 from ...patches import Hierarchy
-from ..base import AbstractAlgorithm, State, Swept
+from ...sampling.streams import Seed
+from ..base import AbstractAlgorithm, Swept
+from ..baseline_state import Solved
 from ..baseline_tally import SolvedTally
+from ..state import Arrays, Sizes
 from . import roots
 from .parameters import Hierarchical as Parameters
 from .rounds import Rounds
+from .state import HierarchicalState
 
 
-class Hierarchical(AbstractAlgorithm):
+class Hierarchical(AbstractAlgorithm[HierarchicalState]):
     """N rounds, or as many as there are; each begins where the last one ended, so N alone tells the result."""
 
     def __init__(self, *arguments):
@@ -23,9 +27,9 @@ class Hierarchical(AbstractAlgorithm):
             )
         roots.check(Hierarchy(self.problem.patches))
         method, self.wanted, self.lines, self._swept = self.method, 0, 0, None
-        parameters = Parameters(method.epsilon, method.refinement, method.lines_of_pair, seed=self.seed)
+        parameters = Parameters(method.epsilon, method.refinement, method.lines_of_pair, seed=Seed.of(self.seed).value)
         self.rounds = Rounds(self.problem.patches, self.geometry, parameters, self._told)
-        self.missed = np.stack(missed(self.geometry, seed=self.seed))
+        self.missed = np.stack(missed(self.geometry, seed=Seed.of(self.seed).value))
 
     def _told(self, lines: int) -> None:
         self.lines += lines
@@ -46,23 +50,23 @@ class Hierarchical(AbstractAlgorithm):
             self.rounds.advance()
         self.wanted = self.rounds.complete
 
-    def capture(self) -> State:
+    def capture(self) -> HierarchicalState:
         """Powers of groups of bands: each is that of its leading band."""
         groups, patches, rounds = self.problem.groups, self.problem.patches, self.rounds
         leader = [int(np.flatnonzero((groups.index == g) & (groups.scale == 1))[0]) for g in range(groups.n_groups)]
         power = patches.area[:, None] * (patches.emission + patches.reflectance * rounds.irradiance)
         received = (patches.area[:, None] * rounds.irradiance)[:, leader]
-        return {
-            "quanta": np.array(self.wanted),
-            "rounds": np.array(rounds.complete),
-            "done": np.array(rounds.done),
-            "lines": np.array(self.lines),
-            "received": received[None],
-            "missed": (self.missed @ power)[None][..., leader],
-            "seen": self._seen(),
-            "history": np.array([(i + 1, p.change) for i, p in enumerate(rounds.history)]).reshape(-1, 2),
-            "links": np.array(len(rounds.links)),
-        }
+        solved = Solved(
+            sizes=self.sizes,
+            done=rounds.done,
+            lines=self.lines,
+            received=received[None],
+            missed=(self.missed @ power)[None][..., leader],
+            seen=self._seen(),
+            history=np.array([(i + 1, p.change) for i, p in enumerate(rounds.history)]).reshape(-1, 2),
+        )
+        numbers = {"quanta": self.wanted, "rounds": rounds.complete, "links": len(rounds.links)}
+        return HierarchicalState(sizes=self.sizes, solved=solved, **numbers)
 
     def _seen(self) -> np.ndarray:
         """(n_patches,) how many links bring light to each."""
@@ -70,11 +74,13 @@ class Hierarchical(AbstractAlgorithm):
         count = np.bincount(links.receiver[links.factor > 0], minlength=len(levels.area)).astype(float)
         return levels.push(count[:, None])[:, 0].astype(np.int64)
 
-    def restore(self, state: State) -> None:
-        raise MethodError("hierarchical radiosity keeps no links in its results: there is nothing to go on from; start anew")
+    def read(self, arrays: Arrays, sizes: Sizes) -> HierarchicalState:
+        if lacking := HierarchicalState.lacking(arrays, sizes, ("solved",)):
+            raise MethodError(f"the solution lacks results of hierarchical radiosity ({lacking}); solve it anew")
+        return HierarchicalState.read(arrays, sizes)
 
-    def unfinished(self, state: State) -> bool:
-        return int(state["rounds"]) < int(state["quanta"])
+    def restore(self, state: HierarchicalState) -> None:
+        raise MethodError("hierarchical radiosity keeps no links in its results: there is nothing to go on from; start anew")
 
     @property
     def tally(self) -> SolvedTally:

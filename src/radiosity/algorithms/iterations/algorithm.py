@@ -5,18 +5,18 @@ radiosity", Eurographics Rendering Workshop 1995; P. Bekaert, "Hierarchical and 
 K. U. Leuven 1999.
 """
 
-import numpy as np
-
 from ...errors import MethodError
-from ..base import AbstractAlgorithm, State, Swept
+from ..base import AbstractAlgorithm, Swept
+from ..state import Arrays, Sizes
 from .control import Control
 from .exchange import Exchange
 from .incremental import Incremental
 from .regular import Regular
+from .state import IncrementalState, IterationState, RegularState
 from .tally import IterationTally
 
 
-class Iteration(AbstractAlgorithm):
+class Iteration(AbstractAlgorithm[IterationState]):
     """Orders ``incremental`` and ``regular``, which share how power is sent, and differ in what is."""
 
     def __init__(self, *arguments):
@@ -45,27 +45,41 @@ class Iteration(AbstractAlgorithm):
     def advance(self, quanta: int, swept: Swept) -> None:
         self.scheme.advance(quanta, swept)
 
-    def capture(self) -> State:
-        state = self.exchange.shooter.capture() | self.scheme.capture()
-        state |= {"quanta": np.array(self.quanta), "step": np.array(self.exchange.step)}
-        return state if self.control is None else state | self.control.capture()
+    def capture(self) -> IterationState:
+        scheme = self.scheme.capture()
+        arrivals, fired, missed, apart = self.exchange.shooter.read()
+        return IterationState(
+            sizes=self.sizes,
+            quanta=self.quanta,
+            arrivals=arrivals,
+            fired=fired,
+            missed=missed,
+            fired_apart=apart,
+            step=self.exchange.step,
+            regular=scheme if isinstance(scheme, RegularState) else None,
+            incremental=scheme if isinstance(scheme, IncrementalState) else None,
+            control=None if self.control is None else self.control.capture(),
+        )
 
-    def restore(self, state: State) -> None:
-        shape = (self.replicates, self.exchange.n)
-        counters = {"progress", "fired"} | ({"fired_apart"} if self.exchange.turns > 1 else set())
-        if counters - set(state) or state["fired"].shape != shape:
+    def read(self, arrays: Arrays, sizes: Sizes) -> IterationState:
+        wanted = {"incremental" if isinstance(self.scheme, Incremental) else "regular"}
+        wanted |= {"fired_apart"} if self.exchange.turns > 1 else set()
+        wanted |= {"control"} if self.control is not None else set()
+        if IterationState.lacking(arrays, sizes, wanted):
             raise MethodError("the solution to go on from lacks the counters of its iterations, or has other sizes; start anew")
-        self.exchange.shooter.restore(state)
-        self.exchange.step = int(state["step"])
-        if self.control is not None:
-            self.control.restore(state)
-        self.scheme.restore(state)
+        return IterationState.read(arrays, sizes, wanted)
 
-    def unfinished(self, state: State) -> bool:
-        if "unsent" in state:
-            return bool(state["unsent"].any())
-        quanta, done, summed = (int(x) for x in state["progress"][:3])
-        return done < quanta or summed == 0
+    def restore(self, state: IterationState) -> None:
+        self.exchange.shooter.write(state.arrivals, state.fired, state.missed, state.fired_apart)
+        self.exchange.step = state.step
+        if self.control is not None and state.control is not None:
+            self.control.restore(state.control)
+        if isinstance(self.scheme, Incremental):
+            assert state.incremental is not None
+            self.scheme.restore(state.incremental)
+        else:
+            assert state.regular is not None
+            self.scheme.restore(state.regular)
 
     @property
     def tally(self) -> IterationTally:

@@ -12,6 +12,7 @@ import numpy as np
 from ...device.backend import upload
 from ...tally.shooter import Ends
 from .exchange import BITS, LINE, Exchange
+from .state import ControlState
 
 SHARE = 8  # one line in so many measures what is missed
 
@@ -66,11 +67,14 @@ class Control:
             for group in range(exchange.groups):
                 self.beta[replicate, group] = median(value[replicate, :, group], exchange.areas)
 
-    def capture(self) -> dict[str, np.ndarray]:
-        return {"beta": self.beta.copy(), "probe_missed": self.missed.copy(), "probed": self.probed.copy()}
+    def capture(self) -> ControlState:
+        """Copies."""
+        beta, missed, probed = self.beta.copy(), self.missed.copy(), self.probed.copy()
+        return ControlState(sizes=self.exchange.sizes, beta=beta, probe_missed=missed, probed=probed)
 
-    def restore(self, state: dict[str, np.ndarray]) -> None:
-        self.beta, self.missed, self.probed = (state[key].copy() for key in ("beta", "probe_missed", "probed"))
+    def restore(self, state: ControlState) -> None:
+        """Put captured numbers back."""
+        self.beta, self.missed, self.probed = state.beta.copy(), state.probe_missed.copy(), state.probed.copy()
 
 
 def kept(missed: np.ndarray, probed: np.ndarray) -> np.ndarray:

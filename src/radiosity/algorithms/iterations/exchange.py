@@ -12,9 +12,10 @@ from ...device.backend import upload
 from ...method import Method
 from ...problem.model import Problem
 from ...problem.quanta import Source
-from ...sampling.streams import Purpose, stream
+from ...sampling.streams import Purpose, Seed, stream
 from ...tally.shooter import Ends, Shooter
 from ...tracing.geometry import Geometry
+from ..state import Sizes
 
 BITS = 30
 LINE = 2**BITS  # fixed point units of one expected line
@@ -37,7 +38,7 @@ class Exchange:
         first: of the sequences that are taken now.
     """
 
-    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: int, replicates: int):
+    def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
         groups = problem.groups
         self.seed, self.replicates, self.groups = seed, replicates, groups.n_groups
         self.two_ended = method.estimator == "bidirectional"
@@ -55,6 +56,11 @@ class Exchange:
         self.slot_replicate = upload(self.types.UInt32, np.repeat(slots, self.groups).astype(np.uint32))
         dr.eval(self.replicate)
         self.step = 0
+
+    @property
+    def sizes(self) -> Sizes:
+        """Of states."""
+        return Sizes(self.replicates, self.n, self.groups)
 
     def _tiled(self, values: np.ndarray):
         return upload(self.types.Float64, np.tile(values.ravel(), self.replicates))

@@ -13,9 +13,10 @@ import numpy as np
 
 from ...device.backend import upload
 from ...problem.model import Problem
-from ..base import State, Swept
+from ..base import Swept
 from .control import SHARE, Control, source_constant
 from .exchange import LINE, Exchange
+from .state import IncrementalState
 
 
 class Incremental:
@@ -79,17 +80,24 @@ class Incremental:
         """Of the received power: one unit over Phi."""
         return 1.0 / (float(self.quanta) * LINE)
 
-    def capture(self) -> State:
-        state = {"received": np.array(self.received), "unsent": np.array(self.unsent), "scale": np.array(self.scale)}
-        state["progress"] = np.array([self.quanta, self.probing])
-        if not self.exchange.two_ended and self.control is None:
-            state |= {"emitted": self.emitted.copy(), "left": self.fired.copy()}
-        return state
+    def capture(self) -> IncrementalState:
+        """Copies."""
+        whole = not self.exchange.two_ended and self.control is None
+        return IncrementalState(
+            sizes=self.exchange.sizes,
+            received=np.array(self.received),
+            unsent=np.array(self.unsent),
+            scale=self.scale,
+            progress=np.array([self.quanta, self.probing]),
+            emitted=self.emitted.copy() if whole else None,
+            left=self.fired.copy() if whole else None,
+        )
 
-    def restore(self, state: State) -> None:
+    def restore(self, state: IncrementalState) -> None:
+        """Put captured power back."""
         types = self.exchange.types
-        self.received = upload(types.Int64, state["received"])
-        self.unsent = upload(types.Float64, state["unsent"])
-        self.quanta, self.probing = (int(x) for x in state["progress"])
-        if "emitted" in state:
-            self.emitted, self.fired = state["emitted"].copy(), state["left"].copy()
+        self.received = upload(types.Int64, state.received)
+        self.unsent = upload(types.Float64, state.unsent)
+        self.quanta, self.probing = (int(x) for x in state.progress)
+        if state.emitted is not None and state.left is not None:
+            self.emitted, self.fired = state.emitted.copy(), state.left.copy()

@@ -18,12 +18,14 @@ import drjit as dr
 import numpy as np
 
 from ...device.backend import upload
+from ...errors import MethodError
 from ...problem.model import Problem
-from ..base import State, Swept
+from ..base import Swept
 from .control import Control
 from .exchange import LINE, Exchange
 from .incremental import Incremental
 from .plan import START, Plan
+from .state import RegularState
 
 FORGET = {1: 1 / 2, 2: 7 / 8}  # least weight of an iteration in the source that takes it, by turns
 UNIT = 2.0**27  # of received power: the mean of what a line carries
@@ -139,20 +141,29 @@ class Regular:
         dr.eval(self.sources[other], self.received)
         return fired
 
-    def capture(self) -> State:
-        state = {"received": np.array(self.received), "source": np.concatenate(self.sources), "scale": np.array(1.0)}
-        state |= {"constants": self.constants.copy(), "weights": self.weights.copy()}
-        state["progress"] = self.plan.capture()
-        if self.warm is not None and self.plan.starting:
-            state |= {f"warm_{key}": value for key, value in self.warm.capture().items()}
-        return state
+    def capture(self) -> RegularState:
+        """Copies."""
+        warm = self.warm if self.plan.starting else None
+        return RegularState(
+            sizes=self.exchange.sizes,
+            received=np.array(self.received),
+            source=np.concatenate(self.sources),
+            scale=1.0,
+            constants=self.constants.copy(),
+            weights=self.weights.copy(),
+            progress=self.plan.capture(),
+            warm=None if warm is None else warm.capture(),
+        )
 
-    def restore(self, state: State) -> None:
+    def restore(self, state: RegularState) -> None:
+        """Put captured means back."""
         types = self.exchange.types
-        self.plan.restore(state["progress"])
-        self.received = upload(types.Float64, state["received"])
-        self.sources = [upload(types.Float64, part) for part in np.split(state["source"], self.exchange.turns)]
-        self.constants, self.weights = state["constants"].copy(), state["weights"].copy()
+        self.plan.restore(state.progress)
+        self.received = upload(types.Float64, state.received)
+        self.sources = [upload(types.Float64, part) for part in np.split(state.source, self.exchange.turns)]
+        self.constants, self.weights = state.constants.copy(), state.weights.copy()
         if self.warm is not None and self.plan.starting:
+            if state.warm is None:
+                raise MethodError("the solution to go on from lacks the warm-up of its iterations; start anew")
             self.exchange.begin_warm_up()
-            self.warm.restore({key.removeprefix("warm_"): value for key, value in state.items() if key.startswith("warm_")})
+            self.warm.restore(state.warm)

@@ -5,31 +5,32 @@ import numpy as np
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...solution.books import Books, by_difference, exact_sum, exact_totals
-from ..base import AbstractTally, State
+from ..base import AbstractTally, line_of_quanta
 from .control import kept
 from .exchange import LINE
+from .state import IncrementalState, IterationState
 
 
-class IterationTally(AbstractTally):
+class IterationTally(AbstractTally[IterationState]):
     """Power received, in fixed point; ``scale`` times it is the share of Phi. Then what a control variate put aside."""
 
-    def lines(self, problem: Problem, state: State) -> int:
-        return int(state["fired"].sum(dtype=np.uint64))
+    def lines(self, problem: Problem, state: IterationState) -> int:
+        return int(state.fired.sum(dtype=np.uint64))
 
-    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
-        return state["arrivals"].sum(axis=0, dtype=np.int64)
+    def arrivals(self, problem: Problem, state: IterationState) -> np.ndarray:
+        return state.arrivals.sum(axis=0, dtype=np.int64)
 
-    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
+    def irradiance(self, problem: Problem, state: IterationState, group: int) -> tuple[np.ndarray, float]:
         values, _ = _received(problem, state, group)
         return values, problem.source.power
 
-    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+    def line(self, problem: Problem, state: IterationState, group: int) -> np.ndarray | float:
         """Of the lines traced, of which few-lined stages have more than quanta."""
-        return super().line(problem, state | {"quanta": np.asarray(self.lines(problem, state) // len(state["fired"]))}, group)
+        return line_of_quanta(problem, self.lines(problem, state) // len(state.fired), group)
 
-    def books(self, problem: Problem, state: State, group: int) -> dict:
-        if "left" in state:
-            return _exact(problem, state, group)
+    def books(self, problem: Problem, state: IterationState, group: int) -> dict:
+        if isinstance(state.scheme, IncrementalState) and state.scheme.left is not None:
+            return _exact(problem, state, state.scheme, group)
         values, missed = _received(problem, state, group)
         power, area = problem.source.power, problem.patches.area
         absorbed = float((values.mean(axis=0) * power) @ (1 - problem.groups.reflectance[:, group]))
@@ -37,28 +38,31 @@ class IterationTally(AbstractTally):
         return by_difference(float(problem.groups.emission[:, group] @ area), absorbed, escaped, lost)
 
 
-def _received(problem: Problem, state: State, group: int) -> tuple[np.ndarray, np.ndarray]:
+def _received(problem: Problem, state: IterationState, group: int) -> tuple[np.ndarray, np.ndarray]:
     """Shares of Phi: received by patches, (replicates, n_patches), and escaped and lost, (2, replicates)."""
-    replicates, n = state["fired"].shape
-    received = state["received"].reshape(replicates * (n + 2), -1)[:, group] * float(state["scale"])
+    replicates, n = state.fired.shape
+    scheme, control = state.scheme, state.control
+    received = scheme.received.reshape(replicates * (n + 2), -1)[:, group] * scheme.scale
     values, missed = received[: replicates * n].reshape(replicates, n), received[replicates * n :].reshape(2, replicates)
-    if "probed" in state:
-        beta = state.get("constants", state["beta"])[:, group, None]
+    if control is not None:
+        beta = (control.beta if isinstance(scheme, IncrementalState) else scheme.constants)[:, group, None]
         area = problem.patches.area / problem.patches.area.sum()
-        values = values + beta * area * kept(state["probe_missed"], state["probed"])
-        shares = state["probe_missed"] / np.maximum(state["probed"], 1)
+        values = values + beta * area * kept(control.probe_missed, control.probed)
+        shares = control.probe_missed / np.maximum(control.probed, 1)
         missed = missed + beta[:, 0] * (shares @ area)
     return values, missed
 
 
-def _exact(problem: Problem, state: State, group: int) -> dict:
+def _exact(problem: Problem, state: IterationState, scheme: IncrementalState, group: int) -> dict:
     """Of incremental iterations in one direction, power is carried line by line, in whole numbers."""
-    replicates, n = state["fired"].shape
-    received = state["received"].reshape(replicates * (n + 2), -1)[:, group].astype(np.uint64)
+    replicates, n = state.fired.shape
+    received = scheme.received.reshape(replicates * (n + 2), -1)[:, group].astype(np.uint64)
     counts, missed = received[: replicates * n].reshape(replicates, n), received[replicates * n :].reshape(2, replicates)
     rho = Source.fixed(problem.groups.reflectance[:, group])
     arrived, reflected = exact_totals(counts, rho)
-    emitted, fired = (exact_sum(state[key][:, group].astype(np.uint64)) << 32 for key in ("emitted", "left"))
-    watts = problem.source.power / int(state["quanta"]) / LINE / 2**32 / replicates
+    assert scheme.emitted is not None
+    assert scheme.left is not None
+    emitted, fired = (exact_sum(power[:, group].astype(np.uint64)) << 32 for power in (scheme.emitted, scheme.left))
+    watts = problem.source.power / state.quanta / LINE / 2**32 / replicates
     escaped, lost = (exact_sum(row) << 32 for row in missed)
     return Books(emitted, fired, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()

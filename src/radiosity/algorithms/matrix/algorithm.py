@@ -8,14 +8,16 @@ import numpy as np
 from ...errors import MethodError
 from ...factors.counts import PairCounts
 from ...factors.lines import GlobalLines, LocalLines
-from ..base import AbstractAlgorithm, Interrupted, State, Swept
+from ..base import AbstractAlgorithm, Interrupted, Swept
+from ..state import Arrays, Sizes
+from .state import MatrixState
 from .tally import MatrixTally
 
 LIMIT = 1 << 28  # pairs that are kept: 3 GiB, and as much again while they are merged
 LAUNCH = 1 << 22  # lines between two looks at the clock
 
 
-class Matrix(AbstractAlgorithm):
+class Matrix(AbstractAlgorithm[MatrixState]):
     """Counts of lines between patches. N lines a replicate give the same counts in any stages."""
 
     def __init__(self, *arguments):
@@ -67,25 +69,20 @@ class Matrix(AbstractAlgorithm):
         )
         raise Interrupted(reason) if self.reached else MethodError(reason)
 
-    def capture(self) -> State:
+    def capture(self) -> MatrixState:
         keys, counts = self.counts.arrays
-        return {
-            "quanta": np.array(self.wanted),
-            "reached": np.array(self.reached),
-            "replicates": np.array(self.replicates),
-            "keys": keys,
-            "counts": counts,
-        }
+        numbers = {"quanta": self.wanted, "reached": self.reached, "replicates": self.replicates}
+        return MatrixState(sizes=self.sizes, keys=keys, counts=counts, **numbers)
 
-    def restore(self, state: State) -> None:
-        if not {"keys", "counts", "reached"} <= set(state) or int(state["replicates"]) != self.replicates:
+    def read(self, arrays: Arrays, sizes: Sizes) -> MatrixState:
+        if MatrixState.lacking(arrays, sizes) or int(arrays["replicates"]) != sizes.replicates:
             raise MethodError("the solution to go on from lacks the counts of its lines, or has other replicates; start anew")
-        self.counts = PairCounts(state["keys"], state["counts"])
-        self.wanted, self.reached = int(state["quanta"]), int(state["reached"])
-        self.lines.resume(self.reached)
+        return MatrixState.read(arrays, sizes)
 
-    def unfinished(self, state: State) -> bool:
-        return int(state["reached"]) < int(state["quanta"])
+    def restore(self, state: MatrixState) -> None:
+        self.counts = PairCounts(state.keys, state.counts)
+        self.wanted, self.reached = state.quanta, state.reached
+        self.lines.resume(self.reached)
 
     @property
     def tally(self) -> MatrixTally:

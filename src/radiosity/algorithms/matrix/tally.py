@@ -6,10 +6,11 @@ from ...factors.counted import CountedPairs, Received
 from ...problem.model import Problem
 from ...solution.books import by_difference
 from ...tally.unmet import bias
-from ..base import AbstractMeanTally, State
+from ..base import AbstractMeanTally
+from .state import MatrixState
 
 
-class MatrixTally(AbstractMeanTally):
+class MatrixTally(AbstractMeanTally[MatrixState]):
     """Solves with counted pairs; the last state's results are kept, since they are asked for more than once.
 
     Attributes:
@@ -20,46 +21,44 @@ class MatrixTally(AbstractMeanTally):
         self.both_ways, self.directed = both_ways, directed
         self._last: tuple[np.ndarray | None, CountedPairs | None, list[Received]] = (None, None, [])
 
-    def pairs(self, problem: Problem, state: State) -> CountedPairs:
+    def pairs(self, problem: Problem, state: MatrixState) -> CountedPairs:
         """What was prepared: it depends on geometry alone."""
-        return CountedPairs(
-            problem.patches, state["keys"], state["counts"], int(state["replicates"]), self.both_ways, self.directed
-        )
+        return CountedPairs(problem.patches, state.keys, state.counts, state.replicates, self.both_ways, self.directed)
 
-    def lines(self, problem: Problem, state: State) -> int:
+    def lines(self, problem: Problem, state: MatrixState) -> int:
         """Each line of a patch is an entry; a span between two patches is two."""
-        return int(state["counts"].sum(dtype=np.uint64))
+        return int(state.counts.sum(dtype=np.uint64))
 
-    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
+    def arrivals(self, problem: Problem, state: MatrixState) -> np.ndarray:
         return self.pairs(problem, state).arrivals
 
-    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
+    def irradiance(self, problem: Problem, state: MatrixState, group: int) -> tuple[np.ndarray, float]:
         return self._solved(problem, state, group).power, 1.0
 
-    def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
+    def bias(self, problem: Problem, state: MatrixState, group: int) -> np.ndarray:
         """What patches without lines were given, and what patches get back of their own light, `solve.of_own_light`."""
         found = self._solved(problem, state, group)
         return bias(found.power, self.measured(problem, state)) + found.bias.mean(axis=0)
 
-    def measured(self, problem: Problem, state: State) -> np.ndarray:
+    def measured(self, problem: Problem, state: MatrixState) -> np.ndarray:
         self._solved(problem, state, 0)
         pairs = self._last[1]
         assert pairs is not None
         return pairs.lines
 
-    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+    def line(self, problem: Problem, state: MatrixState, group: int) -> np.ndarray | float:
         """Of a patch's lines one meets the brightest light."""
         each = self.pairs(problem, state).lines.mean(axis=0)
         return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(each, 1)
 
-    def books(self, problem: Problem, state: State, group: int) -> dict:
+    def books(self, problem: Problem, state: MatrixState, group: int) -> dict:
         found = self._solved(problem, state, group)
         emitted = float(problem.groups.emission[:, group] @ problem.patches.area)
         absorbed = float(found.power.mean(axis=0) @ (1 - problem.groups.reflectance[:, group]))
         return by_difference(emitted, absorbed, *(float(x) for x in found.missed.mean(axis=0)))
 
-    def _solved(self, problem: Problem, state: State, group: int) -> Received:
-        if self._last[0] is not state["keys"]:
+    def _solved(self, problem: Problem, state: MatrixState, group: int) -> Received:
+        if self._last[0] is not state.keys:
             pairs = self.pairs(problem, state)
-            self._last = state["keys"], pairs, pairs.solve(problem.groups.emission, problem.groups.reflectance)
+            self._last = state.keys, pairs, pairs.solve(problem.groups.emission, problem.groups.reflectance)
         return self._last[2][group]

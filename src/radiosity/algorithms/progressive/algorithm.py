@@ -10,16 +10,19 @@ import numpy as np
 from ...errors import MethodError
 from ...factors.sources import rows_for
 from .. import estimate
-from ..base import AbstractAlgorithm, State, Swept
+from ..base import AbstractAlgorithm, Swept
+from ..baseline_state import Solved
 from ..baseline_tally import SolvedTally
+from ..state import Arrays, Sizes
 from .recent import RecentRows
+from .state import ProgressiveState
 from .tally import ProgressiveTally, ambient
 
 UNSHOT = 1e-4  # of the emitted power: what is left then is not worth a shot
 DENSER = 1.05  # the history has an entry for so many times as many shots as the last
 
 
-class Progressive(AbstractAlgorithm):
+class Progressive(AbstractAlgorithm[ProgressiveState]):
     """N shots; the state after them depends on N alone."""
 
     def __init__(self, *arguments):
@@ -83,35 +86,42 @@ class Progressive(AbstractAlgorithm):
         if self.shots >= DENSER * self.history[-1][0]:
             self.history.append((self.shots, self._left))
 
-    def capture(self) -> State:
-        return {
-            "quanta": np.array(self.wanted),
-            "shots": np.array(self.shots),
-            "done": np.array(self._done),
-            "lines": np.array(self.recent.lines),
-            "received": self.received[None].copy(),
-            "missed": self.missed[None].copy(),
-            "unshot": self.unshot.copy(),
-            "seen": self.seen.copy(),
-            "history": np.array(self.history),
-            "recent": self.recent.numbers,
-            "cut_power": self.cut.copy(),
-            "cut": self._share(self.cut),
-        }
+    def capture(self) -> ProgressiveState:
+        solved = Solved(
+            sizes=self.sizes,
+            done=self._done,
+            lines=self.recent.lines,
+            received=self.received[None].copy(),
+            missed=self.missed[None].copy(),
+            seen=self.seen.copy(),
+            history=np.array(self.history),
+        )
+        return ProgressiveState(
+            sizes=self.sizes,
+            quanta=self.wanted,
+            shots=self.shots,
+            solved=solved,
+            unshot=self.unshot.copy(),
+            recent=self.recent.numbers,
+            cut_power=self.cut.copy(),
+            cut=float(self._share(self.cut)),
+        )
 
-    def restore(self, state: State) -> None:
-        if "unshot" not in state or state["unshot"].shape != self.unshot.shape:
+    def read(self, arrays: Arrays, sizes: Sizes) -> ProgressiveState:
+        if ProgressiveState.lacking(arrays, sizes, ("solved",)):
             raise MethodError("the solution to go on from lacks the unshot power of its patches, or has other sizes; start anew")
-        self.wanted, self.shots = int(state["quanta"]), int(state["shots"])
-        self.received, self.missed = state["received"][0].copy(), state["missed"][0].copy()
-        self.unshot, self.seen, self.cut = (state[name].copy() for name in ("unshot", "seen", "cut_power"))
-        self.history = [tuple(row) for row in state["history"]]
-        if len(state["recent"]):
-            self.recent.make([int(i) for i in state["recent"]], lambda lines: None)
-        self.recent.lines = int(state["lines"])
+        return ProgressiveState.read(arrays, sizes)
 
-    def unfinished(self, state: State) -> bool:
-        return int(state["shots"]) < int(state["quanta"])
+    def restore(self, state: ProgressiveState) -> None:
+        solved = state.solved
+        assert solved is not None
+        self.wanted, self.shots = state.quanta, state.shots
+        self.received, self.missed = solved.received[0].copy(), solved.missed[0].copy()
+        self.unshot, self.seen, self.cut = state.unshot.copy(), solved.seen.copy(), state.cut_power.copy()
+        self.history = [tuple(row) for row in solved.history]
+        if len(state.recent):
+            self.recent.make([int(i) for i in state.recent], lambda lines: None)
+        self.recent.lines = solved.lines
 
     @property
     def tally(self) -> ProgressiveTally:

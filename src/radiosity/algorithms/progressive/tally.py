@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...problem.model import Problem
-from ..base import AbstractTally, State
+from ..base import AbstractTally
 from ..baseline_tally import SolvedTally
+from .state import ProgressiveState
 
 
 def ambient(area: np.ndarray, reflectance: np.ndarray, unshot: np.ndarray) -> np.ndarray:
@@ -17,7 +18,7 @@ def ambient(area: np.ndarray, reflectance: np.ndarray, unshot: np.ndarray) -> np
 
 
 @dataclass(frozen=True, eq=False)
-class ProgressiveTally(AbstractTally):
+class ProgressiveTally(AbstractTally[ProgressiveState]):
     """As `SolvedTally`; with ``ambient`` irradiance is more by the ambient term, which the books leave out: it is for display."""
 
     ambient: bool
@@ -25,18 +26,18 @@ class ProgressiveTally(AbstractTally):
 
     counts_hits = False
 
-    def lines(self, problem: Problem, state: State) -> int:
+    def lines(self, problem: Problem, state: ProgressiveState) -> int:
         return self.solved.lines(problem, state)
 
-    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
+    def arrivals(self, problem: Problem, state: ProgressiveState) -> np.ndarray:
         return self.solved.arrivals(problem, state)
 
-    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
+    def irradiance(self, problem: Problem, state: ProgressiveState, group: int) -> tuple[np.ndarray, float]:
         values, unit = self.solved.irradiance(problem, state, group)
         if not self.ambient:
             return values, unit
         area = problem.patches.area
-        return values + area * ambient(area, problem.groups.reflectance, state["unshot"])[group], unit
+        return values + area * ambient(area, problem.groups.reflectance, state.unshot)[group], unit
 
-    def books(self, problem: Problem, state: State, group: int) -> dict:
+    def books(self, problem: Problem, state: ProgressiveState, group: int) -> dict:
         return self.solved.books(problem, state, group)

@@ -21,10 +21,12 @@ from ...tally.hit_counts import HitCounts
 from ...tally.unmet import bias, means, sides
 from ...tracing.lanes import Batch, Launch
 from ...tracing.line_tracer import LineTracer
-from ..base import AbstractMeanTally, State
+from ..base import AbstractMeanTally
+from ..state import Arrays, Sizes
 from .launches import AbstractWalks
 from .particles import ParticleBank, PathSegments
 from .source_sampling import SourceSampling
+from .state import GatheringState
 
 UNIT = 2.0**24  # fixed point units of the largest emission of a group
 
@@ -40,7 +42,7 @@ class Visit:
     alive: Any
 
 
-class Gathering(AbstractWalks):
+class Gathering(AbstractWalks[GatheringState]):
     """Sums of the radiosity met, and numbers of lines that left each patch."""
 
     def _prepare(self) -> None:
@@ -112,49 +114,52 @@ class Gathering(AbstractWalks):
                 dr.scatter_add(self.met, fixed, visit.left * self.n + g, active=on)
             dr.eval(self.met, met)
 
-    def _counts(self) -> State:
+    def _state(self, **progress: Any) -> GatheringState:
         arrivals, missed = self.hits.read()
         fired = frozen(self.fired).reshape(arrivals.shape)
         met = frozen(self.met).reshape(self.replicates, self.tracer.n, self.n)
-        return {"arrivals": arrivals, "fired": fired, "missed": missed, "met": met}
+        return GatheringState(arrivals=arrivals, fired=fired, missed=missed, met=met, **progress)
 
-    def _put_back(self, state: State) -> None:
-        if "met" not in state or state["met"].shape != (self.replicates, self.tracer.n, self.n):
+    def read(self, arrays: Arrays, sizes: Sizes) -> GatheringState:
+        if GatheringState.lacking(arrays, sizes):
             raise MethodError("the solution to go on from lacks the sums of its run; start anew")
-        self.hits.write(state["arrivals"], state["missed"])
-        self.fired = upload(self.types.UInt32, state["fired"])
-        self.met = upload(self.types.UInt64, state["met"])
+        return GatheringState.read(arrays, sizes)
+
+    def _put_back(self, state: GatheringState) -> None:
+        self.hits.write(state.arrivals, state.missed)
+        self.fired = upload(self.types.UInt32, state.fired)
+        self.met = upload(self.types.UInt64, state.met)
 
     @property
     def tally(self) -> "GatheringTally":
         return GatheringTally()
 
 
-class GatheringTally(AbstractMeanTally):
+class GatheringTally(AbstractMeanTally[GatheringState]):
     """Means of the radiosity met."""
 
-    def lines(self, problem: Problem, state: State) -> int:
-        return exact_sum(state["fired"])
+    def lines(self, problem: Problem, state: GatheringState) -> int:
+        return exact_sum(state.fired)
 
-    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
-        return state["fired"].sum(axis=0, dtype=np.int64)  # a patch is measured by the lines that leave it
+    def arrivals(self, problem: Problem, state: GatheringState) -> np.ndarray:
+        return state.fired.sum(axis=0, dtype=np.int64)  # a patch is measured by the lines that leave it
 
-    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        mean = means(state["met"][..., group], self.measured(problem, state), sides(problem.patches))
+    def irradiance(self, problem: Problem, state: GatheringState, group: int) -> tuple[np.ndarray, float]:
+        mean = means(state.met[..., group], self.measured(problem, state), sides(problem.patches))
         return mean * problem.patches.area, float(problem.groups.emission[:, group].max()) / UNIT
 
-    def line(self, problem: Problem, state: State, group: int) -> np.ndarray | float:
+    def line(self, problem: Problem, state: GatheringState, group: int) -> np.ndarray | float:
         """Of a patch's lines one meets the brightest light."""
-        brightest, each = problem.groups.emission[:, group].max(), state["fired"].sum(axis=0) / len(state["fired"])
+        brightest, each = problem.groups.emission[:, group].max(), state.fired.sum(axis=0) / len(state.fired)
         return brightest * problem.patches.area / np.maximum(each, 1)
 
-    def bias(self, problem: Problem, state: State, group: int) -> np.ndarray:
+    def bias(self, problem: Problem, state: GatheringState, group: int) -> np.ndarray:
         return bias(self.irradiance(problem, state, group)[0], self.measured(problem, state))
 
-    def measured(self, problem: Problem, state: State) -> np.ndarray:
-        return state["fired"]
+    def measured(self, problem: Problem, state: GatheringState) -> np.ndarray:
+        return state.fired
 
-    def books(self, problem: Problem, state: State, group: int) -> dict:
+    def books(self, problem: Problem, state: GatheringState, group: int) -> dict:
         values, unit = self.irradiance(problem, state, group)
         received = values.mean(axis=0) * unit
         rho, area = problem.groups.reflectance[:, group], problem.patches.area
@@ -162,6 +167,6 @@ class GatheringTally(AbstractMeanTally):
         left = emitted + float(received @ rho)
         # walks leave patches as often as light does not: what is missed is taken to be what does not land
         missed = max(left - float(received.sum()), 0.0)
-        counts = [exact_sum(kind) for kind in state["missed"]]
+        counts = [exact_sum(kind) for kind in state.missed]
         escaped, lost = (missed * count / max(sum(counts), 1) for count in counts)
         return by_difference(emitted, float(received @ (1 - rho)), escaped, lost)

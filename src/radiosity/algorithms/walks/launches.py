@@ -1,14 +1,16 @@
 """Processes that follow walks to their ends, a launch of up to a million at a time; between launches their state is whole."""
 
 from abc import abstractmethod
-
-import numpy as np
+from typing import Any, TypeVar
 
 from ...tracing.lanes import Batch, Launch
-from ..base import AbstractAlgorithm, State, Swept
+from ..base import AbstractAlgorithm, Swept
+from .state import AbstractLaunchState
+
+S = TypeVar("S", bound=AbstractLaunchState)
 
 
-class AbstractWalks(AbstractAlgorithm):
+class AbstractWalks(AbstractAlgorithm[S]):
     """Stages made of launches. ``quanta`` is the number of walks of a replicate."""
 
     def __init__(self, *arguments):
@@ -29,11 +31,11 @@ class AbstractWalks(AbstractAlgorithm):
         """All walks of a launch, to their ends: how many lines they took."""
 
     @abstractmethod
-    def _counts(self) -> State:
-        """The counters on the host."""
+    def _state(self, **progress: Any) -> S:
+        """The counters on the host, and what is given of sizes and launches."""
 
     @abstractmethod
-    def _put_back(self, state: State) -> None:
+    def _put_back(self, state: S) -> None:
         """Counters from a captured state."""
 
     @property
@@ -52,17 +54,12 @@ class AbstractWalks(AbstractAlgorithm):
                     swept(lines)
         self._finished = True
 
-    def capture(self) -> State:
-        state = {"quanta": np.array(self._quanta)} | self._counts()
-        if not self._finished:
-            state |= {"quanta_before": np.array(self._before), "launches": np.array(self._done)}
-        return state
+    def capture(self) -> S:
+        before, done = (None, None) if self._finished else (self._before, self._done)
+        return self._state(sizes=self.sizes, quanta=self._quanta, quanta_before=before, launches=done)
 
-    def restore(self, state: State) -> None:
+    def restore(self, state: S) -> None:
         self._put_back(state)
-        self._quanta = int(state["quanta"])
-        self._before, self._done = int(state.get("quanta_before", self._quanta)), int(state.get("launches", 0))
-        self._finished = not self.unfinished(state)
-
-    def unfinished(self, state: State) -> bool:
-        return "launches" in state
+        self._quanta = state.quanta
+        self._before = state.quanta if state.quanta_before is None else state.quanta_before
+        self._done, self._finished = state.launches or 0, not state.unfinished

@@ -101,19 +101,18 @@ class Scores:
         ratios = (dr.gather(self.tracer.types.Float, ratio, patch, on) for ratio in self.ratios)
         return tuple(w * r * (1 if factor is None else factor) for w, r in zip(weights, ratios, strict=True))
 
-    def capture(self) -> dict[str, np.ndarray]:
-        """fired_power (n_groups,) uint64; where weighted also received (replicates, n_patches, n_groups) and
-        received_missed (2, replicates, n_groups), uint64."""
-        tracer, state = self.tracer, {"fired_power": np.array(self.fired, np.uint64)}
-        if self.weighted:
-            flat, split = frozen(self.received), tracer.total * self.n
-            state["received"] = flat[:split].reshape(tracer.replicates, tracer.n, self.n)
-            state["received_missed"] = flat[split:].reshape(2, tracer.replicates, self.n)
-        return state
+    def read(self) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None]:
+        """On the host, uint64: fired, (n_groups,), and where weighted received, (replicates, n_patches, n_groups), and what
+        escaped and was lost, (2, replicates, n_groups)."""
+        tracer, fired = self.tracer, np.array(self.fired, np.uint64)
+        if not self.weighted:
+            return fired, None, None
+        flat, split = frozen(self.received), tracer.total * self.n
+        missed = flat[split:].reshape(2, tracer.replicates, self.n)
+        return fired, flat[:split].reshape(tracer.replicates, tracer.n, self.n), missed
 
-    def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Put captured sums back."""
-        self.fired = [int(power) for power in state["fired_power"]]
-        if self.weighted:
-            flat = np.concatenate([state["received"].ravel(), state["received_missed"].ravel()])
-            self.received = upload(self.tracer.types.UInt64, flat)
+    def write(self, fired: np.ndarray, received: np.ndarray | None, missed: np.ndarray | None) -> None:
+        """Put back what `read` gave."""
+        self.fired = [int(power) for power in fired]
+        if received is not None and missed is not None:
+            self.received = upload(self.tracer.types.UInt64, np.concatenate([received.ravel(), missed.ravel()]))

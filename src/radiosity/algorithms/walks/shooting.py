@@ -15,19 +15,21 @@ from ...tally.hit_counts import HitCounts
 from ...tally.hit_tally import DENSE
 from ...tracing.lanes import Batch, Launch
 from ...tracing.line_tracer import LineTracer
-from ..base import AbstractTally, State
+from ..base import AbstractTally
+from ..state import Arrays, Sizes
 from .density import DensityTally
 from .fractions import Fractions
 from .launches import AbstractWalks
 from .particles import ParticleBank, PathSegments
 from .scores import Scores
 from .source_sampling import SourceSampling
+from .state import WalkState
 from .tally import WalkTally
 
 FEW = 1 << 12  # particles that are followed to their ends at once: the sums are the same
 
 
-class Walks(AbstractWalks):
+class Walks(AbstractWalks[WalkState]):
     """Walks of local lines that score where they land."""
 
     def _prepare(self) -> None:
@@ -125,17 +127,22 @@ class Walks(AbstractWalks):
             self.scores.count_fired((), took)
         return took
 
-    def _counts(self) -> State:
-        arrivals, missed = self.hits.read()
-        return {"arrivals": arrivals, "missed": missed} | self.scores.capture()
+    def _state(self, **progress: Any) -> WalkState:
+        (arrivals, missed), (fired, received, its_missed) = self.hits.read(), self.scores.read()
+        scores = {"fired_power": fired, "received": received, "received_missed": its_missed}
+        return WalkState(arrivals=arrivals, missed=missed, **scores, **progress)
 
-    def _put_back(self, state: State) -> None:
-        if not {"quanta", "arrivals", "missed"} <= set(state) or state["arrivals"].shape != (self.replicates, self.tracer.n):
+    def read(self, arrays: Arrays, sizes: Sizes) -> WalkState:
+        wanted = ("received", "received_missed") if self.scores.weighted else ()
+        if WalkState.lacking(arrays, sizes, wanted):
             raise MethodError("the solution to go on from lacks the counts of its run; start anew")
-        self.hits.write(state["arrivals"], state["missed"])
-        self.scores.restore(state)
+        return WalkState.read(arrays, sizes, wanted)
+
+    def _put_back(self, state: WalkState) -> None:
+        self.hits.write(state.arrivals, state.missed)
+        self.scores.write(state.fired_power, state.received, state.received_missed)
 
     @property
-    def tally(self) -> AbstractTally:
+    def tally(self) -> AbstractTally[WalkState]:
         counted = WalkTally(self.method.estimator == "collision", self.fractions is not None)
         return DensityTally(counted) if self.method.reconstruction == "local-linear" else counted

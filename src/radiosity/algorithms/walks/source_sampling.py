@@ -7,6 +7,7 @@ import numpy as np
 from ...device.backend import upload
 from ...problem.model import Problem
 from ...problem.quanta import Source, phases, target_counts
+from ...sampling.streams import Seed
 from ...tracing.lanes import Batch
 from ...tracing.line_tracer import LineTracer
 
@@ -25,12 +26,12 @@ class SourceSampling:
     phase: np.ndarray
 
     @staticmethod
-    def of_power(problem: Problem, seed: int, replicates: int) -> "SourceSampling":
+    def of_power(problem: Problem, seed: Seed | int, replicates: int) -> "SourceSampling":
         """Particles leave lights in proportion to their power."""
         return SourceSampling(problem.source, phases(seed, replicates, len(problem.patches)))
 
     @staticmethod
-    def of_area(problem: Problem, seed: int, replicates: int) -> "SourceSampling":
+    def of_area(problem: Problem, seed: Seed | int, replicates: int) -> "SourceSampling":
         """Gathering walks leave all patches in proportion to their area."""
         area = problem.patches.area
         source = Source(area / area.sum(), problem.source.rho, problem.source.power)

@@ -7,12 +7,13 @@ import numpy as np
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...solution.books import Books, by_difference, exact_sum, exact_totals
-from ..base import AbstractTally, State
+from ..base import AbstractTally
 from .scores import UNIT
+from .state import WalkState
 
 
 @dataclass(frozen=True)
-class WalkTally(AbstractTally):
+class WalkTally(AbstractTally[WalkState]):
     """Landings, or their scores.
 
     Attributes:
@@ -23,24 +24,23 @@ class WalkTally(AbstractTally):
     collisions: bool
     chosen: bool
 
-    def lines(self, problem: Problem, state: State) -> int:
-        return exact_sum(state["arrivals"]) + exact_sum(state["missed"])
+    def lines(self, problem: Problem, state: WalkState) -> int:
+        return exact_sum(state.arrivals) + exact_sum(state.missed)
 
-    def arrivals(self, problem: Problem, state: State) -> np.ndarray:
-        return state["arrivals"].sum(axis=0, dtype=np.int64)
+    def arrivals(self, problem: Problem, state: WalkState) -> np.ndarray:
+        return state.arrivals.sum(axis=0, dtype=np.int64)
 
-    def irradiance(self, problem: Problem, state: State, group: int) -> tuple[np.ndarray, float]:
-        quantum = problem.source.power / int(state["quanta"])
-        if "received" in state:
-            return state["received"][..., group], quantum / UNIT
-        return state["arrivals"], quantum
+    def irradiance(self, problem: Problem, state: WalkState, group: int) -> tuple[np.ndarray, float]:
+        quantum = problem.source.power / state.quanta
+        if state.received is not None:
+            return state.received[..., group], quantum / UNIT
+        return state.arrivals, quantum
 
-    def books(self, problem: Problem, state: State, group: int) -> dict:
-        replicates, quanta = len(state["arrivals"]), int(state["quanta"])
-        unit = UNIT if "received" in state else 1
-        counts, missed = state["arrivals"], state["missed"]
-        if "received" in state:
-            counts, missed = state["received"][..., group], state["received_missed"][..., group]
+    def books(self, problem: Problem, state: WalkState, group: int) -> dict:
+        replicates, quanta = len(state.arrivals), state.quanta
+        unit, counts, missed = 1, state.arrivals, state.missed
+        if state.received is not None and state.received_missed is not None:
+            unit, counts, missed = UNIT, state.received[..., group], state.received_missed[..., group]
         watts = problem.source.power / quanta / unit / 2**32 / replicates
         reflectance = problem.groups.reflectance[:, group]
         emission = float(problem.groups.emission[:, group] @ problem.patches.area)
@@ -51,7 +51,7 @@ class WalkTally(AbstractTally):
         rho = Source.fixed(reflectance)
         arrived, reflected = exact_totals(counts, rho)
         emitted = self._emitted(problem, quanta, unit, emission) * replicates
-        fired = int(state["fired_power"][group]) << 32
+        fired = int(state.fired_power[group]) << 32
         escaped, lost = (exact_sum(x) << 32 for x in missed)
         return Books(emitted, fired, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()
 

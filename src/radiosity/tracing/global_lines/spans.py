@@ -19,7 +19,7 @@ from ...method.lines import LINES
 from ...method.model import Method
 from ...sampling.global_lines import by_disc, by_two_points, of_bundle
 from ...sampling.numbers import ready
-from ...sampling.streams import Purpose, stream
+from ...sampling.streams import Purpose, Seed, stream
 from ...scene.precision import EPSILON
 from ..bvh import REACH
 from ..geometry import Geometry
@@ -68,7 +68,7 @@ class Spans:
 
     geometry: Geometry
     method: Method
-    seed: int
+    seed: Seed | int
     replicates: int
 
     def __post_init__(self):

@@ -1,0 +1,72 @@
+"""States of global lines."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..firing.state import FiringState
+from ..merge_rules import alike
+from ..state import AbstractState, array, number, part
+
+HALVES = 2  # of a replicate of `Pooling`: each carries what the other has found
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MultipathState(AbstractState):
+    """Power on its way and landed.
+
+    Attributes:
+        lines_done: global lines of each replicate so far.
+        ends: (replicates, n_patches) int64, span ends on each patch.
+        ends_per_line: (n_patches,) float64, how many are expected for each line.
+        ledger: (groups, 4, replicates, 2) uint64, sums of `exchange.LEDGER`, upper and lower 32 bits.
+        unshot, landed: (groups, replicates, n_patches) uint64, in fixed point.
+        shot: the lines of the first shot, where there is one.
+    """
+
+    lines_done: int = number(int)
+    ends: np.ndarray = array("replicates", "rows")
+    ends_per_line: np.ndarray = array("rows", merged=alike)
+    ledger: np.ndarray = array("groups", 4, "replicates", 2)
+    unshot: np.ndarray = array("groups", "replicates", "rows")
+    landed: np.ndarray = array("groups", "replicates", "rows")
+    shot: FiringState | None = part(FiringState, "shot_", optional=True)
+
+    @property
+    def unfinished(self) -> bool:
+        return self.lines_done < self.quanta
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PoolingState(AbstractState):
+    """Sums of iterations, halves of replicates side by side; see `Pooling`.
+
+    Attributes:
+        lines_done: global lines of each half so far.
+        replicates: independent runs.
+        shot: the lines of the first shot, where there is one.
+    """
+
+    alone = "the warm-up of pooled global lines balances the power of all replicates together"
+
+    carried: np.ndarray = array("groups", "rows of halves")
+    recent: np.ndarray = array("groups", "rows of halves")
+    recent_ends: np.ndarray = array("rows of halves")
+    fresh: np.ndarray = array("groups", "rows of halves")
+    fresh_ends: np.ndarray = array("rows of halves")
+    received: np.ndarray = array("groups", "rows of halves")
+    ends: np.ndarray = array("rows of halves")
+    escaped: np.ndarray = array("rows of halves")
+    lost: np.ndarray = array("rows of halves")
+    lines_done: int = number(int)
+    replicates: int = number(int)
+    shot: FiringState | None = part(FiringState, "shot_", optional=True)
+
+    @property
+    def unfinished(self) -> bool:
+        return self.lines_done < lines_of_half(self.quanta)
+
+
+def lines_of_half(quanta: int) -> int:
+    """Lines of each half of a replicate."""
+    return -(-quanta // HALVES)

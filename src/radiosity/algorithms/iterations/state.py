@@ -1,0 +1,125 @@
+"""The state of iterations between two steps.
+
+Each step draws its rounding offsets by its number, and all replicates of a run make equally many steps: as many as the one that
+takes longest. So what an incremental solution takes is felt by all, in all that follows it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import MethodError
+from ..merge_rules import alike
+from ..state import AbstractState, Record, array, number, part
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class IncrementalState(Record):
+    """Of `Incremental`; arrays over slots are flat.
+
+    Attributes:
+        received: (slots * groups,) int64, all that arrived.
+        unsent: (replicates * n_patches * groups,) float64.
+        scale: received times it is the share of Phi.
+        progress: quanta, and lines of probes that are not told yet.
+        emitted, left: (replicates, groups) int64, where power is carried in whole numbers.
+    """
+
+    received: np.ndarray = array("slots", "groups", flat=True)
+    unsent: np.ndarray = array("replicates", "rows", "groups", flat=True)
+    scale: float = number(float)
+    progress: np.ndarray = array(2, merged=alike)
+    emitted: np.ndarray | None = array("replicates", "groups", optional=True)
+    left: np.ndarray | None = array("replicates", "groups", optional=True)
+
+    @property
+    def unfinished(self) -> bool:
+        """Power is left to send."""
+        return bool(self.unsent.any())
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RegularState(Record):
+    """Of `Regular`; arrays over slots are flat.
+
+    Attributes:
+        received: (slots * groups,) float64, the mean over iterations, a share of Phi.
+        source: (turns * replicates * n_patches * groups,) float64, what the next iterations send.
+        scale: 1.
+        constants: (replicates, groups), the mean of the control variate's constants.
+        weights: (replicates,), of all iterations in the mean.
+        progress: (7,) counters of `Plan`.
+        warm: the warm-up, while it lasts.
+    """
+
+    received: np.ndarray = array("slots", "groups", flat=True)
+    source: np.ndarray = array("any", "replicates", "rows", "groups", flat=True)
+    scale: float = number(float)
+    constants: np.ndarray = array("replicates", "groups")
+    weights: np.ndarray = array("replicates")
+    progress: np.ndarray = array(7, merged=alike)
+    warm: IncrementalState | None = part(IncrementalState, "warm_", optional=True)
+
+    @property
+    def unfinished(self) -> bool:
+        """Lines of the stage are left, or no iteration counts yet."""
+        quanta, done, summed = (int(x) for x in self.progress[:3])
+        return done < quanta or summed == 0
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ControlState(Record):
+    """Of `Control`.
+
+    Attributes:
+        beta: (replicates, groups) float64, constants.
+        probe_missed: (2, replicates, n_patches) int64, probing lines escaped and lost.
+        probed: (replicates, n_patches) int64, probing lines fired.
+    """
+
+    beta: np.ndarray = array("replicates", "groups")
+    probe_missed: np.ndarray = array(2, "replicates", "rows")
+    probed: np.ndarray = array("replicates", "rows")
+
+
+def _steps(layout, values: list, records: list["IterationState"]) -> int:
+    """Of incremental iterations the replicates that need fewer steps make the rest with no lines. Where regular ones follow a
+    warm-up, its length decides what all of them draw."""
+    if records[0].regular is not None and len(set(values)) > 1:
+        raise MethodError(
+            f"merge: with their warm-ups, runs took {', '.join(map(str, values))} steps, and all replicates of one run make as "
+            "many as the one that needs most; solve them in one run, or take warm_up=False"
+        )
+    return max(values)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class IterationState(AbstractState):
+    """Counters of lines, and one of the two schemes.
+
+    Attributes:
+        arrivals, fired: (replicates, n_patches) uint32, lines that landed on patches and left them.
+        missed: (2, replicates) uint32, lines that escaped and were lost.
+        fired_apart: (sequences, replicates, n_patches) uint32, where several sequences are taken in turn; ``fired`` is the sum.
+        step: how many steps were made.
+    """
+
+    arrivals: np.ndarray = array("replicates", "rows")
+    fired: np.ndarray = array("replicates", "rows")
+    missed: np.ndarray = array(2, "replicates")
+    fired_apart: np.ndarray | None = array("any", "replicates", "rows", optional=True)
+    step: int = number(int, merged=_steps)
+    regular: RegularState | None = part(RegularState, optional=True)
+    incremental: IncrementalState | None = part(IncrementalState, optional=True)
+    control: ControlState | None = part(ControlState, optional=True)
+
+    @property
+    def scheme(self) -> RegularState | IncrementalState:
+        """What the order keeps."""
+        found = self.regular or self.incremental
+        assert found is not None
+        return found
+
+    @property
+    def unfinished(self) -> bool:
+        return self.scheme.unfinished

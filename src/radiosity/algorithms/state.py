@@ -1,0 +1,171 @@
+"""States of algorithms as typed records: what is needed to go on, and to read results.
+
+A record is a frozen dataclass. Each field says how its array lies (`array`) or what number it is (`number`), so that arrays of a
+file can be checked, and which rule joins it with those of other replicates (`merging`). Files and `Solution.state` hold the same
+arrays by name.
+"""
+
+from abc import abstractmethod
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+Arrays = Mapping[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """How many replicates, rows of a replicate (patches, then lights) and groups of bands there are."""
+
+    replicates: int
+    rows: int
+    groups: int
+
+    def shape(self, axes: tuple[str | int, ...]) -> tuple[int, ...]:
+        """Lengths of axes; -1 for "any". A slot is a row, or a place for what escaped or was lost (see `LineTracer`)."""
+        lengths = {
+            "replicates": self.replicates,
+            "rows": self.rows,
+            "groups": self.groups,
+            "slots": self.replicates * (self.rows + 2),
+            "rows of halves": 2 * self.replicates * self.rows,
+            "any": -1,
+        }
+        return tuple(axis if isinstance(axis, int) else lengths[axis] for axis in axes)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How an array lies.
+
+    Attributes:
+        axes: their names, or lengths.
+        flat: the array has one axis, which runs through those.
+    """
+
+    axes: tuple[str | int, ...]
+    flat: bool = False
+
+    def fits(self, value: np.ndarray, sizes: Sizes) -> bool:
+        """The array has this shape."""
+        shape = sizes.shape(self.axes)
+        if self.flat:
+            known = abs(int(np.prod(shape)))
+            return value.ndim == 1 and (value.size == known if -1 not in shape else value.size > 0 and value.size % known == 0)
+        return len(shape) == value.ndim and all(wanted in (-1, have) for wanted, have in zip(shape, value.shape, strict=True))
+
+
+Rule = Callable[[Layout | None, list, list[Any]], Any]  # layout, values of all states, and the records that have them
+
+
+def array(*axes: str | int, flat: bool = False, optional: bool = False, merged: Rule | None = None) -> Any:
+    """A field that holds an array. Without a rule, states are put side by side along the replicates."""
+    return field(**_default(optional), metadata={"layout": Layout(axes, flat), "merged": merged})
+
+
+def number(kind: type, *, optional: bool = False, merged: Rule | None = None) -> Any:
+    """A field that holds an int, a float or a bool. Without a rule, it is the same in all states that are merged."""
+    return field(**_default(optional), metadata={"kind": kind, "merged": merged})
+
+
+def part(kind: type["Record"], prefix: str = "", *, optional: bool = False) -> Any:
+    """A field that holds another record, whose arrays have a prefix to their names."""
+    return field(**_default(optional), metadata={"record": kind, "prefix": prefix})
+
+
+def _default(optional: bool) -> dict:
+    return {"default": None} if optional else {}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Record:
+    """Arrays and numbers that belong together; optional fields are None where they are not there."""
+
+    sizes: Sizes
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All arrays by name, not copied; numbers are arrays without axes."""
+        found: dict[str, np.ndarray] = {}
+        for one in fields(self)[1:]:
+            value = getattr(self, one.name)
+            if isinstance(value, Record):
+                found |= {one.metadata["prefix"] + name: more for name, more in value.arrays().items()}
+            elif value is not None:
+                found[one.name] = np.asarray(value)
+        return found
+
+    @classmethod
+    def read(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> Self:
+        """From arrays that lack nothing. An optional field is read where it is wanted, or all of it is there."""
+        values: dict[str, Any] = {"sizes": sizes}
+        for one in fields(cls)[1:]:
+            facts = one.metadata
+            if not _taken(one, arrays, wanted, prefix):
+                continue
+            if "record" in facts:
+                values[one.name] = facts["record"].read(arrays, sizes, prefix=prefix + facts["prefix"])
+            else:
+                value = arrays[prefix + one.name]
+                values[one.name] = facts["kind"](value) if "kind" in facts else value
+        return cls(**values)
+
+    @classmethod
+    def lacking(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> str:
+        """What is not there, "other sizes" where arrays have other shapes, or "" where `read` finds all."""
+        missing = cls.missing(arrays, wanted, prefix)
+        return ", ".join(missing) or ("" if cls.fits(arrays, sizes, wanted, prefix) else "other sizes")
+
+    @classmethod
+    def missing(cls, arrays: Arrays, wanted: Collection[str] = (), prefix: str = "") -> list[str]:
+        """Names of arrays that are needed and not there, in order."""
+        found = []
+        for one in fields(cls)[1:]:
+            needed = one.default is not None or one.name in wanted
+            if needed and "record" in one.metadata:
+                found += one.metadata["record"].missing(arrays, prefix=prefix + one.metadata["prefix"])
+            elif needed and prefix + one.name not in arrays:
+                found.append(prefix + one.name)
+        return sorted(found)
+
+    @classmethod
+    def fits(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> bool:
+        """All arrays that are there have their shape."""
+        for one in fields(cls)[1:]:
+            facts = one.metadata
+            if not _taken(one, arrays, wanted, prefix):
+                continue
+            if "record" in facts:
+                if not facts["record"].fits(arrays, sizes, prefix=prefix + facts["prefix"]):
+                    return False
+            elif not facts.get("layout", Layout(())).fits(np.asarray(arrays[prefix + one.name]), sizes):
+                return False
+        return True
+
+
+def _taken(one: Any, arrays: Arrays, wanted: Collection[str], prefix: str) -> bool:
+    if one.default is not None or one.name in wanted:
+        return True
+    if "record" in one.metadata:
+        return not one.metadata["record"].missing(arrays, prefix=prefix + one.metadata["prefix"])
+    return prefix + one.name in arrays
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AbstractState(Record):
+    """What an algorithm needs to go on, and its tally to read results.
+
+    Attributes:
+        quanta: N of the stage that was begun last.
+        alone: why no states of other replicates can be put together with it; "" where they can.
+    """
+
+    alone: ClassVar[str] = ""
+
+    quanta: int = number(int)
+
+    @property
+    @abstractmethod
+    def unfinished(self) -> bool:
+        """The state was captured within a stage."""
