@@ -1,4 +1,4 @@
-"""Where baselines take form factors from, by name."""
+"""The sources of form factors of baselines, by name."""
 
 from importlib import import_module
 
@@ -10,6 +10,6 @@ ROWS = {"polygons": "polygon_rows:PolygonRows", "hemicube": "hemicube_rows:Hemic
 
 
 def rows_for(geometry: Geometry, problem: Problem, method, seed: int, replicates: int) -> AbstractRows:
-    """The source of form factors that a `Baseline` names."""
+    """Return the source of form factors that a `Baseline` names."""
     module, cls = ROWS[method.factors].split(":")
     return getattr(import_module(f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)
