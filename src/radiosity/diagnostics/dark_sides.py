@@ -1,4 +1,4 @@
-"""What `check` says of two-sided faces that light reaches on one side alone, as the walls of a room from OBJ, PLY and STL."""
+"""Findings of `check` about two-sided faces that light reaches on one side alone, as walls of rooms from OBJ, PLY and STL."""
 
 from collections.abc import Iterator
 
@@ -19,10 +19,10 @@ ADVICE = {
 
 
 def findings(scene: Scene, fates: leaks.Fates, power: np.ndarray) -> Iterator[Finding]:
-    """A note for each kind, or a warning where the dark side emits.
+    """Yield a note for each kind, or a warning where the dark side emits.
 
     Args:
-        fates: of lines that follow the light.
+        fates: fates of lines that follow the light.
         power: (2, n_faces), emitted by front and back.
     """
     lit, back_is_dark = _lit(scene, fates)
@@ -47,7 +47,7 @@ def findings(scene: Scene, fates: leaks.Fates, power: np.ndarray) -> Iterator[Fi
 
 
 def inside(scene: Scene, fates: leaks.Fates) -> leaks.Fates:
-    """Without lines that begin on dark sides: what leaves the scene from the outside of a room is no leak."""
+    """Return the fates without lines that begin on dark sides: what leaves the scene from the outside of a room is no leak."""
     lit, back_is_dark = _lit(scene, fates)
     known = lit[scene.surface[fates.face]] != Lit.BOTH
     dark = known & (scene.back == Back.RADIATES)[fates.face] & (fates.back == back_is_dark[fates.face])
@@ -55,7 +55,7 @@ def inside(scene: Scene, fates: leaks.Fates) -> leaks.Fates:
 
 
 def _lit(scene: Scene, fates: leaks.Fates) -> tuple[np.ndarray, np.ndarray]:
-    """Which sides of surfaces lines met, and whether more of them met the front of a face, (n_faces,) bool."""
+    """Return which sides of surfaces lines met, and whether more of them met the front of a face, (n_faces,) bool."""
     seen, reached = fates.fate == leaks.SEEN, np.zeros((scene.n_faces, 2))
     np.add.at(reached, (fates.hit[seen], (~fates.front[seen]).astype(int)), 1)
     return lit_sides(scene, reached, MANY), reached[:, 0] >= reached[:, 1]

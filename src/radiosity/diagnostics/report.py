@@ -1,4 +1,4 @@
-"""What `check` has to say: findings, and a table of surfaces."""
+"""The report of `check`: findings, and a table of surfaces."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ SIDES = {Back.ABSORBS: "one", Back.RADIATES: "two", Back.PASSES: "one, clear fro
 
 @dataclass(frozen=True)
 class Finding:
-    """Something to know about a scene: ``severity`` is "error", "warning" or "note"."""
+    """A finding about a scene; ``severity`` is "error", "warning" or "note"."""
 
     severity: str
     kind: str
@@ -25,11 +25,11 @@ class Surface:
 
     Attributes:
         name: of the surface.
-        faces: how many it has.
+        faces: the number of its faces.
         area: of its radiating sides, m².
         reflectance, emission: area means by band; emission is exitance, W/m² or lm/m².
-        power: emitted, by band, W or lm.
-        sides: in words.
+        power: emitted power by band, W or lm.
+        sides: its sides in words.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Report:
-    """What `check` found. ``scene`` is None where it could not be loaded."""
+    """The result of `check`. ``scene`` is None where it could not be loaded."""
 
     source: str
     scene: Scene | None
@@ -52,12 +52,12 @@ class Report:
 
     @property
     def serious(self) -> bool:
-        """Something was found with which a solution would be worthless or impossible."""
+        """True where something was found with which a solution would be worthless or impossible."""
         return any(finding.severity == SERIOUS for finding in self.findings)
 
 
 def surface_rows(patches) -> tuple[Surface, ...]:
-    """The table, from one patch for each face and radiating side; surfaces without faces are left out."""
+    """Return the rows of the table, from one patch for each face and radiating side; surfaces without faces are left out."""
     scene, area = patches.scene, patches.area[:, None]
     n = len(scene.names)
 
