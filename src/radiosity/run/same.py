@@ -1,9 +1,9 @@
-"""Is a solution of the same run, so that another may go on from it?"""
+"""The check that a solution is of the same run, so that a run may go on from it."""
 
 from ..errors import MethodError
 
-OLDER = {"randomisation": "shared"}  # of solutions written before there was a choice
-SAME = ("scene", "cut", "seed", "replicates", "device", "tracing")  # like devices give like bits
+OLDER = {"randomisation": "shared"}  # the choices of solutions written before there was a choice
+SAME = ("scene", "cut", "seed", "replicates", "device", "tracing")  # equal kinds of device give equal bits
 
 
 def check_same(before: dict, now: dict) -> None:
