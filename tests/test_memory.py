@@ -159,10 +159,11 @@ def measured(*task, warm: bool) -> list[Footprint]:
 
 
 def test_planes_count():
-    """Few landings make wide kernels: squares of the number of patches."""
+    """Few hits make wide kernels: squares of the number of patches."""
 
     def expected(about, rays):
-        return memory_estimate.memory_needed(rd.method.resolve("density-estimation"), rd.subdivide(scene, about=about), 1, 8, rays)
+        patches = rd.subdivide(scene, about=about)
+        return memory_estimate.memory_needed(rd.method.resolve("density-estimation"), patches, 1, 8, rays)
 
     scene = rd.load_scene("room")
     assert expected(80_000, 100) > 8 * expected(20_000, 100) > 0
