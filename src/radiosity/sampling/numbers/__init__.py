@@ -1,4 +1,4 @@
-"""Which points of the unit cube? A new sequence is one new file and one line in each table."""
+"""Number sequences: points of the unit cube. A new sequence is one new file and one line in each table."""
 
 from importlib import import_module
 from typing import Any
@@ -19,13 +19,13 @@ __all__ = ["DIMENSIONS", "NUMBERS", "WORDS", "AbstractNumbers", "make", "ready"]
 
 
 def make(name: str) -> AbstractNumbers:
-    """The sequence called ``name``. Its module is imported here, since it imports Dr.Jit."""
+    """Return the sequence called ``name``. Its module is imported here, since it imports Dr.Jit."""
     module, maker = NUMBERS[name].split(":")
     return getattr(import_module(f".{module}", __package__), maker)()
 
 
 def ready(name: str, types: Any) -> AbstractNumbers:
-    """The sequence called ``name`` with its tables on the device of Dr.Jit's array ``types``: kernels may ask for its points."""
+    """Return the sequence called ``name``, ready for kernels: its tables are on the device of Dr.Jit's array ``types``."""
     numbers = make(name)
     numbers.prepare(types)
     return numbers
