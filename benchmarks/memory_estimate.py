@@ -8,7 +8,7 @@ import sys
 import radiosity as rd
 from radiosity.lab.footprint import footprints, scene_of
 from radiosity.problem.model import Problem
-from radiosity.run.memory_estimate import demand
+from radiosity.run.memory_estimate import memory_needed
 
 METHODS = ("random-walk", "particle-tracing", "stochastic-jacobi", "global-multipath", "transillumination", "global-form-factors")
 SIZES, REPLICATES, RAYS = (15_000, 200_000), (1, 8), 4_000_000
@@ -30,7 +30,7 @@ def compare(methods) -> None:
                     groups = Problem.of(patches).groups.n_groups
                     chosen = rd.method.resolve(method)
                     assert isinstance(chosen, rd.Method)
-                    expected = demand(chosen, patches, groups, replicates, RAYS)
+                    expected = memory_needed(chosen, patches, groups, replicates, RAYS)
                     measured = taken[0].memory
                     numbers = (f"{measured / 2**20:.0f}", f"{expected / 2**20:.0f}", f"{expected / measured:.2f}")
                     print(ROW.format(method, scene, len(patches), replicates, *numbers), flush=True)

@@ -127,7 +127,7 @@ def test_expected_memory_grows_with_bands_replicates_and_patches(method):
     one = memory_estimate.MEMORY_ESTIMATES[method.machine]
 
     def wanted(patches, groups, replicates):
-        return memory_estimate.demand(method, patches, groups, replicates, None)
+        return memory_estimate.memory_needed(method, patches, groups, replicates, None)
 
     for patches in (few, many):
         n = len(patches)
@@ -159,10 +159,11 @@ def measured(*task, warm: bool) -> list[Footprint]:
 
 
 def test_planes_count():
-    """Few landings make wide kernels: squares of the number of patches."""
+    """Few hits make wide kernels: squares of the number of patches."""
 
     def expected(about, rays):
-        return memory_estimate.demand(rd.method.resolve("density-estimation"), rd.subdivide(scene, about=about), 1, 8, rays)
+        patches = rd.subdivide(scene, about=about)
+        return memory_estimate.memory_needed(rd.method.resolve("density-estimation"), patches, 1, 8, rays)
 
     scene = rd.load_scene("room")
     assert expected(80_000, 100) > 8 * expected(20_000, 100) > 0
@@ -181,7 +182,7 @@ def test_expected_memory_is_within_a_factor_of_two(method):
     (taken,) = measured("cornell-box", about, method, [("run", {"rays": 4_000_000})], warm=False)
     chosen = rd.method.resolve(method)
     assert isinstance(chosen, rd.Method)
-    expected = memory_estimate.demand(chosen, patches, Problem.of(patches).groups.n_groups, 8, 4e6)
+    expected = memory_estimate.memory_needed(chosen, patches, Problem.of(patches).groups.n_groups, 8, 4e6)
     assert 0.5 < expected / taken.memory < 2
 
 

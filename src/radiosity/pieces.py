@@ -1,4 +1,4 @@
-"""Long arrays, a piece at a time: what is made on the way stays in the cache, and takes no memory to speak of."""
+"""Pieces of long arrays: work on one piece at a time stays in the cache, and takes little memory."""
 
 from collections.abc import Iterator
 
@@ -6,6 +6,6 @@ PIECE = 1 << 16
 
 
 def pieces(count: int) -> Iterator[slice]:
-    """Of so many entries."""
+    """Yield slices that cover ``count`` entries, a piece at a time."""
     for start in range(0, count, PIECE):
         yield slice(start, min(start + PIECE, count))

@@ -1,4 +1,4 @@
-"""The one place that chooses and enters a Dr.Jit back end, and the one door from numpy to it."""
+"""Choosing and entering a Dr.Jit back end, and uploads from numpy to it. No other module does these."""
 
 import os
 import warnings
@@ -29,10 +29,10 @@ class Device:
 
 
 def choose(name: str = "auto") -> Device:
-    """The device called ``auto`` (CUDA where there is one), ``cpu`` or ``cuda``.
+    """Return the device called ``auto`` (CUDA where there is one), ``cpu`` or ``cuda``.
 
     Raises:
-        DeviceError: unknown name, no CUDA device, or no LLVM.
+        DeviceError: the name is unknown, or there is no CUDA device, or no LLVM.
     """
     if name not in ("auto", *VARIANTS):
         raise DeviceError(f"device '{name}' does not exist; known are auto, {', '.join(VARIANTS)}")
@@ -51,14 +51,17 @@ def choose(name: str = "auto") -> Device:
 
 
 def classes(device: Device) -> Any:
-    """Mitsuba's classes in the device's variant, as every launch needs them. The variant in force stays: to set another one and
-    set it back takes 50 ms (measured), at every launch where a user has one of his own."""
+    """Return Mitsuba's classes in the device's variant, which every launch needs.
+
+    The variant in force stays: to set another one and set it back takes 50 ms (measured), at every launch where a user has set
+    one.
+    """
     return import_module(f"mitsuba.{device.variant}")
 
 
 @contextmanager
 def entered(device: Device):
-    """Mitsuba in the device's variant, to make scenes; the variant found before is set again on leaving."""
+    """Enter Mitsuba in the device's variant, to make scenes; the variant found before is set again on leaving."""
     import mitsuba as mi
 
     if mi.variant() == device.variant:
@@ -74,8 +77,11 @@ def entered(device: Device):
 
 
 def _set(variant: str) -> None:
-    """Each change loads modules of Mitsuba anew, and after some sixty Dr.Jit warns that they decorate functions more than 1000
-    times, which tells users nothing."""
+    """Set Mitsuba's variant, without a warning that tells users nothing.
+
+    Each change loads modules of Mitsuba again. After some sixty changes Dr.Jit warns that they decorate functions more than
+    1000 times.
+    """
     import mitsuba as mi
 
     with warnings.catch_warnings():
@@ -86,8 +92,8 @@ def _set(variant: str) -> None:
 def upload(dtype, values: np.ndarray):
     """Copy a one-dimensional numpy array to a Dr.Jit array of type ``dtype``.
 
-    A Dr.Jit array made straight from numpy may borrow its memory, and kernels read whole packets: at the end of a page
-    that ends the process. So a padded copy is handed over, and gathered into memory of Dr.Jit's own.
+    A Dr.Jit array made directly from numpy may share its memory, and kernels read whole packets: at the end of a page that
+    ends the process. So Dr.Jit is given a padded copy, which is gathered into its own memory.
 
     Raises:
         RecordedError: a loop is being recorded.
@@ -105,9 +111,9 @@ def upload(dtype, values: np.ndarray):
 
 
 def frozen(array) -> np.ndarray:
-    """The present values of a Dr.Jit array on the host, without a copy where it lies in host memory.
+    """Return the present values of a Dr.Jit array on the host, without a copy where it lies in host memory.
 
-    A second handle holds the values: what a kernel writes into ``array`` later goes to a copy of Dr.Jit's.
+    A second handle holds the values: what a kernel writes into ``array`` later goes to a copy that Dr.Jit makes.
     """
     import drjit as dr
 
@@ -118,7 +124,7 @@ def frozen(array) -> np.ndarray:
 
 
 def give_back_memory() -> None:
-    """To the system, what Dr.Jit keeps of it for reuse."""
+    """Give back to the system the memory that Dr.Jit keeps for reuse."""
     import drjit as dr
 
     dr.sync_thread()
@@ -127,7 +133,7 @@ def give_back_memory() -> None:
 
 @contextmanager
 def threads(count: int):
-    """Dr.Jit with so many threads for a while."""
+    """Set Dr.Jit's number of threads for a block."""
     import drjit as dr
 
     before = dr.thread_count()
@@ -140,8 +146,10 @@ def threads(count: int):
 
 @contextmanager
 def bitmaps():
-    """For what reads or writes EXR files by Mitsuba's `Bitmap`: with one thread of Dr.Jit, as on machines of one core, it waits
-    for ever (Mitsuba 3.9.1, Dr.Jit 1.5.0)."""
+    """Give Dr.Jit two threads or more for a block that reads or writes EXR files by Mitsuba's `Bitmap`.
+
+    With one thread, as on machines of one core, `Bitmap` waits for ever (Mitsuba 3.9.1, Dr.Jit 1.5.0).
+    """
     import drjit as dr
 
     if dr.thread_count() > 1:
@@ -152,7 +160,7 @@ def bitmaps():
 
 
 def describe() -> dict[str, str]:
-    """Facts for ``radiosity doctor``."""
+    """Return facts for ``radiosity doctor``."""
     library = llvm.prepare()
     import drjit as dr
 

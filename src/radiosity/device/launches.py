@@ -1,7 +1,7 @@
-"""How Dr.Jit shares a launch among threads: in blocks of 16 384 lanes, unless told otherwise.
+"""The size of the blocks in which Dr.Jit shares a launch among threads: 16 384 lanes, unless another size is set.
 
-Lanes of several lines are few, and their blocks cost unlike much; so threads would wait for the slowest. With smaller blocks
-they do not (measured with two threads and eight lines a lane: 12 % less time in the office).
+Where a lane has several lines, there are few lanes, and the times of their blocks differ much; so threads would wait for the
+slowest. With smaller blocks they do not (measured with two threads and eight lines a lane: 12 % less time in the office).
 """
 
 import ctypes
@@ -11,14 +11,17 @@ from pathlib import Path
 
 import drjit as dr
 
-BLOCKS = 16  # for each thread; smaller ones cost 5 % where faces are many and lines go to all of them
+BLOCKS = 16  # for each thread; with smaller blocks time grows by 5 % where faces are many and lines go to all of them
 LEAST = 256  # lanes of a block; a thread takes some 20 microseconds for as many lines
 
 
 @contextmanager
 def shared(lanes: int):
-    """For launches of so many lanes: blocks that suit them, on a CPU. Dr.Jit has no Python function for it; where the one of
-    its C++ interface is not found nothing is changed, and results do not depend on it."""
+    """Set, for the launches in a block, the block size that suits their number of lanes; on a CPU.
+
+    Dr.Jit has no Python function for it. Where that of its C++ interface is not found, nothing is changed; results do not
+    depend on it.
+    """
     functions = _functions()
     if functions is None:
         yield
@@ -33,14 +36,14 @@ def shared(lanes: int):
 
 
 def block(lanes: int, threads: int, most: int) -> int:
-    """Lanes of a block: a power of two, or Dr.Jit ends the process."""
+    """Return the lanes of a block: a power of two, since with any other number Dr.Jit ends the process."""
     wanted = max(lanes // (BLOCKS * threads), LEAST)
     return min(1 << (wanted.bit_length() - 1), most)
 
 
 @cache
 def _functions():
-    """To read and to set the number of lanes of a block."""
+    """Return two functions, which read and set the number of lanes of a block; None where they are not found."""
     for path in Path(dr.__file__).parent.glob("*drjit-core*"):
         try:
             library = ctypes.CDLL(str(path))

@@ -1,7 +1,7 @@
-"""Find a libLLVM that Dr.Jit can use, before Dr.Jit looks for one: with an old one it ends the whole process.
+"""Finding a libLLVM that Dr.Jit can use, before Dr.Jit looks for one: with an old one it ends the whole process.
 
-Dr.Jit loads libLLVM when it is imported, whatever Mitsuba variant is used later. So importing this package already
-points it to a good library (`point`, by name only), and `prepare` checks what was really loaded.
+Dr.Jit loads libLLVM when it is imported, for every Mitsuba variant. So importing this package already points Dr.Jit to a good
+library (`point`, by name only), and `prepare` checks which one was loaded.
 """
 
 import os
@@ -15,7 +15,7 @@ from ..errors import DeviceError
 
 VARIABLE = "DRJIT_LIBLLVM_PATH"
 OLDEST = 19  # the oldest release that was tested; 15 ends the process ("Cannot select ... fmaximum")
-POINTED: str | None = None  # what the variable holds where this package, and not the user, set it
+POINTED: str | None = None  # the value of the variable where this package, and not the user, set it
 ADVICE = (
     f"install one of version {OLDEST} or newer (on Linux x86-64: pip install karellen-llvm-core; elsewhere LLVM's own "
     f"package, such as libllvm{OLDEST} or 'brew install llvm') and set {VARIABLE} to the path of its libLLVM"
@@ -23,7 +23,7 @@ ADVICE = (
 
 
 class Library(NamedTuple):
-    """A libLLVM: path, major version (0: unknown) and who chose it."""
+    """A libLLVM: path, major version (0: unknown) and what chose it."""
 
     path: Path
     version: int
@@ -31,7 +31,7 @@ class Library(NamedTuple):
 
 
 def point() -> None:
-    """Set the variable that Dr.Jit reads to the likeliest library, unless it is set or Dr.Jit is loaded already."""
+    """Set the variable that Dr.Jit reads to the most likely library, unless it is set or Dr.Jit is loaded already."""
     global POINTED
     likeliest = next((str(path) for path, _ in _candidates() if _number(path.name) >= OLDEST), None)
     if likeliest and VARIABLE not in os.environ and "drjit" not in sys.modules:
@@ -41,7 +41,7 @@ def point() -> None:
 
 
 def prepare() -> Library:
-    """The library that Dr.Jit uses, or will use.
+    """Return the library that Dr.Jit uses, or will use.
 
     Raises:
         DeviceError: there is none, it is too old, or Dr.Jit was imported first and took an old one.
@@ -74,7 +74,7 @@ def prepare() -> Library:
 
 
 def find() -> Library:
-    """The library to use: the user's setting, the wheel's in this environment, or the system's.
+    """Return the library to use: the user's setting, that of the wheel in this environment, or that of the system.
 
     Raises:
         DeviceError: there is none, or it is too old; the message says what to install and what to set.
@@ -109,7 +109,7 @@ def _pattern() -> str:
 
 
 def _folders() -> Iterator[tuple[Path, str]]:
-    """The wheel's first; the others are only looked for where it has none: importing the package is to be quick."""
+    """Yield folders, that of the wheel first; others only where it has none, so that importing the package is quick."""
     # a user's own install (pip install --user) keeps the wheel's files under site-packages' prefix
     own = [Path(entry).parents[2] for entry in sys.path if entry.endswith("site-packages")]
     for folder in (Path(sys.prefix) / "lib", Path(sys.prefix) / "Library" / "bin", *own):
@@ -129,9 +129,9 @@ def _number(name: str) -> int:
 
 
 def version(path: Path) -> int:
-    """Major version of a libLLVM, 0 where it cannot be loaded.
+    """Return the major version of a libLLVM, 0 where it cannot be loaded.
 
-    Before LLVM 16 a library could not say; the file's name may, and otherwise 15 is assumed.
+    Libraries older than LLVM 16 do not tell it. The file's name may; otherwise 15 is assumed.
     """
     import ctypes
 

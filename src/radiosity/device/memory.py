@@ -1,4 +1,4 @@
-"""How much memory a run may take, and about how much it will: refused before it begins, not killed in the midst of it."""
+"""The memory limit of runs: a run that would take more is refused before it begins, and not killed in the middle."""
 
 import math
 import os
@@ -18,10 +18,10 @@ PROC, GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
 
 
 def refuse(wanted: float, what: str, way_out: str) -> None:
-    """Refuse what will not fit.
+    """Refuse what will not fit in memory.
 
     Raises:
-        MethodError: more bytes are wanted than may be taken.
+        MethodError: more bytes are wanted than the limit allows.
     """
     most = room()
     if wanted <= most:
@@ -34,32 +34,33 @@ def refuse(wanted: float, what: str, way_out: str) -> None:
 
 
 def size(number: float) -> str:
-    """``1.5 GiB``"""
+    """Return a number of bytes as text, such as ``1.5 GiB``."""
     unit, name = (2**30, "GiB") if number >= 2**29 else (2**20, "MiB")
     return f"{number / unit:.3g} {name}"
 
 
 def room() -> float:
-    """Bytes that a run may take: what was given, or a share of what is free; infinite where nothing is known.
+    """Return the bytes that a run may take: the given limit, or a share of what is free; infinite where nothing is known.
 
     Raises:
-        MethodError: the variable is no size.
+        MethodError: the variable is not a size.
     """
     given = _given()
     return SHARE * free() if given is None else given
 
 
 def free() -> float:
-    """Bytes that new arrays may take: what the system has, and what limits of control groups and of the process leave."""
+    """Return the bytes that new arrays may take: what the system has, and what limits of control groups and of the process
+    leave."""
     return max(0.0, min((_system(), *_groups(), _process()), default=math.inf))
 
 
 @contextmanager
 def limited(size: str | float | None):
-    """In the block runs may take so much: a size such as "8G", a number of bytes, or "none"; None leaves it as it is.
+    """Set the memory limit of runs in a block: a size such as "8G", a number of bytes, or "none"; None leaves it as it is.
 
     Raises:
-        MethodError: it is no size.
+        MethodError: it is not a size.
     """
     token = _limit.set(_limit.get() if size is None else _bytes("memory", size))
     try:
@@ -99,7 +100,7 @@ def _system() -> float:
 
 
 def _groups() -> Iterator[float]:
-    """Of each control group that the process is in, version 1 or 2, and those around it."""
+    """Yield the free bytes of each control group that the process is in, version 1 or 2, and of the groups around it."""
     try:
         lines = (PROC / "self/cgroup").read_text().splitlines()
     except (OSError, ValueError):

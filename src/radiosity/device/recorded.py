@@ -1,7 +1,7 @@
-"""Loops that Dr.Jit records, and what must not be done meanwhile.
+"""Loops that Dr.Jit records, and a check of what must not be done while it records.
 
 Dr.Jit calls the body of a symbolic loop once, to record it. An array that is evaluated meanwhile ends the process (SIGABRT) where
-its length is 1 or the loop's number of lanes, and is taken in elsewhere. So whatever a body reads is made before its loop.
+its length is 1 or the loop's number of lanes; with other lengths it does no harm. So what a body reads is made before its loop.
 """
 
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from typing import Any
 
 
 class RecordedError(RuntimeError):
-    """An array was to be made or read while a loop was recorded: a fault of the program, never of its input."""
+    """Error: an array was to be made or read while a loop was recorded. It is a fault of the program, never of its input."""
 
 
 def not_recorded(what: str) -> None:
@@ -25,7 +25,7 @@ def not_recorded(what: str) -> None:
 
 
 def loop(state: tuple, going: Callable[..., Any], body: Callable[..., tuple]) -> tuple:
-    """Record a loop: ``body`` turns the state into the next one while ``going`` holds, lane by lane. The state at the end.
+    """Record a loop: ``body`` turns the state into the next one while ``going`` holds, lane by lane. Return the last state.
 
     Raises:
         RecordedError: ``body`` makes or reads an array.

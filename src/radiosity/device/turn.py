@@ -1,9 +1,9 @@
-"""One thread of the process at a time works with Dr.Jit; others wait for their turn.
+"""A lock: one thread of the process at a time works with Dr.Jit, and the others wait.
 
-Dr.Jit's threads add to copies of counters, one copy a thread. A Python thread that waits for a kernel works too, on whatever
-kernel there is, and all Python threads count as the same thread: where two of them wait at once, both add to one copy, and hits
-are lost without a word (in 8 of 540 runs). Kernels that other packages launch from other threads do the same harm, and cannot
-be kept away; `Run` finds their traces in the energy balance.
+Dr.Jit's threads add to copies of counters, one copy a thread. A Python thread that waits for a kernel works too, on any kernel
+there is, and all Python threads count as the same thread. Where two of them wait at once, both add to one copy, and hits are
+lost without a message (in 8 of 540 runs). Kernels that other packages launch from other threads do the same harm, and cannot
+be made to wait; `Run` detects it by the energy balance.
 """
 
 import os
@@ -11,18 +11,20 @@ import sys
 import threading
 from contextlib import contextmanager
 
-AWAKE = 0.2  # seconds: where waiting cannot be interrupted, Ctrl-C is heard that often
+AWAKE = 0.2  # seconds: where waiting cannot be interrupted, Ctrl-C is looked for that often
 
 _changed = threading.Condition()
-_turns: list[tuple[int, object]] = []  # all of one thread, one a block that it has entered
+_turns: list[tuple[int, object]] = []  # all of one thread, one for each block that it has entered
 
 
 @contextmanager
 def turn():
-    """For a block, or as a decorator of a function: no other thread is in such a block. A thread that is may enter more of them.
+    """Keep all other threads out of such blocks during a block, or a function that it decorates.
+
+    A thread that is in such a block may enter more of them.
 
     Raises:
-        KeyboardInterrupt: Ctrl-C while waiting.
+        KeyboardInterrupt: Ctrl-C came while it waited.
     """
     mine = (threading.get_ident(), object())
     try:
@@ -34,8 +36,10 @@ def turn():
 
 @contextmanager
 def aside():
-    """For a block that calls a stranger's function, which may wait for another thread: other threads may have their turns
-    meanwhile. For a thread whose turn it is not nothing changes."""
+    """Let other threads work during a block, which calls a user's function that may wait for another thread.
+
+    Where this thread is in no `turn`, nothing changes.
+    """
     mine = [entry for entry in _turns if entry[0] == threading.get_ident()]
     if not mine:
         yield
@@ -48,7 +52,7 @@ def aside():
 
 
 def _take(entries: list) -> None:
-    """Wait until no other thread is in its turn."""
+    """Wait until no other thread is in a block of `turn`, then enter."""
     with _changed:
         while _turns and _turns[0][0] != entries[0][0]:
             _changed.wait(AWAKE)
@@ -56,7 +60,7 @@ def _take(entries: list) -> None:
 
 
 def _leave(entries: list) -> None:
-    """Give back what was taken; what was not is passed over, so that an interruption at any moment leaves nothing behind."""
+    """Remove entries; those that are not there are left out, so that an interruption at any moment leaves none behind."""
     try:
         if set(_turns) <= set(entries) and "drjit" in sys.modules:
             import drjit as dr
@@ -69,7 +73,7 @@ def _leave(entries: list) -> None:
 
 
 def _forked() -> None:
-    """In a child process no other thread is left, whose turn it might be."""
+    """Forget the entries of other threads, which do not exist in a child process."""
     global _changed
     _changed = threading.Condition()
     _turns[:] = [entry for entry in _turns if entry[0] == threading.get_ident()]

@@ -10,14 +10,14 @@ from ..scene.model import Scene
 from . import contact_findings, dark_sides, leaks
 from .report import NOTE, SERIOUS, WARNING, Finding, Report, surface_rows
 
-LITTLE = 0.01  # of the lines: that much is lost on the backs of lamps in many sound scenes
+LITTLE = 0.01  # of the lines: in many correct scenes, backs of lamps absorb that much
 BOX_SIDES = ("x low", "x high", "y low", "y high", "z low", "z high")
 
 
 def check_file(
     name, *, max_reflectance: float = 0.95, strict: bool = False, allow_outside: bool = False, device: str = "auto"
 ) -> Report:
-    """Load a scene and check it; what the reader says about the file is among the findings."""
+    """Load a scene and check it; the reader's warnings about the file are among the findings."""
     from ..scene import load_scene
 
     findings = []
@@ -36,7 +36,7 @@ def check_file(
 
 
 def check(scene: Scene, *, walks: int = leaks.WALKS, seed: int = 0, device: str = "auto") -> Report:
-    """Check a scene: geometry, materials, light, and by tracing lines where light gets lost.
+    """Check a scene: geometry, materials, light, and, by tracing lines, where light is lost.
 
     Raises:
         DeviceError: lines cannot be traced on this machine.
@@ -44,7 +44,7 @@ def check(scene: Scene, *, walks: int = leaks.WALKS, seed: int = 0, device: str 
     from ..patches import subdivide
 
     patches = subdivide(scene, cells=1)
-    power = np.zeros((2, scene.n_faces))  # of fronts and backs, all bands together
+    power = np.zeros((2, scene.n_faces))  # emitted by fronts and backs, all bands together
     np.add.at(power, (patches.is_back.astype(int), patches.face), (patches.emission * patches.area[:, None]).sum(axis=1))
     findings = [*_values(patches), *_light(power), *_topology(scene), *_lines(scene, power, walks, seed, device)]
     for surface, front, back in leaks.flipped_emitters(scene, (power[0] > 0) & (power[1] == 0), seed=seed, device=device):

@@ -13,8 +13,8 @@ from ..scene.precision import ulp
 from ..scene.topology import coincident
 from .report import NOTE, WARNING, Finding
 
-LITTLE = 1e-3  # of the smaller face: less in common is what rims were rounded by
-SMALL = 32  # ulps: of a face whose longest edge is shorter, lines begin by a quarter of it away, or more
+LITTLE = 1e-3  # of the smaller face: a smaller common part comes from the rounding of rims
+SMALL = 32  # ulps: where the longest edge of a face is shorter, lines begin a quarter of it away, or more
 DUPLICATES, TOO_NEAR, TOO_SMALL = "duplicates", "too near", "too small"
 
 
@@ -35,7 +35,7 @@ def findings(scene: Scene) -> Iterator[Finding]:
 
 
 def tell(scene: Scene) -> None:
-    """Warn, before a run, of what makes its results wrong: lamps that lie on other faces, and what is too near or too small."""
+    """Warn, before a run, of what makes its results wrong: lamps that lie on other faces, and faces too near or too small."""
     found = contacts(scene)
     found = found.take(found.share > LITTLE)
     emits = np.any([(scene.emission > 0).any(axis=1), (scene.back_emission > 0).any(axis=1)], axis=0)
@@ -74,7 +74,7 @@ def _near(scene: Scene, near: Contacts) -> str:
 
 
 def _small(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Faces that are hardly larger than what lines begin in front of them, the worst first, and an ulp at each."""
+    """Return faces hardly larger than the distance by which lines begin in front of them, the worst first, and an ulp at each."""
     _, first, second = scene.frames
     longest = np.max([np.linalg.norm(edge, axis=1) for edge in (first, second, second - first)], axis=0)
     held = ulp(scene.vertices[scene.faces[:, 0]], scene.centre, scene.plane_reach)

@@ -19,10 +19,10 @@ ADVICE = {
 
 
 def findings(scene: Scene, fates: leaks.Fates, power: np.ndarray) -> Iterator[Finding]:
-    """A note for each kind, or a warning where the dark side emits.
+    """Yield a note for each kind, or a warning where the dark side emits.
 
     Args:
-        fates: of lines that follow the light.
+        fates: fates of lines that follow the light.
         power: (2, n_faces), emitted by front and back.
     """
     lit, back_is_dark = _lit(scene, fates)

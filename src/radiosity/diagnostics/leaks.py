@@ -11,14 +11,14 @@ from ..scene.precision import ulp
 WALKS = 20_000
 BOUNCES = 8
 PER_EMITTER = 512  # lines from each side of each emitting surface
-ULPS = 64  # origins stand off their face by so many units in the last place where they are, single precision
-NEAR = 0.1  # of the square root of the emitting face's area: closer than this is the surface that carries the lamp
+ULPS = 64  # origins are this many units in the last place, single precision, in front of their face
+NEAR = 0.1  # of the square root of the emitting face's area: a surface nearer than this carries the lamp
 SEEN, ESCAPED, LOST = 0, 1, 2
 
 
 @dataclass(frozen=True, eq=False)
 class Fates:
-    """What became of lines.
+    """The fates of lines: where each began and ended.
 
     Attributes:
         face: (n_lines,) int64, where each began.
@@ -64,7 +64,7 @@ def follow(scene: Scene, power: np.ndarray, walks: int = WALKS, *, seed: int = 0
     if not power.any():
         power = np.stack([scene.area, np.where(scene.back == Back.RADIATES, scene.area, 0.0)])
     share = np.cumsum(power.ravel() / power.sum())
-    # stratified, so that large shares are met closely
+    # stratified, so that large shares have small errors
     at = (np.arange(walks) + generator.random(walks)) / walks
     side = np.minimum(np.searchsorted(share, at * share[-1], side="right"), len(share) - 1)
     face, back, place = side % scene.n_faces, side >= scene.n_faces, None
@@ -81,14 +81,14 @@ def follow(scene: Scene, power: np.ndarray, walks: int = WALKS, *, seed: int = 0
 
 
 def flipped_emitters(scene: Scene, emits: np.ndarray, *, seed: int = 0, device: str = "auto") -> list[tuple[int, float, float]]:
-    """Emitting surfaces whose front sees next to nothing while their back, which emits nothing, sees the scene.
+    """Return emitting surfaces whose front sees next to nothing while their back, which emits nothing, sees the scene.
 
     Args:
         emits: (n_faces,) bool, faces whose front emits and whose back does not.
 
     Returns:
-        Surface, and the shares of lines from its front and from its back that meet another surface's radiating side
-        farther away than what the source is mounted on.
+        Surface, and the shares of lines from its front and from its back that meet another surface's radiating side farther
+        away than the surface that carries the source.
     """
     generator = np.random.Generator(np.random.Philox(seed))
     surfaces = np.unique(scene.surface[emits])
@@ -109,15 +109,15 @@ def flipped_emitters(scene: Scene, emits: np.ndarray, *, seed: int = 0, device: 
 
 
 def _places(scene: Scene, face: np.ndarray, generator) -> tuple[np.ndarray, np.ndarray]:
-    """Face coordinates (u, v) of a uniform point on each face."""
+    """Return face coordinates (u, v) of a uniform point on each face."""
     a, b = generator.random((2, len(face)))
     root = np.sqrt(a)
     return np.where(scene.is_quad[face], a, root * (1 - b)), np.where(scene.is_quad[face], b, root * b)
 
 
 def _trace(scene: Scene, face, back, place, generator, device: str):
-    """Fates of cosine lines, and for each hit whether it is of the front, and its (u, v)."""
-    from ..tracing.first_hits import first_hits  # the tracer stands later in the walk, and takes a while to start
+    """Return fates of cosine lines, and for each hit whether it is on the front, and its (u, v)."""
+    from ..tracing.first_hits import first_hits  # the tracer takes a while to start
 
     radius, turn = np.sqrt(generator.random(len(face))), 2 * np.pi * generator.random(len(face))
     origin, first, second = (part[face] for part in scene.frames)

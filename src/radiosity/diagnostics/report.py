@@ -12,7 +12,7 @@ SIDES = {Back.ABSORBS: "one", Back.RADIATES: "two", Back.PASSES: "one, clear fro
 
 @dataclass(frozen=True)
 class Finding:
-    """Something to know about a scene: ``severity`` is "error", "warning" or "note"."""
+    """A finding about a scene; ``severity`` is "error", "warning" or "note"."""
 
     severity: str
     kind: str
@@ -25,11 +25,11 @@ class Surface:
 
     Attributes:
         name: of the surface.
-        faces: how many it has.
+        faces: the number of its faces.
         area: of its radiating sides, m².
         reflectance, emission: area means by band; emission is exitance, W/m² or lm/m².
-        power: emitted, by band, W or lm.
-        sides: in words.
+        power: emitted power by band, W or lm.
+        sides: its sides in words.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Report:
 
 
 def surface_rows(patches) -> tuple[Surface, ...]:
-    """The table, from one patch for each face and radiating side; surfaces without faces are left out."""
+    """Return the rows of the table, from one patch for each face and radiating side; surfaces without faces are left out."""
     scene, area = patches.scene, patches.area[:, None]
     n = len(scene.names)
 

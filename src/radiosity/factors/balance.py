@@ -1,7 +1,7 @@
-"""Reciprocity and closure restored: form factors made such that A_i F_ij = A_j F_ji and rows sum to what did not escape.
+"""Balance: form factors are changed so that A_i F_ij = A_j F_ji, and rows sum to what did not escape.
 
-First both estimates of a pair become one, (w_i A_i F_ij + w_j A_j F_ji) / (w_i + w_j). The weight of a row is the number of lines
-that it was found with over its area: by Poisson statistics the best one, and then the pair counts each line at both its ends.
+First both estimates of a pair become one, (w_i A_i F_ij + w_j A_j F_ji) / (w_i + w_j). The weight of a row is the number of its
+lines divided by its area. By Poisson statistics that is the best one, and the pair then counts each line at both its ends.
 Then the symmetric matrix is scaled from both sides, d_i d_j, to the row sums (R. Sinkhorn and P. Knopp, "Concerning nonnegative
 matrices and doubly stochastic matrices", Pacific J. Mathematics 21, 1967). Pairs that are zero stay zero.
 """
@@ -13,18 +13,20 @@ import numpy as np
 from .counts import WORD, split
 from .model import Factors
 
-BALANCED = 1e-6  # of the scene's area: how far off row sums may be together while they are scaled
-SCALINGS = 100  # at most: single rows may never meet their sum
+BALANCED = 1e-6  # of the scene's area: scaling ends when the errors of all row sums together are below this
+SCALINGS = 100  # at most: single rows may never reach their sum
 
 
 def restored(factors: Factors, area: np.ndarray, weight: np.ndarray | None = None, scalings: int = SCALINGS) -> Factors:
-    """Reciprocal form factors whose rows sum to 1 - escaped - lost; what is left after the scalings is taken out of the rows
-    alone, so that sums are exact, and A_i F_ij - A_j F_ji come to some 1e-6 of the scene's area together.
+    """Return reciprocal form factors whose rows sum to 1 - escaped - lost.
+
+    What is left after the scalings is taken out of the rows alone. So sums are exact, and the A_i F_ij - A_j F_ji together
+    come to some 1e-6 of the scene's area.
 
     Args:
         area: (n,) m².
-        weight: (n,) how much each row is trusted, any unit, not negative; by default equally many lines a row, 1 / area.
-        scalings: at most.
+        weight: (n,) weight of each row, any unit, not negative; by default 1 / area, which is equally many lines a row.
+        scalings: largest number of scalings.
     """
     weight = 1 / area if weight is None else weight
     power = weight[factors.rows] * area[factors.rows] * factors.values
@@ -48,7 +50,7 @@ def restored(factors: Factors, area: np.ndarray, weight: np.ndarray | None = Non
 
 
 def restored_matrix(matrix: np.ndarray, area: np.ndarray, missed: np.ndarray, weight: np.ndarray | None = None) -> np.ndarray:
-    """`restored` for a full matrix, (n, n).
+    """Return a full matrix, (n, n), balanced as by `restored`.
 
     Args:
         missed: (n,) share of what leaves a patch that reaches no other: escaped and lost.
@@ -64,7 +66,7 @@ def restored_matrix(matrix: np.ndarray, area: np.ndarray, missed: np.ndarray, we
 
 
 def _scaling(row_sums: Callable[[np.ndarray], np.ndarray], wanted: np.ndarray, scalings: int) -> np.ndarray:
-    """(n,) d such that rows of d_i X_ij d_j, summed by ``row_sums``, come to what is wanted."""
+    """Return d, (n,), such that rows of d_i X_ij d_j, summed by ``row_sums``, come to what is wanted."""
     scale = np.ones(len(wanted))
     for _ in range(scalings):
         sums = row_sums(scale)

@@ -1,4 +1,4 @@
-"""Counted lines between patches: made once from the geometry alone, and solved for any emission and reflectance."""
+"""Counted lines between patches: they are made once from the geometry alone, and solved for any emission and reflectance."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ from .solve import irradiance, of_both_ways, of_own_light, of_rows
 
 @dataclass(frozen=True, eq=False)
 class Received:
-    """What the patches of a scene receive, in each replicate.
+    """The power that the patches of a scene receive, in each replicate.
 
     Attributes:
         power: (replicates, n_patches) W or lm.
-        missed: (replicates, 2) W or lm, escaped and lost.
+        missed: (replicates, 2) W or lm, escaped and absorbed by backs.
         bias: (replicates, n_patches) W or lm, how much too high ``power`` may be, see `solve.of_own_light`.
     """
 
@@ -34,13 +34,13 @@ class CountedPairs:
     """Lines between patches, replicates apart. Nothing in it depends on emission or reflectance.
 
     Attributes:
-        patches: whose lines they are; only their geometry is asked.
+        patches: the patches that lines join; only their geometry is used.
         keys: (m,) uint64, ascending: (r n + i) 2^32 + j for lines from patch i to j in replicate r; j = n are lines that escaped,
-            and j = n + 1 lines lost on absorbing backs.
-        counts: (m,) uint32, how many.
-        replicates: how many are counted.
+            and j = n + 1 lines absorbed by backs.
+        counts: (m,) uint32, the number of lines of each key.
+        replicates: the number of replicates.
         both_ways: each line counts at both its ends, see `solve.of_both_ways`.
-        directed: patches do not see what sees them, see `Factors.sent`.
+        directed: a patch need not see a patch that sees it, see `Factors.sent`.
     """
 
     patches: Patches
@@ -52,19 +52,19 @@ class CountedPairs:
 
     @cached_property
     def lines(self) -> np.ndarray:
-        """(replicates, n_patches) float64: lines that left each patch."""
+        """Lines that left each patch, (replicates, n_patches) float64."""
         rows, _ = split(self.keys)
         shape = (self.replicates, len(self.patches))
         return np.bincount(rows, weights=self.counts, minlength=shape[0] * shape[1]).reshape(shape)
 
     @cached_property
     def arrivals(self) -> np.ndarray:
-        """(n_patches,) int64: lines that landed on each patch, replicates together."""
+        """Lines that hit each patch, replicates together, (n_patches,) int64."""
         n, (_, columns) = len(self.patches), split(self.keys)
         return np.bincount(columns, weights=self.counts, minlength=n + 2)[:n].astype(np.int64)
 
     def factors(self) -> Iterator[Factors]:
-        """The form factors of each replicate, one after the other."""
+        """Yield the form factors of each replicate."""
         n = len(self.patches)
         bounds = np.searchsorted(self.keys, np.arange(self.replicates + 1).astype(np.uint64) * np.uint64(n) << WORD)
         for replicate, (begin, end) in enumerate(pairwise(bounds)):
@@ -72,7 +72,7 @@ class CountedPairs:
             yield of_both_ways(keys, counts, n, self.patches.area) if self.both_ways else of_rows(keys, counts, n)
 
     def solve(self, emission: np.ndarray, reflectance: np.ndarray) -> list[Received]:
-        """The equation, for each of some bands. No line is traced.
+        """Solve the equation for each band. No line is traced.
 
         Args:
             emission: (n_patches, n_bands) W/m² or lm/m².
@@ -82,7 +82,7 @@ class CountedPairs:
         found: list[tuple[list, list, list]] = [([], [], []) for _ in range(emission.shape[1])]
         for lines, factors in zip(self.lines, self.factors(), strict=True):
             seen = factors.sent(area) if self.directed else factors
-            fill = not self.directed and not lines.all()  # there, patches receive by lines of others
+            fill = not self.directed and not lines.all()  # patches without lines then receive by lines of others
 
             def filled(received, lines=lines, fill=fill):
                 return means(received * lines, lines, side) if fill else received
@@ -96,7 +96,7 @@ class CountedPairs:
         return [Received(*(np.array(column) for column in columns)) for columns in found]
 
     def between(self, labels: np.ndarray) -> np.ndarray:
-        """(replicates, k, k + 2) form factors between k groups of patches; the last two columns are escaped and lost.
+        """Return form factors between k groups of patches, (replicates, k, k + 2); the last two columns are escaped and lost.
 
         Args:
             labels: (n_patches,) int, the group of each patch, 0 to k - 1.

@@ -8,10 +8,10 @@ WORD = np.uint64(32)
 
 
 class PairCounts:
-    """How many lines of each row end at each column; each row and column is a number below 2^32.
+    """The number of lines of each row that end at each column; each row and column is a number below 2^32.
 
-    Keys are row * 2^32 + column. What comes in is sorted and counted launch by launch, and merged when there is half as much of
-    it as of what is there, so that a key is moved a few times only.
+    Keys are row * 2^32 + column. New keys are sorted and counted launch by launch, and merged when there are half as many of
+    them as are already merged, so that a key is moved a few times only.
     """
 
     def __init__(self, keys: np.ndarray | None = None, counts: np.ndarray | None = None):
@@ -20,7 +20,7 @@ class PairCounts:
         self._new: list[tuple[np.ndarray, np.ndarray]] = []
 
     def add(self, rows: np.ndarray, columns: np.ndarray) -> None:
-        """(m,) whole numbers each, one line an entry."""
+        """Add lines: ``rows`` and ``columns`` are (m,) whole numbers each, one line an entry."""
         keys = np.sort((rows.astype(np.uint64) << WORD) | columns.astype(np.uint64))
         self._new.append(_merged(keys, None))
         if sum(len(keys) for keys, _ in self._new) > max(LEAST, len(self._keys) // 2):
@@ -36,17 +36,17 @@ class PairCounts:
 
     @property
     def arrays(self) -> tuple[np.ndarray, np.ndarray]:
-        """Keys, (m,) uint64 ascending, and counts, (m,) uint32."""
+        """Return keys, (m,) uint64 ascending, and counts, (m,) uint32."""
         self._merge()
         return self._keys, self._counts
 
     def __len__(self) -> int:
-        """Entries, or somewhat more: what was not merged yet may hold some twice."""
+        """Return the number of entries, or somewhat more: what is not merged yet may hold some twice."""
         return len(self._keys) + sum(len(keys) for keys, _ in self._new)
 
 
 def _merged(keys: np.ndarray, counts: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-    """Equal neighbours become one; ``counts`` None are ones."""
+    """Make equal neighbours one; ``counts`` None are ones."""
     if len(keys) == 0:
         return keys, np.zeros(0, np.uint32)
     first = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
@@ -56,5 +56,5 @@ def _merged(keys: np.ndarray, counts: np.ndarray | None) -> tuple[np.ndarray, np
 
 
 def split(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns of keys, (m,) int64 each."""
+    """Return rows and columns of keys, (m,) int64 each."""
     return (keys >> WORD).astype(np.int64), (keys & CODE).astype(np.int64)

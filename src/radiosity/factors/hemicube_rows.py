@@ -9,7 +9,7 @@ from ..tracing.geometry import Geometry
 from .hemicube import Hemicube
 from .rows import AbstractRows, Rows, Swept
 
-LAUNCH = 1 << 20  # lines between two looks at the clock
+LAUNCH = 1 << 20  # lines between two readings of the clock
 
 
 class HemicubeRows(AbstractRows):

@@ -1,4 +1,4 @@
-"""Form factors counted: local lines from a patch, and where they land."""
+"""Rows of form factors from the counted hits of local lines."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ LAUNCH = 1 << 22  # lines at a time
 
 
 class LineRows(AbstractRows):
-    """F_ij = n_ij / n_i, from the first n_i lines of patch i; the k-th is a function of seed, replicate, i and k (contract 2)."""
+    """Rows F_ij = n_ij / n_i of patch i's first n_i lines; the k-th is a function of seed, replicate, i and k (contract 2)."""
 
     def __init__(
         self, geometry: Geometry, problem: Problem, method: Baseline, seed: Seed | int, replicates: int, lines: int | None = None
@@ -32,9 +32,9 @@ class LineRows(AbstractRows):
         total, width = self.n * self.replicates, self.n + 2
         found: list[np.ndarray] = []
 
-        def pairs(fired: np.ndarray, landed: np.ndarray) -> None:
-            landed = landed.astype(np.int64)
-            column = np.where(landed < total, landed % self.n, (landed - total) // self.replicates + self.n)
+        def pairs(fired: np.ndarray, slots: np.ndarray) -> None:
+            slots = slots.astype(np.int64)
+            column = np.where(slots < total, slots % self.n, (slots - total) // self.replicates + self.n)
             found.append(place[fired.astype(np.int64) % self.n] * width + column)
 
         for at in range(0, len(numbers), self.at_once):

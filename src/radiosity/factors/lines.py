@@ -1,4 +1,4 @@
-"""Where the lines of a matrix come from: the patches themselves, or the spans of global lines."""
+"""The lines of a matrix: local lines of the patches, or spans of global lines."""
 
 from collections.abc import Callable
 
@@ -20,10 +20,10 @@ Add = Callable[[np.ndarray, np.ndarray], None]
 
 
 class LocalLines:
-    """At N lines a replicate, patch i has fired floor(N p_i + phase_i) of them, and 4 at least: N alone tells which.
+    """Local lines of patches: at N lines a replicate, patch i has fired floor(N p_i + phase_i) lines, and 4 at least.
 
-    Lines in proportion to area alone would say little of small lights, whose form factors matter most. Where each line counts at
-    both its ends, a quarter of all lines goes to what emits: that halves the error or better, and more gains little.
+    With lines in proportion to area alone, the form factors of small lights, which matter most, would have few lines. Where each
+    line counts at both its ends, a quarter of all lines goes to what emits. That halves the error or better; more gains little.
     """
 
     def __init__(
@@ -36,40 +36,44 @@ class LocalLines:
         self.phase = phases(seed, replicates, self.n) * 2.0**-32
 
     def targets(self, quanta: int) -> np.ndarray:
-        """(replicates, n_patches) uint32, lines that patches have fired at N."""
+        """Return the lines that patches have fired at N, (replicates, n_patches) uint32."""
         if quanta == 0:
             return np.zeros(self.phase.shape, np.uint32)
         return np.maximum(np.floor(self.share * quanta + self.phase), FEW).astype(np.uint32)
 
     def trace(self, begin: int, end: int, add: Add) -> None:
-        """From N to N: ``add`` takes rows, r n + i, and columns; n and n + 1 are escaped and lost."""
+        """Trace the lines from N = ``begin`` to ``end``.
 
-        def pairs(numbers: np.ndarray, landed: np.ndarray) -> None:
-            missed = (landed - self.total) // len(self.phase) + self.n
-            add(numbers, np.where(landed < self.total, landed % self.n, missed))
+        Args:
+            add: takes rows, r n + i, and columns; columns n and n + 1 are escaped and lost.
+        """
+
+        def pairs(numbers: np.ndarray, slots: np.ndarray) -> None:
+            missed = (slots - self.total) // len(self.phase) + self.n
+            add(numbers, np.where(slots < self.total, slots % self.n, missed))
 
         more = self.targets(end) - self.targets(begin)
         self.shooter.shoot(upload(self.shooter.types.UInt32, more), pairs=pairs)
 
     def resume(self, reached: int) -> None:
-        """Go on from N."""
+        """Prepare to go on from N = ``reached``."""
         self.shooter.fired = upload(self.shooter.types.UInt32, self.targets(reached))
 
 
 class GlobalLines:
-    """N global lines a replicate; each end of a span on a patch is a line of that patch (Sbert 1993)."""
+    """Global lines, N a replicate; each end of a span on a patch is a line of that patch (Sbert 1993)."""
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
         self.n, self.replicates = len(problem.patches), replicates
         self.spans = Spans(geometry, method, seed, replicates)
 
     def trace(self, begin: int, end: int, add: Add) -> None:
-        """From N to N, see `LocalLines.trace`."""
+        """Trace the lines from N = ``begin`` to ``end``, see `LocalLines.trace`."""
         for replicate in range(self.replicates):
             pairs = self.spans.draw(replicate, begin, end - begin)
             one, other = pairs.one.astype(np.int64), pairs.other.astype(np.int64)
             seen = self._column(other)
-            forth, back = one < ONE_WAY, other < ONE_WAY  # a patch seen through backs does not see who sees it
+            forth, back = one < ONE_WAY, other < ONE_WAY  # a patch that is seen through a back does not see the other patch
             add(one[forth] + replicate * self.n, seen[forth])
             add(other[back] + replicate * self.n, self._column(one)[back])
 
@@ -78,4 +82,4 @@ class GlobalLines:
         return np.where((code == ESCAPED) | (code == LOST), missed, code & (ONE_WAY - 1))
 
     def resume(self, reached: int) -> None:
-        """Lines are functions of their number: nothing to restore."""
+        """Do nothing: lines are functions of their number."""

@@ -1,4 +1,4 @@
-"""What leaves patches and reaches none: shares that leave the scene or land on absorbing backs, by local lines."""
+"""Shares of light that reach no patch: they leave the scene or end on absorbing backs. Local lines find them."""
 
 import drjit as dr
 import numpy as np
@@ -15,10 +15,10 @@ from ..tracing.ray_generation import place_number
 
 @turn()
 def missed(geometry: Geometry, lines: int = 1024, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Shares escaped and lost, (n_patches,) float64 each, exactly zero where no line tells of any.
+    """Return shares escaped and lost, (n_patches,) float64 each; they are exactly zero where no line escapes or is absorbed.
 
     Args:
-        lines: of each patch, 1 to 65 535: points of the Sobol' sequence, with a digital shift for each patch.
+        lines: lines of each patch, 1 to 65 535: points of the Sobol' sequence, with a digital shift for each patch.
     """
     types, n = geometry.device.types, len(geometry.patches)
     UInt32, size = types.UInt32, max(CHUNK // lines, 1)
@@ -35,9 +35,9 @@ def missed(geometry: Geometry, lines: int = 1024, seed: int = 0) -> tuple[np.nda
         words = [dr.gather(UInt32, shift, UInt32(i)) for i in range(8)]
         record = dr.gather(types.Array2u, geometry.patch_records, patch)
         points = numbers.points(index, patch, numbers.of_patch(words, place_number(record)), 16)
-        landed = patch_of(geometry, first_hit(geometry, *local_line(geometry, record, points)), n + 1, n)
-        dr.eval(landed)
-        found = np.array(landed)[: count * lines].reshape(count, lines)
+        patches = patch_of(geometry, first_hit(geometry, *local_line(geometry, record, points)), n + 1, n)
+        dr.eval(patches)
+        found = np.array(patches)[: count * lines].reshape(count, lines)
         for code in (0, 1):
             counts[code, begin : begin + count] = (found == n + code).sum(axis=1)
     return counts[0] / lines, counts[1] / lines

@@ -12,7 +12,7 @@ class Factors:
     Attributes:
         rows, columns: (m,) int64, patches.
         values: (m,) float64, F_ij: share of what leaves patch ``rows`` that arrives at patch ``columns``.
-        escaped, lost: (n,) float64, share of what leaves a patch that leaves the scene, or lands on absorbing backs.
+        escaped, lost: (n,) float64, share of what leaves a patch that leaves the scene, or ends on absorbing backs.
     """
 
     rows: np.ndarray
@@ -22,22 +22,24 @@ class Factors:
     lost: np.ndarray
 
     def sent(self, area: np.ndarray) -> "Factors":
-        """As `gather` has to have them where light goes by the lines' own directions: A_i F_ij / A_j in place of F_ji. Backs that
-        let lines pass make the two different."""
+        """Return the form factors that `gather` needs where light goes in the lines' own directions: A_i F_ij / A_j for F_ji.
+
+        Backs that let lines pass make the two different.
+        """
         values = self.values * area[self.rows] / area[self.columns]
         return Factors(self.columns, self.rows, values, self.escaped, self.lost)
 
     def gather(self, radiosity: np.ndarray) -> np.ndarray:
-        """(n,) irradiance, sum_j F_ij B_j."""
+        """Return irradiance, sum_j F_ij B_j, (n,)."""
         return np.bincount(self.rows, weights=self.values * radiosity[self.columns], minlength=len(radiosity))
 
     def sparse(self, n: int):
-        """(n, n) scipy CSR array, F_ij in row i."""
+        """Return an (n, n) scipy CSR array, F_ij in row i."""
         from scipy.sparse import coo_array
 
         return coo_array((self.values, (self.rows, self.columns)), shape=(n, n)).tocsr()
 
     def dense(self) -> np.ndarray:
-        """(n, n) float64, F_ij in row i."""
+        """Return an (n, n) float64 array, F_ij in row i."""
         n = len(self.escaped)
         return np.bincount(self.rows * n + self.columns, weights=self.values, minlength=n * n).reshape(n, n)

@@ -1,4 +1,4 @@
-"""Rows of exact form factors of polygons, times how much of the one the other sees."""
+"""Rows of exact form factors of polygons, times the visible share of each pair."""
 
 from functools import cached_property
 
@@ -17,8 +17,10 @@ PAIRS = 1 << 16  # at a time
 
 
 class PolygonRows(AbstractRows):
-    """F_ij = (exact factor without obstacles) * (visible share of the pair). For a whole matrix see `factors.matrix.exact`, which
-    makes each pair once."""
+    """Rows F_ij = (exact factor without obstacles) * (visible share of the pair).
+
+    For a whole matrix see `factors.polygons.matrix.exact`, which makes each pair once.
+    """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Baseline, seed: Seed | int, replicates: int):
         self.geometry, self.samples, self.seed = geometry, method.lines_of_pair, Seed.of(seed)

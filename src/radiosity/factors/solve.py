@@ -1,4 +1,4 @@
-"""From counted lines to form factors, and from form factors to irradiance."""
+"""Functions that turn counted lines into form factors, and form factors into irradiance."""
 
 import math
 
@@ -9,11 +9,11 @@ from .counts import split
 from .model import Factors
 
 TOLERANCE = 1e-10  # relative, of radiosity
-SCALINGS = 20  # at most: few rows are far off then, and counts are not worth more
+SCALINGS = 20  # at most: few rows are far off then, and counts are not exact enough for more
 
 
 def of_rows(keys: np.ndarray, counts: np.ndarray, n: int) -> Factors:
-    """F_ij = n_ij / n_i: every row is what its own lines saw, and sums to 1 with what escaped (Sbert 1993).
+    """Return F_ij = n_ij / n_i: every row comes from its own lines, and sums to 1 with what escaped (Sbert 1993).
 
     Args:
         keys, counts: of one replicate, rows from 0; columns n and n + 1 are lines escaped and lost.
@@ -27,17 +27,19 @@ def of_rows(keys: np.ndarray, counts: np.ndarray, n: int) -> Factors:
 
 
 def of_both_ways(keys: np.ndarray, counts: np.ndarray, n: int, area: np.ndarray) -> Factors:
-    """A_i F_ij = A_j F_ji = (n_ij + n_ji) / (n_i / A_i + n_j / A_j), then scaled until rows sum to what did not escape: every
-    line is used at both its ends, see `balance.restored`."""
+    """Return A_i F_ij = A_j F_ji = (n_ij + n_ji) / (n_i / A_i + n_j / A_j), scaled until rows sum to what did not escape.
+
+    Every line is used at both its ends, see `balance.restored`.
+    """
     rows, _ = split(keys)
     return restored(of_rows(keys, counts, n), area, np.bincount(rows, weights=counts, minlength=n) / area, SCALINGS)
 
 
 def irradiance(factors: Factors, emission: np.ndarray, reflectance: np.ndarray, filled=lambda received: received) -> np.ndarray:
-    """(n,) H = F B where B = E + rho H, by Jacobi iterations, each at most rho_max of the last change.
+    """Return H = F B, (n,), where B = E + rho H, by Jacobi iterations; each change is at most rho_max times the last one.
 
     Args:
-        filled: (n,) irradiance to the same with values for patches whose rows are empty.
+        filled: takes irradiance, (n,), and returns it with values for patches whose rows are empty.
     """
     received = np.zeros(len(emission))
     bound = float(reflectance.max(initial=0.0))
@@ -51,12 +53,12 @@ def irradiance(factors: Factors, emission: np.ndarray, reflectance: np.ndarray, 
 
 
 def of_own_light(factors: Factors, area, lines, emission, reflectance, received, *, both_ways: bool) -> np.ndarray:
-    """(n,) how far off irradiance is in the mean, to the first order in one over the lines.
+    """Return the bias of irradiance, (n,), to the first order in the reciprocal of the number of lines.
 
-    Lines between i and j count in both rows, so a patch that many of them lead away from gets back its light by as many. With
-    Var(n_ij) = n_i F_ij, and rows that sum to 1, E[F_ij F_jk] - F_ij F_jk is F_ij / n_j for k = i, less F_ij F_jk / n_j. So i
-    receives sum_j F_ij rho_j (B_i - H_j) / n_j too much, and all patches what is reflected of that. Where local lines count both
-    ways, A_j (n_i / A_i + n_j / A_j) stands for n_j.
+    Lines between i and j count in both rows. So where by chance many lines lead from a patch to j, as many bring its light back.
+    With Var(n_ij) = n_i F_ij, and rows that sum to 1, E[F_ij F_jk] - F_ij F_jk is F_ij / n_j for k = i, less F_ij F_jk / n_j. So
+    i receives sum_j F_ij rho_j (B_i - H_j) / n_j too much, and all patches receive what is reflected of that. Where local lines
+    count both ways, A_j (n_i / A_i + n_j / A_j) takes the place of n_j.
 
     Args:
         area, lines, emission, reflectance, received: (n,); ``lines`` of each row.
@@ -65,7 +67,7 @@ def of_own_light(factors: Factors, area, lines, emission, reflectance, received,
     known = one[j] + (one[i] * area[j] / area[i] if both_ways else 0)
     more = emission[i] + reflectance[i] * received[i] - received[j]
     own = np.bincount(i, weights=factors.values * reflectance[j] * more / known, minlength=len(lines))
-    # in two parts, since what is solved for is not negative
+    # in two parts, since `irradiance` solves for values that are not negative
     up, down = (np.maximum(sign * own, 0) for sign in (1, -1))
     reflected = [irradiance(factors, reflectance * part, reflectance) for part in (up, down)]
     return np.abs(own + reflected[0] - reflected[1])

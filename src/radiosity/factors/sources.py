@@ -1,4 +1,4 @@
-"""Where baselines take form factors from, by name."""
+"""The sources of form factors of baselines, by name."""
 
 from importlib import import_module
 

@@ -1,4 +1,4 @@
-"""Solution -> files, pictures. A new file format is one new module with ``write(solution, path, look)`` and one line here."""
+"""Files and pictures of solutions. A new file format is one new module with ``write(solution, path, look)`` and one line here."""
 
 from importlib import import_module
 from pathlib import Path
@@ -25,8 +25,8 @@ def check_writable(path) -> Path:
     """Find out before a run whether a result can be written to ``path``.
 
     Raises:
-        OutputError: unknown suffix, missing or read-only folder, a folder or a read-only file of that name, or a
-            library that is not installed.
+        OutputError: the suffix is unknown, the folder is missing or read-only, there is a folder or a read-only file of that
+            name, or a library is not installed.
     """
     for file in files_of(path):
         _check(file, SUFFIXES)
@@ -37,7 +37,7 @@ def check_writable(path) -> Path:
 
 
 def files_of(path) -> tuple[Path, ...]:
-    """The files that `export` writes for a path: itself, and beside ``x.csv`` the table of surfaces."""
+    """Return the files that `export` writes for a path: itself, and beside ``x.csv`` the table of surfaces."""
     path = Path(path)
     if path.suffix.lower() != ".csv":
         return (path,)

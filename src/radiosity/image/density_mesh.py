@@ -1,6 +1,6 @@
 """The display mesh of a density estimation: fits evaluated at vertices, and cells merged where the eye sees no difference.
 
-After B. Walter et al. 1997. Merging goes from cells to blocks of 2 x 2, 4 x 4 and so on of a parallelogram, as long as the values
+It follows B. Walter et al. 1997. Cells of a parallelogram are merged to blocks of 2 x 2, 4 x 4 and so on, as long as the values
 left out lie within a tolerance of what is interpolated between the corners. Blocks of one face may differ in size: their edges
 lie in one plane, so no crack opens.
 """
@@ -16,15 +16,15 @@ TOLERANCE = 0.02  # of the value: the least difference of brightness that people
 
 
 def estimated(solution) -> bool:
-    """The solution is a density estimation, whose state still has its landings."""
+    """Return whether the solution is a density estimation whose state still has its hits."""
     choices = getattr(solution, "provenance", {}).get("choices", {})
     return choices.get("reconstruction") == "local-linear" and "arrivals" in solution.state
 
 
 def at_vertices(solution, mesh: DisplayMesh) -> tuple[DisplayMesh, np.ndarray]:
-    """Irradiance fitted at the vertices of a mesh, (n_vertices, n_bands), and the mesh with a vertex for each flat region there.
+    """Fit irradiance at the vertices of a mesh; return the mesh with a vertex for each flat region, and (n_vertices, n_bands).
 
-    The fit at a vertex knows the landings of its own region only.
+    The fit at a vertex uses the hits of its own region only.
     """
     patches = solution.patches
     regions = Regions.find(patches)
@@ -32,12 +32,12 @@ def at_vertices(solution, mesh: DisplayMesh) -> tuple[DisplayMesh, np.ndarray]:
     kept, polygons = np.unique(key, return_inverse=True)
     vertices = mesh.vertices[kept // regions.count]
     smooth = weights(regions, solution.arrivals, vertices, kept % regions.count, least=CORNER)
-    landed = _landed(solution)
-    return replace(mesh, vertices=vertices, polygons=polygons.reshape(mesh.polygons.shape).astype(np.int32)), smooth @ landed
+    counted = _counted(solution)
+    return replace(mesh, vertices=vertices, polygons=polygons.reshape(mesh.polygons.shape).astype(np.int32)), smooth @ counted
 
 
 def display(solution, quantity: str) -> tuple[DisplayMesh, np.ndarray, np.ndarray]:
-    """The mesh to show of a density estimation.
+    """Return the mesh to show of a density estimation.
 
     Args:
         quantity: radiosity or irradiance.
@@ -55,8 +55,8 @@ def display(solution, quantity: str) -> tuple[DisplayMesh, np.ndarray, np.ndarra
     return replace(mesh, vertices=mesh.vertices[used], polygons=polygons), values[used], patch
 
 
-def _landed(solution) -> np.ndarray:
-    """(n_patches, n_bands) irradiance as counted, before it was smoothed, mean over replicates."""
+def _counted(solution) -> np.ndarray:
+    """Return irradiance as counted, before it was smoothed, mean over replicates, (n_patches, n_bands)."""
     from ..algorithms.state import Sizes
     from ..algorithms.walks.state import WalkState
     from ..algorithms.walks.tally import WalkTally
@@ -71,7 +71,7 @@ def _landed(solution) -> np.ndarray:
 
 
 def merged(solution, mesh: DisplayMesh, values: np.ndarray, tolerance: float = TOLERANCE) -> tuple[DisplayMesh, np.ndarray]:
-    """A mesh with fewer polygons whose interpolated values differ by no more than about ``tolerance``; unused vertices stay.
+    """Return a mesh with fewer polygons whose interpolated values differ by at most about ``tolerance``; unused vertices stay.
 
     Args:
         values: (n_vertices, n_bands) to compare.
@@ -97,7 +97,7 @@ def merged(solution, mesh: DisplayMesh, values: np.ndarray, tolerance: float = T
 
 
 def _blocks(cells: np.ndarray, values: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
-    """Polygons of blocks of a face's cells, (m, 4), and the first cell of each; ``cells`` is (rows, columns, 4)."""
+    """Return polygons of blocks of a face's cells, (m, 4), and the first cell of each; ``cells`` is (rows, columns, 4)."""
     rows, columns = cells.shape[:2]
     alone, result, owner = np.ones((rows, columns), bool), [], []
     step, corners = 1, cells
@@ -118,18 +118,18 @@ def _blocks(cells: np.ndarray, values: np.ndarray, tolerance: float) -> tuple[np
 
 
 def _outer(parts: list[np.ndarray]) -> np.ndarray:
-    """Corners of blocks from those of their four parts: in each, the corner that no other part has."""
+    """Return corners of blocks from those of their four parts: of each part, the corner that no other part has."""
     return np.stack([part[..., i] for i, part in enumerate(_around(parts))], axis=-1)
 
 
 def _around(parts: list[np.ndarray]) -> tuple[np.ndarray, ...]:
-    """The four parts of blocks in the order in which their polygons count corners: a back counts the other way round."""
+    """Return the four parts of blocks in the order of their polygons' corners, which is reversed for backs."""
     low, right, up, far = parts
     return (low, right, far, up) if np.array_equal(low[..., 1], right[..., 0]) else (low, up, far, right)
 
 
 def _even(parts: list[np.ndarray], values: np.ndarray, tolerance: float) -> np.ndarray:
-    """Mask of blocks whose middle points lie within the tolerance of what their corners give."""
+    """Return a mask of blocks whose middle points lie within the tolerance of what their corners give."""
     corners = [values[corner] for corner in np.moveaxis(_outer(parts), -1, 0)]
     middle = values[parts[0][..., 2]]  # the vertex that all four parts share
     mean = sum(corners) / 4
@@ -141,5 +141,5 @@ def _even(parts: list[np.ndarray], values: np.ndarray, tolerance: float) -> np.n
 
 
 def _between(parts: list[np.ndarray], a: int, b: int) -> np.ndarray:
-    """The vertex halfway between two outer corners, neighbours."""
+    """Return the vertex halfway between two neighbouring outer corners."""
     return _around(parts)[a][..., b]

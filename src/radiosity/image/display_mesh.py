@@ -1,4 +1,4 @@
-"""Patches as a mesh to look at: polygons with shared vertices, and patch values smoothed to those vertices."""
+"""The display mesh of patches: polygons with shared vertices, and patch values smoothed to those vertices."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,12 +27,15 @@ class DisplayMesh:
 
     @cached_property
     def is_quad(self) -> np.ndarray:
-        """(n_patches,) bool."""
+        """Which polygons are quadrilaterals, (n_patches,) bool."""
         return self.polygons[:, 2] != self.polygons[:, 3]
 
     def smoothed(self, values: np.ndarray) -> np.ndarray:
-        """Patch values (n_patches, n_bands) to vertex values (n_vertices, n_bands): the mean of the patches around a
-        vertex, weighted by their angles there. Unknown (NaN) patches are left out; NaN where all are unknown."""
+        """Turn patch values (n_patches, n_bands) into vertex values (n_vertices, n_bands).
+
+        They are means of the patches around a vertex, weighted by their angles there. Unknown (NaN) patches are left out; a mean
+        is NaN where all are unknown.
+        """
         values = np.asarray(values, np.float64)
         corner, n = self.polygons.ravel(), len(self.vertices)
         result = np.empty((n, values.shape[1]))
@@ -45,7 +48,7 @@ class DisplayMesh:
         return result
 
     def flat(self) -> tuple["DisplayMesh", np.ndarray]:
-        """The mesh with no vertex shared between patches, and the patch that each of its vertices belongs to."""
+        """Return the mesh with no vertex shared between patches, and the patch of each of its vertices."""
         used = np.ones(self.polygons.shape, bool)
         used[:, 3] = self.is_quad
         number = (np.cumsum(used.ravel()) - 1).astype(np.int32).reshape(used.shape)
@@ -53,19 +56,19 @@ class DisplayMesh:
         return mesh, np.repeat(np.arange(len(used), dtype=np.int32), used.sum(axis=1))
 
     def triangles(self) -> tuple[np.ndarray, np.ndarray]:
-        """(m, 3) int32 vertex numbers, quadrilaterals cut in two, and the (m,) int32 patch of each."""
+        """Return triangles, (m, 3) int32 vertex numbers, quadrilaterals cut in two, and the patch of each, (m,) int32."""
         both = np.stack([self.polygons[:, :3], self.polygons[:, [0, 2, 3]]], axis=1)
         keep = np.stack([np.ones(len(both), bool), self.is_quad], axis=1)
         return both[keep], np.broadcast_to(np.arange(len(both), dtype=np.int32)[:, None], keep.shape)[keep]
 
 
 def build(patches: Patches) -> DisplayMesh:
-    """The display mesh of patches. Vertices inside a face are found by arithmetic; only those on its rim are compared."""
+    """Return the display mesh of patches. Vertices inside a face are found by arithmetic; only those on its rim are compared."""
     scene, n = patches.scene, len(patches)
     sheets = Sheets(patches)
     polygons, angle = np.empty((n, 4), np.int32), np.empty((n, 4), np.float32)
     column, row, inverted = patches.place
-    angles = _angles(scene)  # of inverted cells too: they are upright ones turned by half a circle, corner by corner
+    angles = _angles(scene)  # inverted cells have the same ones: they are upright cells turned by half a circle
     for begin in range(0, n, CHUNK):
         part = slice(begin, begin + CHUNK)
         face, back = patches.face[part], patches.is_back[part]
@@ -81,7 +84,7 @@ def build(patches: Patches) -> DisplayMesh:
 
 
 def _angles(scene) -> np.ndarray:
-    """(n_faces, 4) angles of a face at its corners; the fourth of a triangle means nothing."""
+    """Return the angles of faces at their corners, (n_faces, 4); the fourth of a triangle has no meaning."""
     _, first, second = scene.frames
     a = _angle(first, second)
     b = np.where(scene.is_quad, np.pi - a, _angle(-first, second - first))

@@ -1,4 +1,4 @@
-"""Values as colours of a map, with a legend in physical units beside the picture."""
+"""False colours: values as colours of a map, with a legend in physical units beside the picture."""
 
 import textwrap
 
@@ -9,16 +9,16 @@ from . import tone
 from .picture import Picture
 
 UNKNOWN = 0.5  # grey of pixels whose value is unknown
-TOP = 99.0  # percentile of the values that the automatic range ends at
+TOP = 99.0  # percentile of the values at which the automatic range ends
 DECADES = 4  # of an automatic logarithmic range, at most
 LOWEST_LEGEND = 240  # pixels
 
 
 def colour(picture: Picture, *, title: str, unit: str, limits=None, log=False, color_map="viridis") -> np.ndarray:
-    """(height, width, 3) uint8: the picture at its full resolution and its legend to the right.
+    """Return the picture at its full resolution and its legend to the right, (height, width, 3) uint8.
 
     Args:
-        picture: of one value a pixel.
+        picture: a picture with one value a pixel.
         title, unit: of the value, for the legend.
         limits: (low, high) in ``unit``; default: 0 (or the lowest value, if logarithmic) to the 99th percentile of what
             does not emit by itself, or 1 where nothing is lit.
@@ -26,7 +26,7 @@ def colour(picture: Picture, *, title: str, unit: str, limits=None, log=False, c
         color_map: one of matplotlib's.
 
     Raises:
-        OutputError: limits that are no range, or an unknown colour map.
+        OutputError: the limits are not a range, or the colour map is unknown.
     """
     import matplotlib
     from matplotlib.colors import LogNorm, Normalize
@@ -49,7 +49,7 @@ def colour(picture: Picture, *, title: str, unit: str, limits=None, log=False, c
 
 
 def automatic_limits(values: np.ndarray, log: bool) -> tuple[float, float]:
-    """Range for values (m,), NaN allowed."""
+    """Return the automatic range for values (m,), NaN allowed."""
     values = values[np.isfinite(values) & (values > 0)]
     if not len(values):
         return (0.1, 1.0) if log else (0.0, 1.0)

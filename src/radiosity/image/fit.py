@@ -1,4 +1,4 @@
-"""A camera for a scene that has none: of several places inside and outside, the one that sees most."""
+"""A camera for a scene that has none: the one of several places, inside and outside, that sees most."""
 
 from itertools import product
 
@@ -10,28 +10,28 @@ from . import tone
 from .lookup import Lookup
 from .view import directions, up_axis
 
-TRIAL = (40, 30)  # pixels of a trial picture
+SMALL = (40, 30)  # pixels of the picture by which a candidate is judged
 INSIDE_FOV, OUTSIDE_FOV = 65.0, 40.0  # degrees, vertical
 CORNERS, EYES = (0.04, 0.15), (0.5, 0.75)  # distance from the bounding box's corners, and height, as a part of its sides
 GRID, EYE = (0.1, 0.3, 0.5, 0.7, 0.9), 0.6  # places all over the box, for buildings of several rooms, and their height
-FALL = 0.15  # how much the views from there look down, as a part of their length
+FALL = 0.15  # slope by which the views from there look down
 FAR = 0.6  # of the box's mean side: typical distances below this make a view worse
-DIM = 0.02  # of a well-lit patch's radiosity: less counts as dark
+DIM = 0.02  # of a well-lit patch's radiosity: patches below it count as dark
 
 
 def fitted(patches: Patches, light: np.ndarray, hits, *, width: int = 800, height: int = 600) -> Camera:
-    """The candidate that shows most lit surface, of as many surfaces as possible, and not from too near.
+    """Return the candidate that shows most lit surface, of as many surfaces as possible, and not from too near.
 
     Args:
         patches: of the solution.
-        light: (n_patches,) what they radiate; NaN counts as dark.
+        light: (n_patches,) radiosity; NaN counts as dark.
         hits: ``hits(scene, origins, directions)``, see `radiosity.image.render`.
         width, height: of the picture, pixels.
     """
     scene, level = patches.scene, np.nan_to_num(light)
     well_lit = tone.LEVEL / tone.automatic_scale(level[:, None], patches.area)
     cameras = candidates(scene, width / height)
-    x, y = (points.ravel() + 0.5 for points in np.meshgrid(np.arange(TRIAL[0]), np.arange(TRIAL[1])))
+    x, y = (points.ravel() + 0.5 for points in np.meshgrid(np.arange(SMALL[0]), np.arange(SMALL[1])))
     rays = np.concatenate([directions(camera, x, y) for camera in cameras])
     seen = hits(scene, np.repeat([camera.origin for camera in cameras], len(x), axis=0), rays)
     patch = Lookup(patches, level[:, None], smooth=False).patch(seen).reshape(len(cameras), -1)
@@ -43,7 +43,7 @@ def fitted(patches: Patches, light: np.ndarray, hits, *, width: int = 800, heigh
 
 
 def candidates(scene: Scene, aspect: float) -> list[Camera]:
-    """Cameras inside, near the corners of the bounding box, all over it, and outside, before its corners."""
+    """Return cameras inside, near the corners of the bounding box, all over it, and outside, in front of its corners."""
     low, high = scene.bounds
     size = np.maximum(high - low, 1e-6 * np.max(high - low))
     axis = "xyz".index(up_axis(scene))
@@ -80,14 +80,14 @@ def candidates(scene: Scene, aspect: float) -> list[Camera]:
 
 def _camera(origin, target, up, fov) -> Camera:
     (x, y, z), (a, b, c), (i, j, k) = (np.asarray(v, np.float64).tolist() for v in (origin, target, up))
-    return Camera((x, y, z), (a, b, c), (i, j, k), fov, *TRIAL)
+    return Camera((x, y, z), (a, b, c), (i, j, k), fov, *SMALL)
 
 
 def _score(surface: np.ndarray, distance: np.ndarray, lit: float) -> float:
-    """Of a view whose lit pixels show these surfaces at these distances (in mean sides of the box)."""
+    """Return the score of a view whose lit pixels show these surfaces at these distances (in mean sides of the box)."""
     if lit == 0:
         return 0.0
     counts = np.bincount(surface)
     share = counts[counts > 0] / len(surface)
-    variety = np.exp(-(share * np.log(share)).sum())  # the number of surfaces, were they seen equally well
+    variety = np.exp(-(share * np.log(share)).sum())  # the number of surfaces, if they were seen equally well
     return float(lit * np.sqrt(variety * min(1.0, float(np.median(distance)) / FAR)))

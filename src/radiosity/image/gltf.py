@@ -1,10 +1,10 @@
 """GLB: unlit meshes with linear vertex colours, one for each surface, and the scale of the colours in ``extras``.
 
-Khronos glTF 2.0 with KHR_materials_unlit. COLOR_0 holds radiosity x scale, linear as the standard asks, as 16-bit
-fractions that end at 1; ``_RADIOSITY_0`` and so on hold the bands themselves, as 32-bit floats. Each radiating side
-is single-sided geometry, so that closed rooms can be looked into from outside. glTF is y-up: the root node turns
-scenes that are z-up, and vertices keep the scene's coordinates (metres). Vertices are in single precision: those of a surface far
-from the origin, for its size, are about a point near it, to which its node moves them (JSON holds doubles).
+The format is Khronos glTF 2.0 with KHR_materials_unlit. COLOR_0 holds radiosity x scale, linear as the standard asks, as 16-bit
+fractions that end at 1. ``_RADIOSITY_0`` and so on hold the bands themselves, as 32-bit floats. Each radiating side is
+single-sided geometry, so that one can look into closed rooms from outside. glTF is y-up: the root node turns scenes that are
+z-up, and vertices keep the scene's coordinates (metres). Vertices are in single precision. Those of a surface far from the
+origin, for its size, are relative to a point near it, to which its node moves them (JSON holds doubles).
 """
 
 import json
@@ -45,7 +45,7 @@ def write(solution, path, look: Look) -> None:
 
 
 def document(mesh: ColouredMesh) -> tuple[dict, list]:
-    """The JSON tree, and the buffer's parts in order."""
+    """Return the JSON document, and the buffer's parts in order."""
     views, accessors, meshes, nodes, blocks, length = [], [], [], [], [], 0
 
     def add(array: np.ndarray, kind: str, component: int, target: int, **more) -> int:
@@ -65,7 +65,7 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         attributes = {"POSITION": add(points, "VEC3", FLOAT, ARRAY, **limits)}
         attributes["COLOR_0"] = add(tint, "VEC4", USHORT, ARRAY, normalized=True)
         for band in range(part.values.shape[1]):
-            # unknown values stay out of the file: the standard forbids NaN
+            # unknown values are not written: the standard forbids NaN
             attributes[f"_{mesh.key.upper()}_{band}"] = add(
                 np.nan_to_num(part.values[:, band]).astype("<f4"), "SCALAR", FLOAT, ARRAY
             )

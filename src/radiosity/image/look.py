@@ -1,11 +1,11 @@
-"""How a solution is shown: the options that pictures and coloured meshes share."""
+"""Looks: the options that pictures and coloured meshes share."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Look:
-    """What to show and how bright.
+    """The quantity to show, and its brightness.
 
     Attributes:
         quantity: a key of `radiosity.image.quantity.NAMES`.
@@ -13,7 +13,7 @@ class Look:
             of any other number the mean is shown as grey).
         smooth: values are averaged around vertices within a surface and interpolated; otherwise one value a patch.
         exposure: stops brighter than the scale says (+1: twice), or None.
-        scale: linear display value for one unit; None: automatic, from what is to be seen.
+        scale: linear display value for one unit; None: automatic, from the values that are shown.
     """
 
     quantity: str = "radiosity"

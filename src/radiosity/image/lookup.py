@@ -1,4 +1,4 @@
-"""What a line of sight sees: the patch that was hit, and the value there."""
+"""The lookup of what lines of sight see: the patch that was hit, and the value there."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,7 +27,7 @@ class Lookup:
         return self.mesh.smoothed(self.values)
 
     def __call__(self, hits) -> tuple[np.ndarray, np.ndarray]:
-        """Values seen (m, n) and patches (m,): -1 and zeros where a line meets nothing or an absorbing back."""
+        """Return values, (m, n), and patches, (m,): zeros and -1 where a line meets nothing or an absorbing back."""
         patch = self.patch(hits)
         seen = np.flatnonzero(patch >= 0)
         values = np.zeros((len(patch), self.values.shape[1]))
@@ -43,7 +43,7 @@ class Lookup:
         return values, patch
 
     def patch(self, hits) -> np.ndarray:
-        """(m,) int64 patches that were hit, or -1."""
+        """Return the patches that were hit, or -1, (m,) int64."""
         patches, scene = self.patches, self.patches.scene
         face, front = np.asarray(hits.face, np.int64), np.asarray(hits.front, bool)
         hit = np.flatnonzero((face >= 0) & (front | (scene.back[face] == Back.RADIATES)))
@@ -56,7 +56,7 @@ class Lookup:
         return result
 
     def _weights(self, u: np.ndarray, v: np.ndarray, patch: np.ndarray) -> np.ndarray:
-        """(m, 4) shares of the corners of a patch's polygon at a point of its face."""
+        """Return the shares of the corners of a patch's polygon at a point of its face, (m, 4)."""
         column, row, inverted = (values[patch] for values in self._place)
         face, back = self.patches.face[patch], self.patches.is_back[patch]
         s, t = u * self.patches.columns[face] - column, v * self.patches.rows[face] - row
@@ -67,7 +67,7 @@ class Lookup:
         triangle = np.clip(np.where(inverted[:, None], turned, upright), 0, None)
         triangle /= triangle.sum(axis=1, keepdims=True)
         weight = np.where(quad[:, None], bilinear, np.column_stack([triangle, np.zeros(len(s))]))
-        # polygons of backs run the other way round
+        # polygons of backs have the reverse order
         order = np.where(back[:, None], np.where(quad[:, None], [0, 3, 2, 1], [0, 2, 1, 3]), [0, 1, 2, 3])
         return np.take_along_axis(weight, order, axis=1)
 

@@ -1,4 +1,4 @@
-"""A display mesh with values and colours on its vertices: what GLB and PLY files hold."""
+"""Coloured meshes: display meshes with values and colours on their vertices, which GLB and PLY files hold."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ FAR = 16  # times its extent: a surface whose coordinates are larger would lose 
 
 @dataclass(frozen=True, eq=False)
 class SurfacePart:
-    """One surface of a coloured mesh, with vertex numbers of its own; arrays as in `ColouredMesh`."""
+    """A surface of a coloured mesh, with vertex numbers of its own; arrays as in `ColouredMesh`."""
 
     name: str
     vertices: np.ndarray
@@ -25,8 +25,11 @@ class SurfacePart:
 
     @property
     def origin(self) -> np.ndarray:
-        """(3,) float64 metres: a point near the surface, in round numbers, where single precision would lose 1e-6 of its size
-        about the scene's origin; zeros where not."""
+        """Origin of the surface's coordinates, (3,) float64, metres.
+
+        It is a point near the surface, in round numbers, where single precision about the scene's origin would lose 1e-6 of the
+        surface's size; elsewhere zeros.
+        """
         low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
         extent = float((high - low).max())
         if extent == 0 or np.abs([low, high]).max() <= FAR * extent:
@@ -66,7 +69,7 @@ class ColouredMesh:
     smooth: bool
 
     def facts(self) -> dict:
-        """What a reader needs to turn colours back into physical values."""
+        """Return what a reader needs to turn colours back into physical values."""
         return {
             "quantity": self.key,
             "unit": self.unit,
@@ -78,7 +81,7 @@ class ColouredMesh:
         }
 
     def by_surface(self) -> Iterator[SurfacePart]:
-        """Its surfaces one by one; those without a radiating patch are left out."""
+        """Yield its surfaces one by one; those without a radiating patch are left out."""
         order = np.argsort(self.surface, kind="stable")
         ends = np.cumsum(np.bincount(self.surface, minlength=len(self.names)))
         local = np.empty(len(self.vertices), np.int32)
@@ -92,7 +95,7 @@ class ColouredMesh:
 
 
 def coloured(solution, look: Look) -> ColouredMesh:
-    """The mesh of a solution. The automatic scale comes from an area-weighted percentile of the patches that do not emit."""
+    """Return the mesh of a solution. The automatic scale is an area-weighted percentile of the patches that do not emit."""
     patches = solution.patches
     shown = choose(solution, look.quantity, look.band)
     dark = ~shown.own_light if not shown.own_light.all() else np.ones(len(patches), bool)

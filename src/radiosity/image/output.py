@@ -1,4 +1,4 @@
-"""What would stop an output is found before a run."""
+"""Checks of outputs before a run: what would stop an output is found in time."""
 
 import os
 from importlib.util import find_spec
@@ -20,7 +20,7 @@ def check_writable(path, suffixes) -> Path:
         The path.
 
     Raises:
-        OutputError: unknown suffix, a read-only folder, a folder or a read-only file of that name.
+        OutputError: the suffix is unknown, the folder is read-only, or there is a folder or a read-only file of that name.
     """
     path = Path(path)
     if path.suffix.lower() not in suffixes:
@@ -29,7 +29,7 @@ def check_writable(path, suffixes) -> Path:
         if path.is_dir():
             raise OutputError(f"{path}: is a folder; name a file in it")
         try:
-            folder = standing(path.parent)  # the rest is made when the file is written
+            folder = standing(path.parent)  # missing folders are made when the file is written
         except OutputError as error:
             raise OutputError(f"{path}: {error}") from None
         if path.exists() and not os.access(path, os.W_OK):
@@ -39,10 +39,10 @@ def check_writable(path, suffixes) -> Path:
 
 
 def require(module: str, purpose: str) -> None:
-    """Refuse in time where an optional library is missing.
+    """Refuse an output whose optional library is missing.
 
     Raises:
-        OutputError: it is not installed.
+        OutputError: the library is not installed.
     """
     if find_spec(module) is None:
         raise OutputError(f"{purpose} needs '{module}', which is not installed; {INSTALL}")

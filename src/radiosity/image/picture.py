@@ -1,4 +1,4 @@
-"""What a camera sees of a solution, pixel by pixel, in physical units."""
+"""Pictures of a solution by a camera, in physical units."""
 
 from dataclasses import dataclass, replace
 
@@ -18,14 +18,14 @@ DARK = 0.5  # share of a pixel's samples that must see a patch for the pixel to 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """What a camera sees, in physical units.
+    """A picture in physical units.
 
     Attributes:
         values: (height, width, n) float64, mean of the samples that see a patch; NaN where that patch is unknown,
             0 where none is seen.
         cover: (height, width) share of the samples that see a patch; the rest see nothing, or an absorbing back.
-        own_light: (height, width) bool, pixels on surfaces that shine by themselves.
-        camera: it was taken with.
+        own_light: (height, width) bool, pixels on surfaces that emit.
+        camera: the camera that took it.
     """
 
     values: np.ndarray
@@ -35,13 +35,13 @@ class Picture:
 
     @property
     def counted(self) -> np.ndarray:
-        """(m, n) values that decide scales: of pixels on patches, without lamps unless there is nothing else."""
+        """Return the values that decide scales, (m, n): of pixels on patches, without lamps unless there is nothing else."""
         on = self.cover > DARK
         return self.values[on & ~self.own_light] if (on & ~self.own_light).any() else self.values[on]
 
 
 def take(solution, shown: Quantity, camera: Camera, *, smooth=True, samples=4, hits=None) -> Picture:
-    """Sample a picture: ``samples`` lines of sight a pixel, at the points of a Hammersley set (each row and column once)."""
+    """Take a picture with ``samples`` lines of sight a pixel, at the points of a Hammersley set (each row and column once)."""
     if isinstance(samples, bool) or int(samples) != samples or not 1 <= samples <= 1024:
         raise OutputError(f"samples is {samples}; it must be a whole number from 1 to 1024")
     hits, camera, samples = hits or first_hits, check(camera), int(samples)
@@ -65,7 +65,7 @@ def take(solution, shown: Quantity, camera: Camera, *, smooth=True, samples=4, h
 
 
 def choose_camera(solution, camera: Camera | int | None, width, height, hits) -> Camera:
-    """The camera asked for (a `Camera`, or the number of one of the scene's), the scene's first, or a fitted one."""
+    """Return the camera asked for (a `Camera`, or the number of one of the scene's), the scene's first, or a fitted one."""
     cameras = solution.patches.scene.cameras
     for name, value in (("width", width), ("height", height)):
         if value is not None and not (np.isfinite(value) and int(value) == value >= 1):
@@ -90,7 +90,7 @@ def choose_camera(solution, camera: Camera | int | None, width, height, hits) ->
 
 
 def first_hits(scene, origins, directions):
-    """The ray caster; imported when a picture is taken, since it starts a back end. Open lamps are seen from their front."""
+    """Trace first hits; imported when a picture is taken, since it starts a back end. Open lamps are seen from their front."""
     from ..tracing import first_hits
 
     seen = replace(scene, back=np.where(scene.back == Back.OPEN, Back.PASSES, scene.back).astype(np.uint8))
@@ -98,7 +98,7 @@ def first_hits(scene, origins, directions):
 
 
 def _bits_reversed(n: int) -> np.ndarray:
-    """Radical inverses to base 2 of 0 to n - 1, moved to the middle of their cells."""
+    """Return radical inverses to base 2 of 0 to n - 1, moved to the middle of their cells."""
     k, result, place = np.arange(n), np.full(n, 0.5 / 2 ** max(n - 1, 0).bit_length()), 0.5
     while k.any():
         result += place * (k & 1)

@@ -1,8 +1,8 @@
 """PLY: triangles with vertex colours (8 bits, sRGB) and the values themselves (32-bit floats, one property a band).
 
-Vertices keep the scene's axes and metres, and carry the number of their surface; the surfaces' names, the unit and
-the scale stand in comments of the header. Coordinates are 32-bit floats, or doubles where these would lose 1e-6 of a surface's
-size. Unknown values are NaN. Faces carry nothing else: some readers stumble over it.
+Vertices keep the scene's axes and metres, and have the number of their surface. The surfaces' names, the unit and the scale are
+in comments of the header. Coordinates are 32-bit floats, or doubles where floats would lose 1e-6 of a surface's size. Unknown
+values are NaN. Faces have no other properties, since some readers fail on them.
 """
 
 import re

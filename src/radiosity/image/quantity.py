@@ -1,4 +1,4 @@
-"""What a picture or a mesh shows: a quantity of the solution, all bands or one."""
+"""Quantities of a solution that a picture or a mesh shows, in all bands or one."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ class Quantity:
         title: what they are, in words.
         unit: W/m², lm/m² or %.
         bands: names of the columns.
-        own_light: (n_patches,) bool, patches that shine by themselves; they set no scale.
+        own_light: (n_patches,) bool, patches that emit; they are left out where scales are found.
     """
 
     values: np.ndarray
@@ -36,7 +36,7 @@ class Quantity:
 
 
 def choose(solution, name: str = "radiosity", band: str | int | None = None, *, single: bool = False) -> Quantity:
-    """A quantity of a solution.
+    """Return a quantity of a solution.
 
     Args:
         solution: to show.
@@ -45,7 +45,7 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         single: reduce all bands to one number for each patch, the luminance of three bands or the mean of others.
 
     Raises:
-        OutputError: no such quantity or band.
+        OutputError: there is no such quantity or band.
     """
     if name not in NAMES:
         raise OutputError(f"quantity '{name}' does not exist; known are {', '.join(NAMES)}")
@@ -70,7 +70,7 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
 
 
 def legend_unit(name: str, unit: str) -> str:
-    """The unit as people who measure light read it: lux of irradiance, where it is lm/m²."""
+    """Return the unit as people who measure light read it: lux for irradiance in lm/m²."""
     if unit != "lm/m²":
         return unit
     return "lux" if name.startswith("irradiance") else "lm/m² (lux)"

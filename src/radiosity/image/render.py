@@ -36,10 +36,10 @@ def render(
     samples: int = 4,
     hits=None,
 ) -> np.ndarray:
-    """Look at a solution through a pinhole camera. What radiates nothing (absorbing backs, the void) is black.
+    """Make a picture of a solution with a pinhole camera. What radiates nothing (absorbing backs, empty space) is black.
 
     Args:
-        solution: to look at.
+        solution: the solution to show.
         path: .png or .exr file to write, or None.
         camera: a `Camera`, or the number of one of the scene's; default: its first, or a fitted one where it has none.
         width, height: pixels; default: the camera's. One alone keeps its proportions.
@@ -56,7 +56,7 @@ def render(
 
     Raises:
         OutputError: the file cannot be written, or an option makes no sense.
-        SceneError: the camera makes no picture.
+        SceneError: the camera is not one that can take a picture.
         DeviceError: rays cannot be traced here.
     """
     path = None if path is None else check_writable(path, SUFFIXES)

@@ -7,13 +7,13 @@ from ..scene import Back
 from .weld import weld
 
 EDGE_SHARE = 0.01  # of a surface's shortest cell edge: closer points are one vertex
-CHUNK = 1 << 18  # rows handled at once, where temporary arrays are large
+CHUNK = 1 << 18  # rows at a time, where temporary arrays are large
 
 
 class Sheets:
     """The grid points of every radiating side of every face, numbered sheet by sheet (face, side), row by row.
 
-    A triangle with k points on its first edge has k - y of them in row y, which begins at point y (2k - y + 1) / 2.
+    A triangle with k points on its first edge has k - y points in row y, which begins at point y (2k - y + 1) / 2.
     """
 
     def __init__(self, patches: Patches):
@@ -24,13 +24,13 @@ class Sheets:
         self.first = np.concatenate([[0], np.cumsum(self.points * sides)])
 
     def number(self, face: np.ndarray, back: np.ndarray, corner: np.ndarray) -> np.ndarray:
-        """Numbers of grid points; ``corner`` holds column and row, (m, 4, 2)."""
+        """Return numbers of grid points; ``corner`` holds column and row, (m, 4, 2)."""
         x, y, k = corner[..., 0], corner[..., 1], self.columns[face][:, None] + 1
         local = np.where(self.scene.is_quad[face][:, None], y * k + x, y * (2 * k - y + 1) // 2 + x)
         return (self.first[face] + np.where(back, self.points[face], 0))[:, None] + local
 
     def welded(self) -> tuple[np.ndarray, np.ndarray]:
-        """(n_vertices, 3) metres, and the int32 vertex of each grid point."""
+        """Return vertices, (n_vertices, 3), metres, and the vertex of each grid point, int32."""
         positions, rim = np.empty((self.first[-1], 3)), np.empty(self.first[-1], bool)
         face = np.repeat(np.arange(len(self.points), dtype=np.int32), np.diff(self.first))
         for begin in range(0, len(face), CHUNK):
@@ -60,7 +60,7 @@ class Sheets:
         return origin + (x / columns)[:, None] * first + (y / rows)[:, None] * second, rim
 
     def _tolerance(self) -> np.ndarray:
-        """(n_surfaces,) metres."""
+        """Return the distance below which points are one vertex, (n_surfaces,), metres."""
         _, first, second = self.scene.frames
         edges = [np.linalg.norm(first, axis=1) / self.columns, np.linalg.norm(second, axis=1) / self.rows]
         edges.append(np.where(self.scene.is_quad, np.inf, np.linalg.norm(second - first, axis=1) / self.columns))

@@ -1,7 +1,7 @@
-"""CSV: ``x.csv`` with a row for each patch, and beside it ``x.surfaces.csv`` with a row for each surface, or for each side of it
-that light reached (`solution.table.surface_table` explains the columns). ``few arrivals`` is 0 on the dark side of a face.
+"""CSV files: ``x.csv`` with a row for each patch, and beside it ``x.surfaces.csv`` with a row for each surface.
 
-UTF-8, comma separated, a header row with units; what is unknown is ``nan``.
+A surface has a row for each side where light reached both; `solution.table.surface_table` explains the columns. ``few arrivals``
+is 0 on the dark side of a face. Files are in UTF-8, comma separated, with units in the header row; unknown values are ``nan``.
 """
 
 import csv
@@ -20,13 +20,13 @@ POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net", "net er
 
 
 def write(solution, path, look: Look | None = None) -> None:
-    """Write both tables; they show everything whatever the look."""
+    """Write both tables; they hold all quantities for any look."""
     _patches(solution, Path(path))
     _surfaces(solution, surfaces_path(path))
 
 
 def surfaces_path(path) -> Path:
-    """``x.surfaces.csv`` for ``x.csv``."""
+    """Return ``x.surfaces.csv`` for ``x.csv``."""
     path = Path(path)
     return path.with_name(f"{path.stem}.surfaces{path.suffix}")
 
@@ -51,14 +51,14 @@ def _surfaces(solution, path: Path) -> None:
 
 
 def _titled(key: str, units: dict[str, str]) -> str:
-    """``radiosity red [W/m²]`` for ``radiosity [red]``."""
+    """Return a title such as ``radiosity red [W/m²]`` for ``radiosity [red]``."""
     quantity, _, band = key.removesuffix("]").partition(" [")
     title = f"{quantity} {band}" if band else key
     return f"{title} [{units[quantity]}]" if quantity in units else title
 
 
 def _cells(values) -> str:
-    """Values as they stand in a row, quoted where CSV needs it."""
+    """Return values as the text of a row, quoted where CSV needs it."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\r\n").writerow(values)  # so that either of them within a name is quoted
     return text.getvalue()[:-2]

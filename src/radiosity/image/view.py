@@ -1,4 +1,4 @@
-"""Pinhole cameras: which way is up, the rays of a picture, and where a point appears in it."""
+"""Pinhole cameras: the direction that is up, the rays of a picture, and the place where a point appears in it."""
 
 from pathlib import PurePath
 
@@ -13,8 +13,11 @@ MOST_PIXELS = 2**28
 
 
 def up_axis(scene: Scene) -> str:
-    """``y`` or ``z``: the main direction of the first camera's up, or else what is usual in the scene's file format,
-    unless there is clearly more area of floors, ceilings and table tops along the other axis."""
+    """Return ``y`` or ``z``, the axis that is up.
+
+    It is the main direction of the first camera's up, or else what is usual in the scene's file format, unless there is clearly
+    more area of floors, ceilings and table tops along the other axis.
+    """
     if scene.cameras:
         up = np.abs(np.asarray(scene.cameras[0].up, np.float64))
         return "y" if up[1] > up[2] else "z"
@@ -25,10 +28,10 @@ def up_axis(scene: Scene) -> str:
 
 
 def check(camera: Camera) -> Camera:
-    """The camera, if a picture can be taken with it.
+    """Return the camera, if it can take a picture.
 
     Raises:
-        SceneError: sizes, angles or directions that make no picture.
+        SceneError: its sizes, angles or directions make no picture.
     """
     numbers = np.array([*camera.origin, *camera.target, *camera.up, camera.fov], np.float64)
     if numbers.shape != (10,) or not np.isfinite(numbers).all():
@@ -47,7 +50,7 @@ def check(camera: Camera) -> Camera:
 
 
 def axes(camera: Camera) -> np.ndarray:
-    """(3, 3) unit rows: right, up and forward of the picture."""
+    """Return unit vectors to the right, up and forward of the picture, as rows, (3, 3)."""
     forward = np.subtract(camera.target, camera.origin, dtype=np.float64)
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, camera.up)
@@ -59,7 +62,7 @@ def axes(camera: Camera) -> np.ndarray:
 
 
 def directions(camera: Camera, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """(m, 3) unit directions through picture points; x runs right and y down, in pixels from the top left corner."""
+    """Return unit directions through picture points, (m, 3); x goes right and y down, in pixels from the top left corner."""
     right, up, forward = axes(camera)
     half = np.tan(np.deg2rad(camera.fov) / 2)
     across = (2 * x - camera.width) / camera.height * half
@@ -69,7 +72,7 @@ def directions(camera: Camera, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def project(camera: Camera, points: np.ndarray) -> np.ndarray:
-    """(m, 3) picture x, y (pixels from the top left corner) and depth along the view (metres) of points (m, 3)."""
+    """Return picture x, y (pixels from the top left corner) and depth along the view (metres), (m, 3), of points (m, 3)."""
     right, up, depth = axes(camera) @ (np.asarray(points, np.float64) - camera.origin).T
     half = np.tan(np.deg2rad(camera.fov) / 2)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,7 +1,7 @@
 """VTP: VTK's XML PolyData (version 1.0, base64), for ParaView and PyVista.
 
-One polygon for each patch. Cell data: radiosity, irradiance, their standard errors (NaN where unknown), arrivals,
-surface number and area; point data: radiosity smoothed within surfaces; field data: surface names, bands and unit.
+There is one polygon for each patch. Cell data are radiosity, irradiance, their standard errors (NaN where unknown), arrivals,
+surface number and area. Point data are radiosity smoothed within surfaces. Field data are surface names, bands and unit.
 """
 
 import base64

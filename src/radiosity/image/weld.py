@@ -1,4 +1,4 @@
-"""Points that are one vertex: equal positions in one group, with normals that do not form a crease."""
+"""Welding points to vertices: those of equal positions in one group, with normals that do not form a crease."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ BINS = 16.0  # normals that agree to a sixteenth count as one before angles are 
 
 
 def weld(points: np.ndarray, group: np.ndarray, normal: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
-    """Number points so that those of one position and group share a number, unless a crease parts them.
+    """Number points so that those of one position and group share a number, unless a crease lies between them.
 
     Normals that meet at a position are joined pairwise where they differ by at most `CREASE`, and transitively.
 
@@ -35,12 +35,12 @@ def weld(points: np.ndarray, group: np.ndarray, normal: np.ndarray, tolerance: n
 
 
 def _combine(*keys: np.ndarray) -> np.ndarray:
-    """One int64 for each tuple of keys, equal where the tuples are, from 0 without gaps."""
+    """Return one int64 for each tuple of keys, equal where the tuples are equal, from 0 without gaps."""
     result, size = np.zeros(len(keys[0]), np.int64), 1
     for key in keys:
         key = key - key.min()
         span = int(key.max()) + 1
-        if size * span >= 2**62:  # closing the gaps costs a sort, so it is done when the product would overflow
+        if size * span >= 2**62:  # closing the gaps needs a sort, so it is done only when the product would overflow
             result, size = _ranks(result)
             key, span = _ranks(key) if size * span >= 2**62 else (key, span)
         result, size = result * span + key, size * span
@@ -53,7 +53,7 @@ def _ranks(key: np.ndarray) -> tuple[np.ndarray, int]:
 
 
 def _pairs(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """All pairs of entries at one position."""
+    """Return all pairs of entries at one position."""
     order = np.argsort(position, kind="stable")
     count = np.bincount(position)
     start = np.cumsum(count) - count
@@ -65,7 +65,7 @@ def _pairs(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _components(a: np.ndarray, b: np.ndarray, n: int) -> np.ndarray:
-    """Number of the connected component that each of n entries is in, given the linked pairs."""
+    """Return the number of the connected component of each of n entries, given the linked pairs."""
     label = np.arange(n)
     while (label[a] != label[b]).any():
         low = np.minimum(label[a], label[b])

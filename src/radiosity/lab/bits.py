@@ -1,4 +1,4 @@
-"""Beyond the paper: the integers of a run do not depend on how it is run (contract 2), shown by their hashes."""
+"""Hashes which show that the integers of a run do not depend on how it is run (contract 2); not in the paper."""
 
 import hashlib
 from dataclasses import dataclass
@@ -15,11 +15,11 @@ QUANTA = 200_000
 
 @dataclass(frozen=True)
 class Bits:
-    """One way to run.
+    """The hash of one way to run.
 
     Attributes:
-        how: in words.
-        digest: of arrivals and fired lines of all replicates.
+        how: the way in words.
+        digest: hash of the hit counts and fired counts of all replicates.
     """
 
     how: str
@@ -27,7 +27,7 @@ class Bits:
 
 
 def bits(case: Case, seed: int) -> list[Bits]:
-    """Orders, numbers of threads, and numbers of stages; and, to see that hashes tell, another seed."""
+    """Return hashes over orders, numbers of threads and numbers of stages; and of another seed, whose hash must differ."""
     rows: list[Bits] = []
 
     def row(how: str, solution) -> None:

@@ -1,4 +1,4 @@
-"""Beyond the paper: how often the true value lies inside the stated intervals."""
+"""The calibration of error bars: how often the true value lies inside the stated intervals; not in the paper."""
 
 from dataclasses import dataclass
 
@@ -13,21 +13,21 @@ from .measure import radiosity
 from .study import Arm, Case
 
 LEVELS = (0.5, 0.9, 0.95, 0.99)
-REPLICATES = 8  # of one run: as by default
+REPLICATES = 8  # of one run, which is the default
 SEEDS = 60
 LINES = 16_000  # of one replicate
 
 
 @dataclass(frozen=True)
 class Coverage:
-    """Of an arm.
+    """The coverage of an arm's intervals.
 
     Attributes:
         arm: its name.
         covered: for each of `LEVELS`, the share of patches and runs whose interval holds the truth, and its standard error (over
             runs, since patches of one run share lines).
         rms: root mean square error of the runs' means.
-        visited: share of the patches that were looked at.
+        visited: share of the patches that are counted.
     """
 
     arm: str
@@ -39,12 +39,12 @@ class Coverage:
 def coverage(
     arm: Arm, case: Case, truth: np.ndarray, seed: int, *, lines: float = LINES, seeds: int = SEEDS, visited: float = 0
 ) -> Coverage:
-    """Student intervals of runs of eight replicates each; a run is a group of replicates of one seed.
+    """Return the coverage of Student intervals of runs of eight replicates each; a run is a group of replicates of one seed.
 
     Args:
         truth: (n_patches,) radiosity.
         lines: of one replicate.
-        visited: leave out patches where fewer lines land in the mean run; those that reflect nothing are left out, too.
+        visited: leave out patches with fewer hits in the mean run; those that reflect nothing are left out, too.
 
     Raises:
         ValueError: no patch is left.

@@ -1,4 +1,4 @@
-"""The scenes of the study, and references where no exact solution is known."""
+"""The scenes of the study, and their reference solutions where no exact one is known."""
 
 import numpy as np
 
@@ -18,24 +18,26 @@ REFERENCE_SEED = 987654321
 
 
 def maze(name: str) -> Case:
-    """A closed maze with the mean reflectance of its name; reflectances differ by patch and emission is 1 - rho, so B = 1."""
+    """Return a closed maze with the mean reflectance of its name; reflectance differs by patch, emission is 1 - rho, so B = 1."""
     patches = subdivide(load_scene(name), cells=1)
     return Case(name, patches, np.ones(len(patches)))
 
 
 def ones(case: Case) -> np.ndarray:
-    """(n_patches,) the exact solution of a maze."""
+    """Return the exact solution of a maze, (n_patches,)."""
     return np.ones(len(case.patches))
 
 
 def room(cells: int | None = None) -> Case:
-    """A box with two boxes and a small light."""
+    """Return a box with two boxes and a small light."""
     return Case("room", subdivide(load_scene("room"), cells=cells or CELLS["room"]), None)
 
 
 def plates(cells: int = 4) -> Case:
-    """No enclosure: the room's lit floor, one of its walls and the lamp, radiating on both sides, the backs duller. Half of the
-    patches see no light."""
+    """Return an open scene: the room's lit floor, one of its walls and the lamp. Half of the patches see no light.
+
+    They radiate on both sides; backs reflect less.
+    """
     scene = load_scene("room")
     keep = np.isin(scene.surface, [scene.names.index(name) for name in ("floor", "west wall", "light")])
     lit = scene.take(keep)
@@ -54,8 +56,11 @@ def plates(cells: int = 4) -> Case:
 
 
 def reference(case: Case, equation: str, protocol: Protocol) -> tuple[np.ndarray, float]:
-    """(n_patches,) radiosity by ``protocol.reference`` times as many lines, of the arms' own equation; and its relative error,
-    the area-weighted RMS of its standard error over that of the reflected light."""
+    """Return the reference radiosity, (n_patches,), by ``protocol.reference`` times as many lines, and its relative error.
+
+    It solves the arms' own equation. The error is the area-weighted RMS of its standard error, divided by that of the reflected
+    light.
+    """
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
     replicates = 8
     algorithm = make(geometry, problem, Method(equation=equation, randomisation="shared"), REFERENCE_SEED, replicates)

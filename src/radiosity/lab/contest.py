@@ -11,13 +11,13 @@ from .footprint import footprints
 
 @dataclass(frozen=True)
 class Contestant:
-    """A method with what is varied.
+    """A method, and the options that are varied.
 
     Attributes:
         method: a preset's name.
-        runs: label and options of ``radiosity.solve``, the cheapest first; ``few`` of them in a quick study.
-        most: patches; with more it would take too long, as its row then says.
-        monte_carlo: forms no matrix.
+        runs: label and options of ``radiosity.solve``, the cheapest first; a quick study takes ``few`` of them.
+        most: patches; with more it would take too long, and its row then says so.
+        monte_carlo: True where it forms no matrix.
     """
 
     method: str
@@ -29,10 +29,10 @@ class Contestant:
 
 @dataclass(frozen=True)
 class Entry:
-    """A run, or why there is none (then ``error`` is NaN and ``label`` says it).
+    """A run, or the reason why there is none (then ``error`` is NaN and ``label`` is the reason).
 
     Attributes:
-        error: area-weighted RMS of the irradiance less the true one, over that of the true one; the worst band.
+        error: area-weighted RMS of the irradiance less the true one, divided by that of the true one; the worst band.
         seconds, lines, memory: see `Footprint`.
     """
 
@@ -45,7 +45,7 @@ class Entry:
 
     @property
     def ran(self) -> bool:
-        """There is a run."""
+        """True where there is a run."""
         return not math.isnan(self.error)
 
 
@@ -72,7 +72,7 @@ ARMS = {
 
 
 def contest(scene: str, about: int, patches: Patches, truth: np.ndarray, *, quick: bool) -> list[Entry]:
-    """Every contestant on a scene cut into about so many patches.
+    """Run every contestant on a scene that is cut into about ``about`` patches.
 
     Args:
         truth: (n_patches, n_bands) irradiance to compare with.

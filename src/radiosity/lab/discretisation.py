@@ -1,8 +1,8 @@
 """The discretisation error of experiment 3 (section 5), apart from the computational one.
 
-The error of a piecewise constant solution at x is B(x) - B_i. B(x) is taken from a mesh four times finer by many lines. Its
-source is the paper's delta (equation 6): how much the light that arrives from constant patches differs at x from its mean over
-the patch. A discrete solution propagates it by the transport equation, a continuous one does not.
+The error of a piecewise constant solution at x is B(x) - B_i. B(x) is taken from a mesh four times finer, with many lines. The
+source of the error is the paper's delta (equation 6): the light that arrives at x from constant patches, less its mean over the
+patch. A discrete solution propagates it by the transport equation, a continuous one does not.
 """
 
 from dataclasses import dataclass
@@ -21,12 +21,12 @@ LINES = 4_000_000  # in all, to evaluate delta
 
 @dataclass(frozen=True)
 class Discretisation:
-    """RMS over the area, over that of the light reflected, of one mesh.
+    """RMS errors over the area of one mesh, divided by the RMS of the reflected light.
 
     Attributes:
-        patches: how many.
+        patches: the number of patches.
         discrete, continuous: of B(x) - B_i for the two kinds of solution.
-        delta: of equation 6, evaluated with the discrete solution; its own noise, from halves of the lines, is taken out.
+        delta: of equation 6, evaluated with the discrete solution; its noise, known from halves of the lines, is taken out.
     """
 
     patches: int
@@ -36,7 +36,7 @@ class Discretisation:
 
 
 def discretisation(count: int, lines: float, seed: int) -> Discretisation:
-    """Of ``room`` with faces cut into count x count cells."""
+    """Return the errors of ``room`` with faces cut into count x count cells."""
     from ..run.solve import solve
 
     scene = load_scene("room")
@@ -49,7 +49,7 @@ def discretisation(count: int, lines: float, seed: int) -> Discretisation:
     for equation in ("discrete", "continuous"):
         found = solve(coarse, Method(equation=equation), rays=lines, seed=seed + 1)
         rough[equation] = found.radiosity[:, 0]
-        # what the lines of both runs add is known from their replicates, and taken out
+        # the noise of both runs is known from their replicates, and taken out
         square = (exact - rough[equation][parent]) ** 2 - noise - found.standard_error[parent, 0] ** 2
         errors[equation] = float(np.sqrt(max(fine.area @ square, 0.0)) / scale)
     halves = [delta(scene, fine, coarse, parent, rough["discrete"], np.random.default_rng([seed, half])) for half in (0, 1)]
@@ -59,7 +59,7 @@ def discretisation(count: int, lines: float, seed: int) -> Discretisation:
 
 
 def delta(scene: Scene, fine: Patches, coarse: Patches, parent: np.ndarray, radiosity: np.ndarray, random) -> np.ndarray:
-    """(n_fine,) equation 6 on fine patches: reflectance times (arriving light less its mean over the coarse patch)."""
+    """Return equation 6 on fine patches, (n_fine,): reflectance times (arriving light less its mean over the coarse patch)."""
     column, row, _ = fine.place
     each = max(LINES // len(fine), 1)
     face = np.repeat(fine.face, each)

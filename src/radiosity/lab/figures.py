@@ -1,4 +1,4 @@
-"""Error against lines, in one style for all experiments."""
+"""Figures of error against lines, in one style for all experiments."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,8 +10,8 @@ from .results import Results
 from .start import Start
 from .study import Arm
 
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")  # told apart by the colour-blind too
-NARROW = 18  # letters of an arm's name, below which four stand beside each other in the legend
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")  # safe for colour-blind readers
+NARROW = 18  # letters of an arm's name: below this a row of the legend has four names
 MARKS = ("o", "s", "^", "D", "v", "P", "X")
 STYLE: Any = {
     "font.size": 9,
@@ -28,7 +28,7 @@ LINES = "lines of one replicate (a span counts two)"
 
 @contextmanager
 def drawn(path: Path, size: tuple[float, float], title: str = "") -> Iterator[Any]:
-    """A figure to draw on, in the style of all; written as ``path`` with .png and .svg."""
+    """Give a figure to draw on, in the common style; it is written as ``path`` with .png and .svg."""
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
@@ -52,11 +52,13 @@ def convergence(
     seconds: bool = False,
     picture: bool = False,
 ) -> None:
-    """One panel a scene; random numbers dashed, low discrepancy solid; the band is one standard error over replicates.
+    """Draw error against lines, one panel a scene; the band is one standard error over replicates.
+
+    Curves of random numbers are dashed, those of low discrepancy numbers solid.
 
     Args:
-        seconds: against wall time, not lines.
-        picture: RMS of tone-mapped pictures, not of the radiosity of patches.
+        seconds: draw against wall time, not lines.
+        picture: draw the RMS of tone-mapped pictures, not of the radiosity of patches.
     """
     families = list(dict.fromkeys(arm.family for arm in arms))
     with drawn(path, (8.4, 7.2), title) as figure:
@@ -77,7 +79,7 @@ def convergence(
 
 
 def contests(found: dict, title: str, path: Path) -> None:
-    """Error against seconds and against memory, a row a scene and size; Monte Carlo methods solid, baselines dashed.
+    """Draw error against seconds and memory, a row for each scene and size; Monte Carlo methods solid, baselines dashed.
 
     Args:
         found: by (scene, patches), `contest.Entry` of every run.
@@ -98,7 +100,7 @@ def contests(found: dict, title: str, path: Path) -> None:
 
 
 def starts(found: dict[str, list[Start]], title: str, path: Path) -> None:
-    """The first lines of runs in different orders, a panel a scene."""
+    """Draw the first lines of runs in different orders, a panel a scene."""
     with drawn(path, (4.2 * len(found) + 1.5, 3.6), title) as figure:
         panels = figure.subplots(1, len(found), squeeze=False).ravel()
         for panel, (scene, orders) in zip(panels, found.items(), strict=True):
@@ -110,8 +112,10 @@ def starts(found: dict[str, list[Start]], title: str, path: Path) -> None:
 
 
 def _look(number: int, count: int) -> dict[str, Any]:
-    """What tells curves apart that lie on each other: the first ones are thick and the later ones thin, with marks of their own
-    at places of their own."""
+    """Return a style by which curves that lie on each other can be told apart.
+
+    The first curves are thick and the later ones thin; each has other marks at other places.
+    """
     thin = number / max(count - 1, 1)
     return {
         "linewidth": 3.4 - 2.4 * thin,
@@ -131,7 +135,7 @@ def _curve(panel, x, errors, look: dict[str, Any]) -> None:
 
 
 def _guide(panel) -> None:
-    """A line of slope -1/2 to compare with."""
+    """Draw a line of slope -1/2 to compare with."""
     (low, high), (bottom, top) = panel.get_xlim(), panel.get_ylim()
     begin = max(low, high / 1e4)
     panel.plot([begin, high], [top, top * (high / begin) ** -0.5], color="0.6", linewidth=0.8, linestyle=":", zorder=0)

@@ -1,4 +1,4 @@
-"""What runs take, each method in a process of its own: seconds, lines, and the memory of the process beyond the scene."""
+"""Footprints of runs, each method in a process of its own: seconds, lines, and the memory of the process beyond the scene."""
 
 import gc
 import json
@@ -19,7 +19,7 @@ from .hall import hall
 
 @dataclass(frozen=True, eq=False)
 class Footprint:
-    """One run.
+    """The footprint of one run.
 
     Attributes:
         label: what was varied, such as "10M lines".
@@ -36,18 +36,18 @@ class Footprint:
 
 
 def scene_of(name: str) -> Scene:
-    """A scene of the study by its name."""
+    """Return a scene of the study by its name."""
     return hall() if name == "hall" else load_scene(name)
 
 
 def footprints(scene: str, about: int, method: str, runs: list[tuple[str, dict]], *, warm: bool) -> list[Footprint] | str:
-    """Runs of one method, the cheapest first, or why one was refused.
+    """Return the footprints of runs of one method, the cheapest first, or the reason why one was refused.
 
     Args:
-        scene, about: what is solved, and in about how many patches (cut in powers of two).
+        scene, about: the scene that is solved, and about how many patches it has (cut in powers of two).
         method: a preset's name.
-        runs: label and options of ``radiosity.solve`` of each.
-        warm: kernels are compiled by the first run on the same patches, not on fewer ones.
+        runs: label and options of ``radiosity.solve`` of each run.
+        warm: kernels are compiled by runs on the same patches, not on fewer ones.
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "runs.npz"
@@ -66,7 +66,7 @@ def footprints(scene: str, about: int, method: str, runs: list[tuple[str, dict]]
 
 
 def _measure(task: dict) -> None:
-    """In the process of its own."""
+    """Measure the runs of a task; called in a process of its own."""
     import warnings
 
     from ..patches import subdivide
@@ -90,7 +90,7 @@ def _measure(task: dict) -> None:
 
 
 def _resident() -> float:
-    """Bytes that the process has now, less what Dr.Jit keeps for reuse; its peak is counted from here on."""
+    """Return the bytes that the process has now, less what Dr.Jit keeps for reuse; its peak is counted from here on."""
     gc.collect()
     give_back_memory()
     with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
@@ -99,7 +99,7 @@ def _resident() -> float:
 
 
 def _peak() -> float:
-    """Bytes that the process had at most since `_resident` was called."""
+    """Return the most bytes that the process had since `_resident` was called."""
     return _status("VmHWM")
 
 

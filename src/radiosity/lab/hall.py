@@ -10,7 +10,7 @@ BOXES, LIGHTS = (8, 6), (6, 4)
 
 
 def hall() -> Scene:
-    """24 x 18 x 4 m, 48 boxes of heights from a fixed seed, 24 lights of 60 W/m² a hand's breadth below the ceiling."""
+    """Return a hall of 24 x 18 x 4 m, 48 boxes of heights from a fixed seed, and 24 lights of 60 W/m² just below the ceiling."""
     random = np.random.Generator(np.random.Philox(20))
     boxes = []
     for x, y in _grid(BOXES):
@@ -31,7 +31,7 @@ def hall() -> Scene:
 
 
 def _grid(count: tuple[int, int]):
-    """Middles of equal fields of the floor."""
+    """Yield the middles of equal fields of the floor."""
     for i in range(count[0]):
         for j in range(count[1]):
             yield SIZE[0] * (i + 0.5) / count[0], SIZE[1] * (j + 0.5) / count[1]

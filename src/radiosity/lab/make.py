@@ -1,4 +1,4 @@
-"""Experiments to files: figures, tables, and the report."""
+"""Making the files of experiments: figures, tables, and the report."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from .study import QUICK, Protocol
 
 
 def make(numbers: list[int], protocol: Protocol, folder: Path, command: str, told: Told, *, image: bool = False) -> Path:
-    """Run experiments and write everything into a folder; the path of the report.
+    """Run experiments, write everything into a folder, and return the path of the report.
 
     Args:
         image: figures show the error of tone-mapped pictures too.
@@ -48,13 +48,14 @@ def make(numbers: list[int], protocol: Protocol, folder: Path, command: str, tol
 
 
 def _tag(numbers: list[int], protocol: Protocol) -> str:
-    """``-1-3-quick``: what keeps the files of one command apart from those of another; none of the whole study in full."""
+    """Return a tag such as ``-1-3-quick`` for the names of files, so that commands keep their files apart; none for the whole
+    study in full."""
     which = "" if list(numbers) == list(EXPERIMENTS) else "".join(f"-{number}" for number in numbers)
     return which + ("-quick" if protocol == QUICK else "")
 
 
 def _drawn(experiment, number: int, results: Results, folder: Path, image: bool) -> list[str]:
-    """The figures of an experiment, for the report."""
+    """Draw the figures of an experiment; return them for the report."""
     kinds = {"": {}}
     if getattr(experiment, "AGAINST_TIME", False):
         kinds["-time"] = {"seconds": True}

@@ -1,4 +1,4 @@
-"""An arm on a case: error against lines, replicate by replicate."""
+"""Measuring an arm on a case: error against lines, replicate by replicate."""
 
 import time
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from ..tracing.geometry import Geometry
 from .sight import Sight
 from .study import Arm, Case, Protocol
 
-TRIAL = 1 << 14  # quanta of the run that tells how many lines a quantum takes
+PILOT = 1 << 14  # quanta of the pilot run, which tells how many lines a quantum takes
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,9 +22,9 @@ class Series:
 
     Attributes:
         lines: (k,) float64, of one replicate, as the paper counts them (mean over replicates).
-        seconds: (k,) float64, of one replicate: wall time from the start over replicates, without compilation.
+        seconds: (k,) float64, of one replicate: wall time from the start divided by replicates, without compilation.
         area_weighted, plain: (replicates, k) float64, RMS of B less the true B; relative where the truth is a reference.
-        picture: likewise, of tone-mapped pictures; NaN where the scene has no camera.
+        picture: (replicates, k) float64, the same of tone-mapped pictures; NaN where the scene has no camera.
     """
 
     lines: np.ndarray
@@ -42,7 +42,7 @@ def measure(arm: Arm, case: Case, truth: np.ndarray, protocol: Protocol) -> Seri
     """
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
     per_quantum = lines_per_quantum(arm, problem, geometry, protocol)  # and compiles what the run will use
-    algorithm = _process(arm, problem, geometry, protocol)
+    algorithm = _algorithm(arm, problem, geometry, protocol)
     sight = Sight.of(case.patches)
     lines, seconds, errors, spent, before = [], [], [], 0.0, 0
     for rung in protocol.rungs:
@@ -60,29 +60,32 @@ def measure(arm: Arm, case: Case, truth: np.ndarray, protocol: Protocol) -> Seri
 
 
 def lines_per_quantum(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol) -> float:
-    """Lines that one quantum takes, from a small run."""
-    algorithm = _process(arm, problem, geometry, protocol)
-    algorithm.advance(TRIAL, _untold)
-    return algorithm.tally.lines(problem, algorithm.capture()) / protocol.replicates / TRIAL
+    """Return the lines that one quantum takes, from a pilot run."""
+    algorithm = _algorithm(arm, problem, geometry, protocol)
+    algorithm.advance(PILOT, _untold)
+    return algorithm.tally.lines(problem, algorithm.capture()) / protocol.replicates / PILOT
 
 
-def _process(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol) -> AbstractAlgorithm:
+def _algorithm(arm: Arm, problem: Problem, geometry: Geometry, protocol: Protocol) -> AbstractAlgorithm:
     return make(geometry, problem, arm.method, protocol.seed, protocol.replicates)
 
 
 def _untold(lines: int) -> None:
-    """Nobody listens."""
+    """Do nothing: progress of the study's runs is not told."""
 
 
 def radiosity(algorithm: AbstractAlgorithm, problem: Problem, state) -> np.ndarray:
-    """(replicates, n_patches) of the first group of bands."""
+    """Return the radiosity of the first group of bands, (replicates, n_patches)."""
     values, unit = algorithm.tally.irradiance(problem, state, 0)
     patches, groups = problem.patches, problem.groups
     return groups.emission[:, 0] + groups.reflectance[:, 0] * values * (unit / patches.area)
 
 
 def deviations(case: Case, found: np.ndarray, truth: np.ndarray, *, absolute: bool) -> np.ndarray:
-    """(2, replicates): RMS of the difference, area-weighted and plain; over that of the reflected light unless ``absolute``."""
+    """Return the RMS of the difference, area-weighted and plain, (2, replicates).
+
+    It is divided by that of the reflected light unless ``absolute``.
+    """
     square, area, emitted = (found - truth) ** 2, case.patches.area, case.patches.emission[:, 0]
     weights = area / area.sum(), np.full(len(area), 1 / len(area))
     scale = [1.0 if absolute else float(np.sqrt(w @ (truth - emitted) ** 2)) for w in weights]

@@ -17,15 +17,15 @@ BLUE, ORANGE = COLOURS[:2]
 LINES = 16_000_000  # of the room's picture, at most
 MAZE = "labyrinth-0.9"
 CORNER = Camera((0.12, 0.12, 2.3), (3.3, 2.35, 0.95), (0, 0, 1), 82.0, 800, 600)  # sees the light and both boxes
-THICK = 0.09  # metres, of a wall's side in the plan
-TURN, TILT = np.deg2rad(-22.0), np.deg2rad(24.0)  # of the view into the room
+THICK = 0.09  # metres, thickness of a wall's side in the plan
+TURN, TILT = np.deg2rad(-22.0), np.deg2rad(24.0)  # angles of the view into the room
 PATCH_AT, LOCAL, LOCAL_SEED = (3.5, 1.0, 0.0), 14, 3
 CHORDS, CHORDS_SEED = 12, 1578
 PARTICLES, WALKS_SEED = 4, 84
 
 
 def scenes(path: Path, protocol: Protocol = FULL) -> list[Path]:
-    """Figure 3: the room, solved and rendered, and the maze from above with the reflectance of its patches."""
+    """Draw figure 3: the room, solved and rendered, and the maze from above with the reflectance of its patches."""
     import matplotlib
 
     from ..image import render
@@ -44,7 +44,7 @@ def scenes(path: Path, protocol: Protocol = FULL) -> list[Path]:
 
 
 def sample_lines(path: Path) -> list[Path]:
-    """Figure 1: local lines of one patch of the room, and global lines through all of it."""
+    """Draw figure 1: local lines of one patch of the room, and global lines through all of it."""
     import matplotlib
 
     room = load_scene("room")
@@ -61,7 +61,7 @@ def sample_lines(path: Path) -> list[Path]:
 
 
 def orders(path: Path) -> list[Path]:
-    """Figure 2: the same lines, numbered in the order in which they are fired."""
+    """Draw figure 2: the same lines, numbered in the order in which they are fired."""
     import matplotlib
 
     room = load_scene("room")
@@ -135,7 +135,7 @@ def _around(panel, centre, radius: float, axis: int) -> tuple[float, float]:
 
 
 def _numbered(panel, room: Scene, paths, order, title: str, group: str, which: int) -> None:
-    """PathSegments with their numbers; those fired together share a colour: ``which`` of (walk, leg) tells them apart."""
+    """Draw path segments with their numbers; those fired together share a colour: ``which`` of (walk, segment) they share."""
     _room(panel, room, title)
     for number, fired in enumerate(order, start=1):
         start, end = paths[fired[0]][fired[1] : fired[1] + 2]
@@ -161,7 +161,7 @@ def _numbered(panel, room: Scene, paths, order, title: str, group: str, which: i
 
 
 def _room(panel, room: Scene, title: str) -> None:
-    """Faces that the viewer sees from the front are filled; of the others the edges are drawn."""
+    """Draw a room: faces that the viewer sees from the front are filled; the others have edges only."""
     toward = _axes()[2]
     corner, first, second = room.frames
     corners = np.stack([corner, corner + first, corner + first + second, corner + second], axis=1)
@@ -182,7 +182,7 @@ def _room(panel, room: Scene, title: str) -> None:
 
 
 def _segment(panel, room: Scene, start, end, **style: Any) -> None:
-    """A line of space, faint where a face that the viewer sees lies before it."""
+    """Draw a segment, faint where a face that the viewer sees lies in front of it."""
     toward = _axes()[2]
     points = start + np.linspace(0, 1, 241)[:, None] * (end - start)
     middle = (points[1:] + points[:-1]) / 2
@@ -206,14 +206,14 @@ def _legend(panel, entries, columns: int = 2) -> None:
 
 
 def _axes() -> np.ndarray:
-    """Rows: right, up, and towards the viewer, who looks from far away."""
+    """Return unit vectors as rows: right, up, and towards the viewer, who looks from far away."""
     into = np.array([-np.sin(TURN) * np.cos(TILT), np.cos(TURN) * np.cos(TILT), -np.sin(TILT)])
     right = np.array([np.cos(TURN), np.sin(TURN), 0.0])
     return np.stack([right, np.cross(right, into), -into])
 
 
 def _project(points: np.ndarray) -> np.ndarray:
-    """(..., 2) coordinates in the drawing, metres."""
+    """Return coordinates in the drawing, (..., 2), metres."""
     return points @ _axes()[:2].T
 
 

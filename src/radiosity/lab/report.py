@@ -24,13 +24,13 @@ VERDICTS = {True: ("yes", "agrees"), False: ("no", "differs"), None: ("open", "r
 
 
 def versions() -> str:
-    """Of what made the numbers."""
+    """Return the versions of the programs that made the numbers."""
     names = ", ".join(f"{name} {version(name)}" for name in ("radiosity", "drjit", "mitsuba", "numpy"))
     return f"{names}; Python {platform.python_version()} on {platform.machine()}"
 
 
 def page(sections: list[str], command: str, protocol: Protocol) -> str:
-    """The whole report."""
+    """Return the whole report."""
     facts = (
         f"<p>Made by <code>{html.escape(command)}</code>. Ladder of 2<sup>10</sup> to 2<sup>{protocol.last}</sup> lines, "
         f"{protocol.replicates} replicates (independent randomisations) of every arm, seed {protocol.seed}; references of "
@@ -51,12 +51,12 @@ def page(sections: list[str], command: str, protocol: Protocol) -> str:
 
 
 def section(number: int, title: str, question: str, parts: list[str]) -> str:
-    """One experiment."""
+    """Return the section of one experiment."""
     return f"<h2>Experiment {number}: {html.escape(title)}</h2><p>{html.escape(question)}</p>{''.join(parts)}"
 
 
 def findings(results: Results, claims: list[Claim]) -> str:
-    """Claims, errors of references, and the table behind the figure."""
+    """Return claims, errors of references, and the table behind the figure."""
     references = "".join(
         f"<p>Relative error of the reference of {html.escape(scene)}, {equation} equation: {error:.2g}.</p>"
         for (scene, equation), error in results.reference_error.items()
@@ -65,9 +65,9 @@ def findings(results: Results, claims: list[Claim]) -> str:
 
 
 def figure(path: Path) -> str:
-    """A figure that was written as .svg, inlined: the report opens without its neighbours."""
+    """Return a figure that was written as .svg, inlined: the report needs no other files."""
     text = path.with_suffix(".svg").read_text(encoding="utf-8")
-    # in paths a hundredth of a point is enough to look at; transforms keep every digit
+    # in paths a hundredth of a point is exact enough; transforms keep every digit
     return re.sub(r' d="[^"]*"', _shorter, text[text.index("<svg") :])
 
 
@@ -76,20 +76,20 @@ def _shorter(path: re.Match) -> str:
 
 
 def picture(path: Path) -> str:
-    """A picture that was written as .png, inlined."""
+    """Return a picture that was written as .png, inlined."""
     data = base64.b64encode(path.with_suffix(".png").read_bytes()).decode()
     return f"<img alt='{html.escape(path.name)}' src='data:image/png;base64,{data}'>"
 
 
 def table(heads: list[str], rows: list[list[str]]) -> str:
-    """A plain table."""
+    """Return a plain table."""
     lines = ["".join(f"<th>{html.escape(head)}</th>" for head in heads)]
     lines += ["".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows]
     return "<div class='scroll'><table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table></div>"
 
 
 def verdicts(claims: list[Claim]) -> str:
-    """What the paper says, and whether this run agrees."""
+    """Return what the paper says, and whether this run agrees."""
     rows = []
     for claim in claims:
         kind, word = VERDICTS[claim.agrees]

@@ -1,4 +1,4 @@
-"""What an experiment found."""
+"""The results of an experiment."""
 
 from dataclasses import dataclass, field
 
@@ -22,19 +22,19 @@ class Results:
     reference_error: dict[tuple[str, str], float] = field(default_factory=dict)
 
     def slope(self, scene: str, arm: str) -> Slope:
-        """Of the area-weighted error, last two decades."""
+        """Return the slope of the area-weighted error over the last two decades."""
         found = self.series[scene, arm]
         return slopes.fit(found.lines, found.area_weighted)
 
     def last(self, scene: str, arm: str) -> float:
-        """Area-weighted RMS error at the end, over replicates."""
+        """Return the area-weighted RMS error at the end, over replicates."""
         return float(slopes.mean_error(self.series[scene, arm].area_weighted)[-1])
 
     def ratio(self, scene: str, one: str, other: str) -> tuple[float, float]:
-        """Error of one arm over another's at the end, and the factor within which it is known."""
+        """Return the error of one arm divided by another's at the end, and the factor within which it is known."""
         return slopes.ratio(self.series[scene, one].area_weighted, self.series[scene, other].area_weighted)
 
     def equal(self, scene: str, one: str, other: str) -> bool:
-        """Two arms erred alike, to the last bit."""
+        """Return whether two arms have equal errors, to the last bit."""
         a, b = self.series[scene, one], self.series[scene, other]
         return np.array_equal(a.area_weighted, b.area_weighted) and np.array_equal(a.lines, b.lines)

@@ -1,4 +1,4 @@
-"""Run an experiment: every arm on every scene, each series kept in a file, so that an interrupted study goes on."""
+"""Running an experiment: every arm on every scene, each series kept in a file, so that an interrupted study goes on."""
 
 import hashlib
 import json
@@ -21,10 +21,10 @@ FIELDS = ("lines", "seconds", "area_weighted", "plain", "picture")
 
 
 def run(number: int, protocol: Protocol, folder: Path, told: Told) -> Results:
-    """The results of an experiment.
+    """Run an experiment and return its results.
 
     Args:
-        folder: where series are kept, one file each; those that are there already are read.
+        folder: where series are kept, one file each; series that are there already are read.
         told: called with what is being done, how many series are done, and how many there are.
     """
     experiment = module(number)
@@ -65,7 +65,7 @@ def _truth(case: Case, equation: str, protocol: Protocol, folder: Path) -> tuple
 
 
 def _kept(folder: Path, kind: str, case: Case, what: str, protocol: Protocol) -> Path:
-    """A file named after all that its content depends on."""
+    """Return the path of a file whose name has all that its content depends on."""
     facts = [
         case.patches.scene.hash,
         case.patches.hash,

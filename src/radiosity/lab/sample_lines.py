@@ -1,4 +1,4 @@
-"""Sample lines of a small scene, by meeting every face with every line: for pictures of them."""
+"""Sample lines of a small scene, for pictures of them; every line is intersected with every face."""
 
 from dataclasses import dataclass
 
@@ -7,15 +7,15 @@ import numpy as np
 from ..patches.model import Patches
 from ..scene.model import Back, Scene
 
-NEAR = 1e-9  # metres: what a line meets nearer than that is where it starts
+NEAR = 1e-9  # metres: a hit nearer than this is the point where the line starts
 
 
 @dataclass(frozen=True, eq=False)
 class Spans:
-    """Pieces of lines between two points that see one another, both on sides that radiate.
+    """Pieces of lines between two points that see each other, both on sides that radiate.
 
     Attributes:
-        line: (n,) index of the line that each lies on.
+        line: (n,) index of the line of each piece.
         ends: (n, 2, 3) metres, in the direction of the line.
         face: (n, 2) faces of the ends.
     """
@@ -26,7 +26,10 @@ class Spans:
 
 
 def crossings(scene: Scene, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """(m, n_faces) multiples of each line's direction to where it crosses each face; infinite: not, or let pass."""
+    """Return the multiples of each line's direction at which it crosses each face, (m, n_faces).
+
+    They are infinite where it does not cross the face, or the face lets it pass.
+    """
     corner, first, second = scene.frames
     cross = np.cross(first, second)
     slope = directions @ cross.T
@@ -42,7 +45,7 @@ def crossings(scene: Scene, origins: np.ndarray, directions: np.ndarray) -> np.n
 
 
 def nearest(scene: Scene, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where lines of unit direction first hit, (m, 3), and the face, -1 where nothing is hit."""
+    """Return the first hits of lines of unit direction, (m, 3), and the face, -1 where nothing is hit."""
     t = crossings(scene, origins, directions)
     t = np.where(t > NEAR, t, np.inf)
     face = t.argmin(axis=1)
@@ -52,7 +55,7 @@ def nearest(scene: Scene, origins: np.ndarray, directions: np.ndarray) -> tuple[
 
 
 def local_lines(patches: Patches, patch: int, count: int, seed: int) -> np.ndarray:
-    """(count, 2, 3) lines from uniform points of a patch, cosine distributed, to their nearest hits; the scene is closed."""
+    """Return lines from uniform points of a patch, cosine distributed, to their first hits, (count, 2, 3), in a closed scene."""
     random = _random(seed)
     corners, uv = patches.corners[patch], random.random((count, 2))
     start = corners[0] + uv[:, :1] * (corners[1] - corners[0]) + uv[:, 1:] * (corners[3] - corners[0])
@@ -61,20 +64,20 @@ def local_lines(patches: Patches, patch: int, count: int, seed: int) -> np.ndarr
 
 
 def sphere(scene: Scene) -> tuple[np.ndarray, float]:
-    """Centre and radius of the sphere about the scene's bounds."""
+    """Return centre and radius of the sphere about the scene's bounds."""
     low, high = scene.bounds
     return (low + high) / 2, float(np.linalg.norm(high - low) / 2)
 
 
 def chords(scene: Scene, count: int, seed: int) -> np.ndarray:
-    """(count, 2, 3) lines between uniform points of the bounding sphere."""
+    """Return lines between uniform points of the bounding sphere, (count, 2, 3)."""
     centre, radius = sphere(scene)
     points = _random(seed).standard_normal((count, 2, 3))
     return centre + radius * points / np.linalg.norm(points, axis=2, keepdims=True)
 
 
 def spans(scene: Scene, lines: np.ndarray) -> Spans:
-    """The spans of (m, 2, 3) lines: neighbours among all that a line crosses, whose sides towards each other radiate."""
+    """Return the spans of (m, 2, 3) lines: between consecutive faces on a line whose sides towards each other radiate."""
     start, way = lines[:, 0], lines[:, 1] - lines[:, 0]
     t = crossings(scene, start, way)
     t = np.where((t >= 0) & (t <= 1), t, np.inf)
@@ -90,7 +93,7 @@ def spans(scene: Scene, lines: np.ndarray) -> Spans:
 
 
 def walks(scene: Scene, face: int, count: int, seed: int) -> list[np.ndarray]:
-    """Paths of particles from a face's front until they are absorbed: (legs + 1, 3) points each. The scene is closed."""
+    """Return paths of particles from a face's front until they are absorbed, (segments + 1, 3) points each, in a closed scene."""
     random, paths = _random(seed), []
     corner, first, second = (edge[face] for edge in scene.frames)
     for _ in range(count):
@@ -109,17 +112,17 @@ def walks(scene: Scene, face: int, count: int, seed: int) -> list[np.ndarray]:
 
 
 def breadth_first(lengths: list[int]) -> list[tuple[int, int]]:
-    """(walk, leg) in the order fired: all first legs, then all second ones."""
+    """Return (walk, segment) in the order in which they are fired: all first segments, then all second ones."""
     return [(walk, leg) for leg in range(max(lengths, default=0)) for walk, length in enumerate(lengths) if leg < length]
 
 
 def depth_first(lengths: list[int]) -> list[tuple[int, int]]:
-    """(walk, leg) in the order fired: each walk to its end."""
+    """Return (walk, segment) in the order in which they are fired: each walk until it ends."""
     return [(walk, leg) for walk, length in enumerate(lengths) for leg in range(length)]
 
 
 def _cosine(random: np.random.Generator, normal: np.ndarray) -> np.ndarray:
-    """Unit directions about (m, 3) normals: the normal plus a uniform point of the unit sphere."""
+    """Return unit directions about (m, 3) normals: the normal plus a uniform point of the unit sphere, normalised."""
     point = random.standard_normal(normal.shape)
     way = normal + point / np.linalg.norm(point, axis=1, keepdims=True)
     return way / np.linalg.norm(way, axis=1, keepdims=True)

@@ -9,12 +9,12 @@ from ..image.view import directions
 from ..patches import Patches, cells
 from ..tracing.first_hits import first_hits
 
-WIDTH = 160  # pixels; one line of sight each, patches flat
+WIDTH = 160  # pixels; each has one line of sight, and each patch one value
 
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """What a camera sees.
+    """The patches that a camera sees.
 
     Attributes:
         patch: (pixels,) int64, the patch in each pixel; pixels that see none are left out.
@@ -24,7 +24,7 @@ class Sight:
 
     @staticmethod
     def of(patches: Patches) -> "Sight | None":
-        """By the scene's first camera; None where it has none."""
+        """Return what the scene's first camera sees; None where it has none."""
         scene = patches.scene
         if not scene.cameras:
             return None
@@ -39,7 +39,7 @@ class Sight:
         return Sight(patches.first[face] + cell)
 
     def error(self, found: np.ndarray, truth: np.ndarray) -> np.ndarray:
-        """(replicates,) RMS over pixels of display values in [0, 1], both pictures at the scale of the true one.
+        """Return the RMS over pixels of the difference of display values in [0, 1], (replicates,), at the true picture's scale.
 
         Args:
             found: (replicates, n_patches) radiosity. truth: (n_patches,).

@@ -32,7 +32,7 @@ class Slope:
 
 
 def fit(lines: np.ndarray, errors: np.ndarray) -> Slope:
-    """Least squares of log error against log lines over the last two decades, replicate by replicate.
+    """Fit log error against log lines by least squares over the last two decades, replicate by replicate.
 
     Args:
         lines: (k,) increasing. errors: (replicates, k).
@@ -50,12 +50,13 @@ def fit(lines: np.ndarray, errors: np.ndarray) -> Slope:
 
 
 def mean_error(errors: np.ndarray) -> np.ndarray:
-    """(k,) root mean square over replicates."""
+    """Return the root mean square over replicates, (k,)."""
     return np.sqrt((errors**2).mean(axis=0))
 
 
 def ratio(one: np.ndarray, other: np.ndarray) -> tuple[float, float]:
-    """Geometric mean of the ratio of errors at the last rung, and the factor within which it is known (95 %, Welch)."""
+    """Return the geometric mean of the ratio of errors at the last rung, and the factor within which it is known (95 %,
+    Welch)."""
     from scipy.stats import t
 
     a, b = np.log(one[:, -1]), np.log(other[:, -1])

@@ -1,8 +1,9 @@
 """The start of a run (section 3): what is known after few lines, by the order in which they are fired.
 
-Depth-first: complete walks, ever more of them. Staged: complete small solutions, each on the lines of those before.
-Breadth-first: one solution of a fixed number of quanta, as it stands after each sweep: light reflected k times is missing until
-sweep k.
+- Depth-first: complete walks, more and more of them.
+- Staged: complete small solutions, each of which uses the lines of those before.
+- Breadth-first: one solution of a fixed number of quanta, read after each wavefront. Light reflected k times is missing until
+  wavefront k.
 """
 
 from dataclasses import dataclass
@@ -26,7 +27,7 @@ class Start:
     """Errors after few lines.
 
     Attributes:
-        order: in the legend.
+        order: its name in the legend.
         lines: (k,) of one replicate. errors: (REPLICATES, k), area-weighted RMS.
     """
 
@@ -36,7 +37,7 @@ class Start:
 
 
 def starts(case: Case, truth: np.ndarray, seed: int) -> list[Start]:
-    """Depth-first, staged and breadth-first, with Halton numbers."""
+    """Return the starts of depth-first, staged and breadth-first runs, with Halton numbers."""
     problem, geometry = Problem.of(case.patches), Geometry(case.patches, choose("cpu"))
 
     def follow(order: str, quanta: list[int], *, within: bool):

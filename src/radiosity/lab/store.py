@@ -1,4 +1,4 @@
-"""Results as files: a table of numbers, and NetCDF."""
+"""Files of results: a table of numbers, and NetCDF."""
 
 import csv
 from pathlib import Path
@@ -22,7 +22,7 @@ COLUMNS = (
 
 
 def write_csv(path: Path, found: dict[int, tuple[Results, dict[str, str]]]) -> None:
-    """A row for each experiment, arm, scene, replicate and rung.
+    """Write a row for each experiment, arm, scene, replicate and rung.
 
     Args:
         found: by number of the experiment, its results and the method of each arm.
@@ -43,7 +43,7 @@ def _rows(table, number: int, results: Results, methods: dict[str, str]) -> None
 
 
 def write_netcdf(path: Path, results: Results, facts: dict[str, str]) -> None:
-    """Arm x scene x replicate x rung, as NetCDF (version 3), with facts on how it was made."""
+    """Write arm x scene x replicate x rung as NetCDF (version 3), with facts about how it was made."""
     import xarray
 
     scenes = list(dict.fromkeys(scene for scene, _ in results.series))

@@ -1,4 +1,4 @@
-"""What an experiment consists of: arms, scenes, and how far it goes."""
+"""The parts of an experiment: arms, scenes, and how far it goes."""
 
 from dataclasses import dataclass, replace
 
@@ -12,11 +12,11 @@ FIRST = 10  # the ladder of lines begins at 2^10
 
 @dataclass(frozen=True)
 class Arm:
-    """A curve of a figure.
+    """An arm: a method whose error is a curve of a figure.
 
     Attributes:
         name: in the legend, such as "random walk, Halton".
-        method: what is run.
+        method: the method that is run.
         family: arms of one family share a colour; ``quasi`` ones are drawn solid, those of random numbers dashed.
     """
 
@@ -30,7 +30,10 @@ class Arm:
 
 
 def with_both_numbers(methods: dict[str, Method]) -> tuple[Arm, ...]:
-    """Two arms for each method, a family of its name: random and Halton numbers, one shift for all patches as in the paper."""
+    """Return two arms for each method, a family of its name: one with random and one with Halton numbers.
+
+    All patches have one shift, as in the paper.
+    """
     kinds = {"random": "random", "Halton": "halton"}
     return tuple(
         Arm(f"{name}, {kind}", replace(method, numbers=numbers, randomisation="shared"), name)
@@ -45,8 +48,8 @@ class Case:
 
     Attributes:
         name: such as "labyrinth-0.5".
-        patches: its unknowns.
-        exact: (n_patches,) radiosity where it is known, else None: then a reference of its own equation is computed.
+        patches: its unknowns are their radiosities.
+        exact: (n_patches,) radiosity where it is known, else None: then a reference is computed by the arms' own equation.
     """
 
     name: str
@@ -61,8 +64,8 @@ class Protocol:
     Attributes:
         last: the ladder of lines of one replicate ends at 2^last.
         replicates: independent randomisations of every arm.
-        reference: a reference has so many times the lines of the last rung of all replicates together.
-        seed: of everything.
+        reference: a reference has this many times the lines of the last rung of all replicates together.
+        seed: of all runs.
     """
 
     last: int = 23
@@ -72,7 +75,7 @@ class Protocol:
 
     @property
     def rungs(self) -> list[int]:
-        """Lines of one replicate, doubling."""
+        """The lines of one replicate at each rung, which double."""
         return [1 << k for k in range(FIRST, self.last + 1)]
 
 
@@ -82,7 +85,7 @@ FULL = Protocol()
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence of the paper, and whether this run agrees.
+    """A claim of the paper, and whether this run agrees.
 
     Attributes:
         says: what the paper states.

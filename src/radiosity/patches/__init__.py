@@ -1,4 +1,4 @@
-"""Scene -> Patches"""
+"""Patches: cutting the faces of a scene, and hierarchies of patches."""
 
 from .hierarchy import Hierarchy
 from .model import Patches

@@ -13,10 +13,10 @@ from .paint_means import cell_means
 
 @dataclass(frozen=True, eq=False)
 class Patches:
-    """Ordered by face, side (front, then a radiating back), cell. Made by `subdivide`.
+    """The patches of a scene, ordered by face, side (front, then a radiating back), cell. `subdivide` makes them.
 
     Attributes:
-        scene: whose faces they divide.
+        scene: the scene whose faces are divided.
         columns, rows: (n_faces,) int32, cells along the face's first and second edge (equal for triangles).
 
     Example:
@@ -34,28 +34,28 @@ class Patches:
 
     @cached_property
     def hash(self) -> str:
-        """SHA-256 of how the scene is cut."""
+        """SHA-256 of the way in which the scene is cut."""
         return hashlib.sha256(self.columns.tobytes() + self.rows.tobytes()).hexdigest()
 
     @cached_property
     def cells_per_face(self) -> np.ndarray:
-        """(n_faces,) int64, of one side."""
+        """Cells of one side of each face, (n_faces,) int64."""
         return cells.count(self.columns, self.rows)
 
     @cached_property
     def first(self) -> np.ndarray:
-        """(n_faces + 1,) int64: face f owns patches first[f] to first[f + 1]; a radiating back follows the front."""
+        """The first patch of each face, and the number of patches, (n_faces + 1,) int64; a radiating back follows the front."""
         sides = np.where(self.scene.back == Back.RADIATES, 2, 1)
         return np.concatenate([[0], np.cumsum(self.cells_per_face * sides)])
 
     @cached_property
     def face(self) -> np.ndarray:
-        """(n_patches,) int32."""
+        """The face of each patch, (n_patches,) int32."""
         return np.repeat(np.arange(self.scene.n_faces, dtype=np.int32), np.diff(self.first))
 
     @cached_property
     def is_back(self) -> np.ndarray:
-        """(n_patches,) bool."""
+        """Which patches are on backs, (n_patches,) bool."""
         fronts = np.stack([self.cells_per_face, np.diff(self.first) - self.cells_per_face], axis=1)
         return np.repeat(np.tile([False, True], len(fronts)), fronts.ravel())
 
@@ -65,14 +65,14 @@ class Patches:
         return self.places(slice(0, len(self)))
 
     def places(self, part: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """`place` of patches from one to another."""
+        """Return `place` of a slice of the patches."""
         face = self.face[part]
         cell = np.arange(part.start, part.stop) - self.first[face] - np.where(self.is_back[part], self.cells_per_face[face], 0)
         return cells.place(cell, self.columns[face], self.scene.is_quad[face])
 
     @property
     def corners(self) -> np.ndarray:
-        """(n_patches, 4, 3) float64, metres, counterclockwise seen from the patch's own side; a triangle repeats its
+        """Corners, (n_patches, 4, 3) float64, metres, counterclockwise seen from the patch's own side; a triangle repeats its
         last one."""
         face = self.face
         uv = cells.corners(*self.place, self.columns[face], self.rows[face], self.scene.is_quad[face])
@@ -85,17 +85,17 @@ class Patches:
 
     @cached_property
     def area(self) -> np.ndarray:
-        """(n_patches,) float64, m²."""
+        """Areas, (n_patches,) float64, m²."""
         return (self.scene.area / self.cells_per_face)[self.face]
 
     @cached_property
     def normal(self) -> np.ndarray:
-        """(n_patches, 3) float64, pointing to the radiating side."""
+        """Normals of unit length, (n_patches, 3) float64, which point to the radiating side."""
         return self.scene.normal[self.face] * np.where(self.is_back, -1.0, 1.0)[:, None]
 
     @cached_property
     def centroid(self) -> np.ndarray:
-        """(n_patches, 3) float64, metres."""
+        """Centroids, (n_patches, 3) float64, metres."""
         column, row, inverted = self.place
         face = self.face
         middle = np.where(self.scene.is_quad[face], 0.5, np.where(inverted, 2 / 3, 1 / 3))
@@ -105,17 +105,17 @@ class Patches:
 
     @cached_property
     def surface(self) -> np.ndarray:
-        """(n_patches,) int32 index into ``scene.names``."""
+        """The surface of each patch, (n_patches,) int32, an index into ``scene.names``."""
         return self.scene.surface[self.face]
 
     @cached_property
     def reflectance(self) -> np.ndarray:
-        """(n_patches, n_bands) float64."""
+        """Reflectances, (n_patches, n_bands) float64."""
         return self._of_side(self.scene.reflectance, self.scene.back_reflectance, self.scene.reflectance_paint)
 
     @cached_property
     def emission(self) -> np.ndarray:
-        """(n_patches, n_bands) float64, self-emitted radiosity, W/m² or lm/m²."""
+        """Self-emitted radiosity, (n_patches, n_bands) float64, W/m² or lm/m²."""
         return self._of_side(self.scene.emission, self.scene.back_emission, self.scene.emission_paint)
 
     def _of_side(self, front, back, paint) -> np.ndarray:

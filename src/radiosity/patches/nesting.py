@@ -1,4 +1,4 @@
-"""Meshes whose cells lie within those of another."""
+"""Meshes whose cells lie within the cells of another."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from .model import Patches
 
 
 def halved(patches: Patches) -> Patches:
-    """Every cell cut into four congruent ones.
+    """Return patches of which every cell is cut into four congruent ones.
 
     Raises:
         SceneError: faces would have more cells along an edge than can be counted.
@@ -20,10 +20,10 @@ def halved(patches: Patches) -> Patches:
 
 
 def parents(fine: Patches, coarse: Patches) -> np.ndarray:
-    """(n_fine,) int64: the coarse patch in which each fine one lies.
+    """Return the coarse patch in which each fine one lies, (n_fine,) int64.
 
     Args:
-        fine: of the same scene, cut into a whole multiple of the coarse cells along every edge.
+        fine: patches of the same scene, cut into a whole multiple of the coarse cells along every edge.
     """
     column, row, inverted = fine.place
     face, quad = fine.face, fine.scene.is_quad[fine.face]

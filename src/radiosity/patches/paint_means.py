@@ -1,6 +1,6 @@
 """Means of painted values over the cells of faces: base value times image times corner colours, at most the limit.
 
-What is limited is each texel times the base value and the face's brightest corner, or where there is no image each point, so that
+The limit holds for each texel times the base value and the face's brightest corner; where there is no image, for each point. So
 means do not depend on the size of the cells. Where an image and colours both vary, or texture coordinates are not linear
 over a parallelogram, cells are cut finer, and each part is taken with its own colour.
 """
@@ -16,10 +16,10 @@ from ..scene.paint import Paint, between
 from ..scene.ramp import mean_below
 from . import cells
 
-FINEST = (32, 128)  # parts along the edge of a cell where there are many of them, and where there are few
-ALL_PARTS = 1 << 20  # what makes many
+FINEST = (32, 128)  # parts along the edge of a cell where there are many parts, and where there are few
+ALL_PARTS = 1 << 20  # this number is many
 BENT_PARTS = 16  # where texture coordinates are not linear
-BENT = 1e-4  # of their extent over a face: what differs less from linear is linear
+BENT = 1e-4  # of their extent over a face: coordinates that differ less from linear ones are linear
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +27,9 @@ class Grid:
     """Cells of faces.
 
     Attributes:
-        owner: (m,) int, which of the faces that are looked at.
-        column, row, inverted: (m,) their places.
-        columns, rows: (m,) how their faces are cut.
+        owner: (m,) int, the face of each cell, among the faces in use.
+        column, row, inverted: (m,) the places of the cells.
+        columns, rows: (m,) numbers of columns and rows of their faces.
         is_quad: (m,) bool.
     """
 
@@ -45,28 +45,28 @@ class Grid:
         return Grid(*(getattr(self, field.name)[which] for field in fields(self)))
 
     def finer(self, times: int) -> "Grid":
-        """Each cell in times x times parts, one after another."""
+        """Return the grid with each cell in times x times parts, one after another."""
         whole = self.take(np.repeat(np.arange(len(self.owner)), times * times))
         part = np.tile(np.arange(times * times), len(self.owner))
         column, row, inverted = cells.place(part, np.full(len(part), times), whole.is_quad)
-        turned = whole.inverted  # the parts of an inverted triangle are numbered from its own corner backwards
+        turned = whole.inverted  # parts of an inverted triangle are numbered from its own corner backwards
         column = np.where(turned, (whole.column + 1) * times - 1 - column, whole.column * times + column)
         row = np.where(turned, (whole.row + 1) * times - 1 - row, whole.row * times + row)
         return Grid(whole.owner, column, row, inverted ^ turned, whole.columns * times, whole.rows * times, whole.is_quad)
 
     @property
     def middle(self) -> tuple[np.ndarray, np.ndarray]:
-        """Face coordinates of the centroids."""
+        """Return face coordinates of the centroids."""
         offset = np.where(self.is_quad, 0.5, np.where(self.inverted, 2 / 3, 1 / 3))
         return (self.column + offset) / self.columns, (self.row + offset) / self.rows
 
 
 def cell_means(paint: Paint, base: np.ndarray, columns: np.ndarray, rows: np.ndarray, is_quad: np.ndarray) -> np.ndarray:
-    """Mean over each cell, (n_cells, n_bands) float64, face by face.
+    """Return the mean over each cell, (n_cells, n_bands) float64, face by face.
 
     Args:
         paint: of n faces.
-        base: (n, n_bands) values that it multiplies.
+        base: (n, n_bands) values that the paint multiplies.
         columns, rows, is_quad: (n,) how the faces are cut.
     """
     count = cells.count(columns, rows)
@@ -89,12 +89,12 @@ def cell_means(paint: Paint, base: np.ndarray, columns: np.ndarray, rows: np.nda
 
 
 def _ranges(first: np.ndarray, count: np.ndarray) -> np.ndarray:
-    """The numbers from each first one on, so many of each."""
+    """Return ranges of whole numbers, one after another: ``count`` numbers from each ``first`` on."""
     return np.arange(count.sum()) + np.repeat(first - (np.cumsum(count) - count), count)
 
 
 def _groups(paint: Paint, base: np.ndarray) -> Iterator[tuple[int, np.ndarray | None, np.ndarray, np.ndarray]]:
-    """An image (or -1), its texels as they are or limited, what colours are multiplied by, (n, n_bands), and the faces."""
+    """Yield an image (or -1), its texels as they are or limited, the factor of colours, (n, n_bands), and the faces."""
     top = paint.color.max(axis=1).astype(np.float64)
     peak = base * top
     for image in np.unique(paint.image):
@@ -114,7 +114,7 @@ def _groups(paint: Paint, base: np.ndarray) -> Iterator[tuple[int, np.ndarray | 
 
 
 def _of_colors(paint: Paint, weight: np.ndarray, grid: Grid) -> np.ndarray:
-    """Means of colours times weights that are brought down to the limit where faces are painted."""
+    """Return means of colours times weights, limited where faces are painted."""
     color, limit = paint.color, paint.limit
     result = between(color[grid.owner], grid.is_quad, *grid.middle) * weight[grid.owner]
     bright = (color[grid.owner].max(axis=1) * weight[grid.owner] > limit).any(axis=1)
@@ -129,7 +129,7 @@ def _of_colors(paint: Paint, weight: np.ndarray, grid: Grid) -> np.ndarray:
 
 
 def _of_image(means: ImageMeans, uv: np.ndarray, color: np.ndarray, weight: np.ndarray, grid: Grid) -> np.ndarray:
-    """Means of an image times colours times weights."""
+    """Return means of an image times colours times weights."""
     owner = grid.owner
     result = np.empty((len(owner), weight.shape[1]))
     parts = _parts(uv, color, grid)
@@ -145,8 +145,10 @@ def _of_image(means: ImageMeans, uv: np.ndarray, color: np.ndarray, weight: np.n
 
 
 def _parts(at: np.ndarray, colors: np.ndarray, grid: Grid) -> np.ndarray:
-    """(m,) int, a power of two: into how many parts each cell's edges are cut, so that each part has nearly one colour and linear
-    texture coordinates."""
+    """Return the number of parts of each cell's edges, (m,) int, a power of two.
+
+    With so many, each part has nearly one colour and linear texture coordinates.
+    """
     color, uv = (_steps(values[grid.owner].astype(np.float64), grid.is_quad) for values in (colors, at))
     top = np.maximum(colors[grid.owner].max(axis=1), 1e-30)
     across = (np.abs(color[0]) + np.abs(color[2])) / top / grid.columns[:, None]
@@ -160,14 +162,14 @@ def _parts(at: np.ndarray, colors: np.ndarray, grid: Grid) -> np.ndarray:
 
 
 def _steps(corners: np.ndarray, is_quad: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """How corner values grow along a face's first and second edge, and along both together."""
+    """Return how corner values grow along a face's first and second edge, and along both together."""
     one, two, three, four = np.moveaxis(corners, 1, 0)
     quad = is_quad[:, None]
     return two - one, np.where(quad, four, three) - one, np.where(quad, one - two + three - four, 0)
 
 
 def _over_cells(means: ImageMeans, uv: np.ndarray, grid: Grid) -> np.ndarray:
-    """Means of an image over cells, whose edges in texture coordinates are those at their centroids."""
+    """Return means of an image over cells, whose edges in texture coordinates are those at their centroids."""
     corners = uv[grid.owner].astype(np.float64)
     u, v = grid.middle
     middle = between(corners, grid.is_quad, u, v)

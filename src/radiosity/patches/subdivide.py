@@ -1,4 +1,4 @@
-"""Faces into congruent cells."""
+"""Cutting faces into congruent cells."""
 
 from numbers import Real
 
@@ -11,7 +11,7 @@ from .model import Patches
 
 DEFAULT_PATCHES = 20_000
 MOST_PATCHES = 2**31 - 2**16
-SLACK = 1 + 1e-7  # added to the smallest size that will do: faces of one size are cut alike wherever they lie, rounded or not
+SLACK = 1 + 1e-7  # times the smallest size that is enough: faces of one size are cut alike wherever they lie, rounded or not
 
 
 def subdivide(
@@ -31,10 +31,10 @@ def subdivide(
             Neither: a size at which the faces large enough to be cut give about as many patches as ``about`` says; the
             others are one for each side.
         powers_of_two: columns and rows are rounded up to powers of two, so that the patches are the leaves of a `Hierarchy`;
-            what is said of size, cells and about holds still.
+            what is said of size, cells and about still holds.
 
     Raises:
-        SceneError: both or senseless values, or more patches than can be counted.
+        SceneError: size and cells are both given, a value makes no sense, or there are more patches than can be counted.
 
     Example:
         >>> room = rd.load_scene("room")
@@ -66,7 +66,7 @@ def _edges(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _rounded(counts: np.ndarray, powers_of_two: bool) -> np.ndarray:
-    """Counts of 1 or more, up to the next power of two where that is asked for."""
+    """Return counts of 1 or more, rounded up to the next power of two where that is asked for."""
     if not powers_of_two:
         return counts
     _, exponent = np.frexp(counts.astype(np.float64) - 1)  # the bits of count - 1; exact, since counts are whole
@@ -81,8 +81,10 @@ def _by_size(scene: Scene, size: float, powers_of_two: bool) -> tuple[np.ndarray
 
 
 def _default_size(scene: Scene, powers_of_two: bool, about: int) -> float:
-    """A size at which the faces that are cut at all give about so many patches: walls are cut however many tiny faces
-    there are beside them."""
+    """Return a size at which the faces that are cut at all give about ``about`` patches.
+
+    So walls are cut however many tiny faces there are beside them.
+    """
     sides = np.where(scene.back == Back.RADIATES, 2, 1)
     high = float(max(edge.max() for edge in _edges(scene)))
     low = high * 1e-6

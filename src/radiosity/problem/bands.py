@@ -1,4 +1,4 @@
-"""Bands: which of them are one problem (contract 3)."""
+"""Groups of bands: bands of a group are one problem (contract 3)."""
 
 from dataclasses import dataclass
 
@@ -6,12 +6,12 @@ import numpy as np
 
 from ..patches.model import Patches
 
-QUANTUM = 2**31  # fixed point units of a quantum: an arrival adds at most one, and 2^32 of them fit in 64 bits
+QUANTUM = 2**31  # fixed point units of a quantum: a hit adds at most one quantum, and 2^32 quanta fit in 64 bits
 
 
 @dataclass(frozen=True, eq=False)
 class BandGroups:
-    """Bands whose reflectances are equal everywhere and whose emissions are proportional are solved once.
+    """Groups of bands whose reflectances are equal everywhere and whose emissions are proportional: a group is solved once.
 
     Attributes:
         index: (n_bands,) int, the group of each band.
@@ -37,7 +37,7 @@ class BandGroups:
         index, scale, leaders = np.zeros(n_bands, np.int64), np.zeros(n_bands), []
         for band in sorted(range(n_bands), key=lambda b: (not emission[:, b].any(), b)):
             if leaders and not emission[:, band].any():
-                continue  # nothing in, nothing out: any group times zero
+                continue  # the band emits nothing: it is any group times zero
             for group, leader in enumerate(leaders):
                 at = int(np.argmax(emission[:, leader]))
                 ratio = emission[at, band] / emission[at, leader] if emission[at, leader] else 0.0

@@ -17,7 +17,7 @@ class AbstractLights(ABC):
 
     @abstractmethod
     def prepare(self, geometry: Any) -> None:
-        """Make on the device what `leave` reads: in a loop that is recorded nothing can be made.
+        """Make on the device what `leave` reads: nothing can be made while a loop is recorded.
 
         Args:
             geometry: a `tracing.geometry.Geometry`. Kernels see points p of the scene at ``geometry.bvh.place(p)``.
@@ -25,11 +25,12 @@ class AbstractLights(ABC):
 
     @abstractmethod
     def leave(self, light: Any, numbers: Any) -> tuple[Any, Any]:
-        """In a kernel: where lines begin, and their directions of unit length, three floats each, in the caster's coordinates.
+        """Return where lines begin, and their directions, of unit length; called in a kernel.
 
-        The power that leaves in a solid angle is its share of the lines times the light's power.
+        Both have three floats, in the BVH's coordinates. The power that leaves in a solid angle is the share of the lines there
+        times the light's power.
 
         Args:
-            light: UInt32, 0 to n_lights - 1; where a lane fires a patch's line it may be any of them.
-            numbers: four floats in [0, 1) at least: two for the direction, two for the place.
+            light: UInt32, 0 to n_lights - 1; any of these where a lane fires a patch's line.
+            numbers: four floats or more in [0, 1): two for the direction, two for the place.
         """

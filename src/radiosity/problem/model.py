@@ -1,4 +1,4 @@
-"""What is to be solved: patches, their bands, and the scalar problem that lines are shared out by."""
+"""The problem to solve: patches, their bands, and the scalar problem that says how many lines each row fires."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -17,11 +17,11 @@ class Problem:
     """A scene's equation.
 
     Attributes:
-        patches: the unknowns.
+        patches: the unknowns are their radiosities.
         groups: bands that are one problem (see `BandGroups`).
         source: the scalar problem of the largest band of each row (contract 3).
         rows: what fires lines: the patches, and lights without area.
-        lights: those, or None.
+        lights: lights without area, or None.
     """
 
     patches: Patches
@@ -32,7 +32,7 @@ class Problem:
 
     @cached_property
     def scalar(self) -> "Problem":
-        """The largest band of each row alone: it fires as many lines."""
+        """Return the problem of the largest band of each row alone, which fires as many lines."""
         rows, n = self.rows, self.rows.n_patches
         emission, reflectance = (x.max(axis=1, keepdims=True) for x in (rows.emission, rows.reflectance))
         groups = BandGroups(np.zeros(1, np.int64), np.ones(1), emission[:n], reflectance[:n], np.zeros(1, np.int64))
@@ -40,10 +40,10 @@ class Problem:
 
     @staticmethod
     def of(patches: Patches, lights: AbstractLights | None = None) -> "Problem":
-        """Compare the bands and sum the emission.
+        """Make the problem of patches: compare their bands and sum the emission.
 
         Args:
-            lights: without area, where there are any.
+            lights: lights without area, where there are any.
 
         Raises:
             SceneError: nothing emits.

@@ -1,7 +1,7 @@
-"""Contract 2 in integers: what each patch owes.
+"""The target count of each patch, in integers (contract 2).
 
-With quantum delta = Phi / N, patch i owes floor(E_i A_i / delta + rho_i h_i + phase_i) lines after h_i arrivals. All three
-terms are fixed point numbers with a 32-bit fraction, so the sum is exact and the same everywhere.
+With energy packets delta = Phi / N, the target count of patch i is floor(E_i A_i / delta + rho_i h_i + phase_i) after h_i hits.
+All three terms are fixed point numbers with a 32-bit fraction, so the sum is exact and the same everywhere.
 """
 
 import math
@@ -21,7 +21,7 @@ LIMIT = 2**32 - 1  # of every counter
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A scene's scalar problem: what the integers of contract 2 count. A row is a patch, or after them a light without area.
+    """A scene's scalar problem, for the integers of contract 2. Its rows are the patches, then the lights without area.
 
     Attributes:
         share: (n_rows,) float64, E_i A_i / Phi.
@@ -35,7 +35,7 @@ class Source:
 
     @staticmethod
     def of(patches: Patches, emission: np.ndarray, reflectance: np.ndarray, area: np.ndarray | None = None) -> "Source":
-        """From scalar emission and reflectance of rows, (n_rows,) each, and their area: that of the patches by default.
+        """Make it from scalar emission, reflectance and area of rows, (n_rows,) each; the area is that of the patches by default.
 
         Raises:
             SceneError: nothing emits.
@@ -57,21 +57,21 @@ class Source:
 
     @staticmethod
     def fixed(reflectance: np.ndarray) -> np.ndarray:
-        """Reflectance in [0, 1) times 2^32, uint32."""
+        """Return reflectance in [0, 1) times 2^32, uint32."""
         fixed = np.empty(reflectance.shape, np.uint32)
         for part in pieces(len(fixed)):
             fixed[part] = np.floor(reflectance[part] * ONE)
         return fixed
 
     def emitted(self, quanta: int) -> tuple[np.ndarray, np.ndarray]:
-        """E_i A_i / delta at N quanta: whole lines and 2^-32ths, uint32 each. Never falls when N grows."""
+        """Return E_i A_i / delta at N quanta: whole lines and 2^-32ths, uint32 each. It never falls when N grows."""
         whole, fraction = (np.empty(len(self.share), np.uint32) for _ in range(2))
         for part, *both in self._emitted(quanta):
             whole[part], fraction[part] = both
         return whole, fraction
 
     def emitted_in_all(self, quanta: int) -> int:
-        """Their sum, in 2^-32ths."""
+        """Return the sum of E_i A_i / delta over all rows, in 2^-32ths."""
         return sum((int(whole.sum()) << 32) + int(fraction.sum()) for _, whole, fraction in self._emitted(quanta))
 
     def _emitted(self, quanta: int) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
@@ -91,7 +91,7 @@ def phases(seed: Seed | int, replicates: int, n_patches: int) -> np.ndarray:
 
 
 def target_counts(source: Source, quanta: int, arrivals: np.ndarray, phase: np.ndarray) -> np.ndarray:
-    """Contract 2 on the host, (..., n_patches) uint64: for the books and for tests."""
+    """Return the target counts of contract 2 on the host, (..., n_patches) uint64: for the energy balance and for tests."""
     whole, fraction = source.emitted(quanta)
     low = source.rho.astype(np.uint64) * arrivals.astype(np.uint64) + fraction.astype(np.uint64) + phase.astype(np.uint64)
     return whole.astype(np.uint64) + (low >> np.uint64(32))

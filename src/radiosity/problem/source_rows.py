@@ -1,4 +1,4 @@
-"""What fires first lines: a table with a row for each patch, and then one for each light without area."""
+"""Source rows, which fire lines: one for each patch, and then one for each light without area."""
 
 from dataclasses import dataclass
 
@@ -14,9 +14,9 @@ class SourceRows:
     """Rows that fire lines. Patches come first, in their order; rows after them receive nothing.
 
     Attributes:
-        n_patches: how many of the rows are patches.
+        n_patches: the number of rows that are patches.
         emission: (n_rows, n_groups) float64, W/m² or lm/m² of each group of bands.
-        reflectance: (n_rows, n_groups) float64; 0 of lights.
+        reflectance: (n_rows, n_groups) float64; lights have 0.
         area: (n_rows,) float64, m². A light without area counts as one of 1 m², which emits its power.
     """
 
@@ -27,7 +27,7 @@ class SourceRows:
 
     @staticmethod
     def of(patches: Patches, groups: BandGroups, light_power: np.ndarray) -> "SourceRows":
-        """Of patches, and of the power of lights, (n_lights, n_groups)."""
+        """Make the rows of patches, and of lights from their power, (n_lights, n_groups)."""
         if not len(light_power):  # the patches' own arrays, which need no copy
             return SourceRows(len(patches), groups.emission, groups.reflectance, patches.area)
         return SourceRows(
@@ -42,7 +42,7 @@ class SourceRows:
         return len(self.area) - self.n_patches
 
     def scalar(self, patches: Patches) -> Source:
-        """The scalar problem of the largest band of each row (contract 3).
+        """Return the scalar problem of the largest band of each row (contract 3).
 
         Raises:
             SceneError: nothing emits.

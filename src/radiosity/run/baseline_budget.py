@@ -1,4 +1,4 @@
-"""How far a baseline goes, how finely a scene is cut for it where nobody says, and what its books tell of its form factors."""
+"""The budget of a baseline, the default patches for it, and what its energy balance says about its form factors."""
 
 import warnings
 
@@ -8,15 +8,15 @@ from ..errors import MethodError, RadiosityWarning
 from ..method import Baseline, Method
 from .budget import DONE, Budget
 
-MISSING = 0.01  # of the emitted power: more than this out of balance is told
-PATCHES = 2_000  # of a scene that is not cut yet: pairs of them still fit everywhere
+MISSING = 0.01  # of the emitted power: a larger error of the energy balance is told
+PATCHES = 2_000  # of a scene that is not cut yet: pairs of so many still fit in any memory
 
 
 def chosen_budget(method: Baseline, **asked) -> Budget:
-    """The budget that was asked for, or to go on until the method is done.
+    """Return the budget that was asked for, or one that goes on until the method is done.
 
     Raises:
-        MethodError: several budgets, or one that the method cannot keep.
+        MethodError: there are several budgets, or one that the method cannot keep.
     """
     given = {name: value for name, value in asked.items() if value is not None}
     if "error" in given:
@@ -30,7 +30,7 @@ def chosen_budget(method: Baseline, **asked) -> Budget:
 
 
 def cut_for(method: "Method | Baseline") -> dict:
-    """Arguments of `subdivide` for a scene that is not cut yet."""
+    """Return arguments of `subdivide` for a scene that is not cut yet."""
     if not isinstance(method, Baseline):
         return {}
     return {"about": PATCHES, "powers_of_two": method.needs_powers_of_two}

@@ -1,4 +1,4 @@
-"""How long to go on: rays, seconds, a target error or quanta, and the ladder of stages that leads there."""
+"""The budget of a run: rays, seconds, an error or quanta; and the ladder of stages that leads there."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from ..problem.quanta import LIMIT
 FIRST_STAGE = 1 << 20  # quanta of all replicates together in the first stage
 FULL = 0.95 * LIMIT  # lines of a replicate: its counters have 32 bits
 LEAST_QUANTA = 1024
-AIM, AIM_ONCE = 0.97, 0.9  # of a target error, at the last stage; lower where a stage between two rungs cannot be gone on from
+AIM, AIM_ONCE = 0.97, 0.9  # of an error target, at the last stage; lower where no run goes on from a stage between two rungs
 LEAST_STEP = 1.05  # times the lines so far
 DONE = 1 << 31  # quanta, more than any baseline takes: it ends when there is nothing left to do
 BASELINE_RUNGS = {"full-matrix": 1, "progressive": 64, "hierarchical": 1}  # the whole matrix; shots; passes of refinement
@@ -17,7 +17,7 @@ BASELINE_RUNGS = {"full-matrix": 1, "progressive": 64, "hierarchical": 1}  # the
 
 @dataclass(frozen=True)
 class Budget:
-    """Exactly one of the four is not None; but an error may have a limit: rays, seconds or both.
+    """When a run ends. Exactly one of the four is not None; but an error may have a limit beside it: rays, seconds or both.
 
     Attributes:
         rays: lines in all, replicates together.
@@ -26,7 +26,7 @@ class Budget:
         quanta: N of each replicate.
 
     Raises:
-        MethodError: none or too many given, or a value that makes no sense.
+        MethodError: none or too many are given, or a value makes no sense.
     """
 
     rays: float | None = None
@@ -59,14 +59,14 @@ class Budget:
             raise MethodError(f"{name} is {value!r}; it must be a whole number of 1 or more")
 
     def allows(self, lines: float, seconds: float) -> bool:
-        """So many lines and so much time are within the limits of an error."""
+        """Return whether a number of lines and a time are within the limits beside an error."""
         return (self.rays is None or lines <= self.rays) and (self.seconds is None or seconds <= self.seconds)
 
     def check(self, replicates: int) -> None:
         """Refuse what 32-bit counters could not hold, before anything is traced.
 
         Raises:
-            MethodError: too many lines for a replicate.
+            MethodError: there are too many lines for a replicate.
         """
         lines = max((self.rays or 0) / replicates, self.quanta or 0)
         if lines >= LIMIT:
@@ -79,13 +79,18 @@ class Budget:
 
 
 def first_stage(replicates: int, n_patches: int) -> int:
-    """N of the first rung: a power of two, so large that passing over all patches does not outweigh the lines."""
+    """Return N of the first rung: a power of two, so large that passes over all patches take less time than the lines."""
     return max(LEAST_QUANTA, 1 << round(math.log2(max(FIRST_STAGE / replicates, 2 * n_patches))))
 
 
 def first_rung(order: str, replicates: int, share) -> int:
-    """N of the first rung for an order: staged ones begin with few lines, to show something soon; well distributed ones with a
-    quantum no larger than the power of the weakest light, so that none is silent (``share`` of power, (n_patches,)).
+    """Return N of the first rung for an order.
+
+    Staged orders begin with few lines, to show something soon. Well distributed ones begin with a quantum no larger than the
+    power of the weakest light, so that every light fires.
+
+    Args:
+        share: (n_patches,) of power.
     """
     if order in BASELINE_RUNGS:
         return BASELINE_RUNGS[order]
@@ -98,7 +103,7 @@ def first_rung(order: str, replicates: int, share) -> int:
 
 
 def rung_after(quanta: int, first: int) -> int:
-    """The rung above N on the ladder of doubling powers of two that begins at ``first``."""
+    """Return the rung above N on the ladder of powers of two that begins at ``first``."""
     return first if quanta < first else 1 << (quanta.bit_length())
 
 
@@ -111,14 +116,14 @@ def stages(quanta: int, first: int) -> list[int]:
 
 
 def on_ladder(quanta: int, first: int) -> bool:
-    """N is a rung."""
+    """Return whether N is a rung."""
     return quanta >= first and quanta & (quanta - 1) == 0
 
 
 @dataclass(frozen=True)
 class Progressed:
-    """What is known after a stage: quanta of each replicate, lines of all, seconds, what the error may be (NaN: it cannot be told
-    yet), and the slope at which it falls with lines."""
+    """What is known after a stage: quanta of each replicate, lines of all replicates, seconds, an upper bound of the error (NaN:
+    it is not known yet), and the slope at which the error falls with lines."""
 
     quanta: int
     lines: int
@@ -129,11 +134,11 @@ class Progressed:
 
 
 def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, most: float, *, replay: bool) -> int | None:
-    """N of the next stage, or None where the budget is used up.
+    """Return N of the next stage, or None where the budget is used up.
 
-    The stages of any run are the rungs of the ladder below its last N, then N: so N alone replays a run also where
-    bands make the result depend on the stages (``replay``); there a stage between two rungs is the last. Integers alone
-    do not depend on stages, and may go on from any N. A replicate counts ``most`` lines at most.
+    The stages of any run are the rungs of the ladder below its last N, then N. So N alone replays a run, also where bands make
+    the result depend on the stages (``replay``); there a stage between two rungs is the last. Integers alone do not depend on
+    stages, and a run of them may go on from any N. A replicate counts ``most`` lines at most.
     """
     if replay and not on_ladder(at.quanta, first):
         return None
@@ -148,12 +153,12 @@ def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, mos
 
 
 def _wanted(budget: Budget, rung: int, at: Progressed, replay: bool) -> int:
-    """The least of what each part of the budget wants."""
+    """Return the least N of those that the parts of the budget ask for."""
     if budget.quanta is not None:
         return int(budget.quanta)
     wanted = []
     if budget.rays is not None:
-        wanted.append(round(budget.rays * at.quanta / at.lines) if at.lines else rung)  # nothing was hit yet: try more
+        wanted.append(round(budget.rays * at.quanta / at.lines) if at.lines else rung)  # no line yet: try more
     if budget.seconds is not None:
         left = budget.seconds - at.seconds
         rate = max(at.lines, 1) / max(at.stage_seconds, 1e-9) / 2  # a stage fires about half of all lines so far

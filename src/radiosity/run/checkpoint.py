@@ -1,4 +1,4 @@
-"""A run's state on disk every now and then, so that no more is lost than what came since."""
+"""Checkpoints: a run's state is written to disk from time to time, so that only what came since can be lost."""
 
 import time
 import warnings
@@ -13,8 +13,8 @@ from ..solution.saving import save
 from ..solution.whole import check_place
 
 EVERY = 30.0  # seconds
-TIMES = 30  # as long as it takes to write is gone on for at least: 3 % of the time
-RATE = 60e6  # bytes a second that a disk is taken to write at, before it has been measured
+TIMES = 30  # a run goes on for this many times the time of writing, at least: writing then takes 3 % of the time
+RATE = 60e6  # bytes a second that a disk is assumed to write, before it has been measured
 WHOLE = {
     "full-matrix": "a full matrix is made whole or not at all",
     "hierarchical": "hierarchical radiosity keeps no links in its results",
@@ -22,18 +22,18 @@ WHOLE = {
 
 
 def resumable(method: "Method | Baseline") -> bool:
-    """Runs of this method can go on from what was written."""
+    """Return whether runs of this method can go on from a checkpoint."""
     return method.machine not in WHOLE
 
 
 @dataclass(eq=False)
 class Checkpoint:
-    """Where, and how often.
+    """A checkpoint file, and how often it is written.
 
     Attributes:
         path: .npz, which `load_solution` reads.
-        every: seconds between two of them; longer where writing takes long.
-        written: this run has written it.
+        every: seconds between two writings; longer where writing takes long.
+        written: True where this run has written it.
     """
 
     path: Path
@@ -47,10 +47,10 @@ class Checkpoint:
         self._due = time.monotonic() + self.every
 
     def check(self, method: "Method | Baseline") -> None:
-        """Refuse what could not be written, or not be gone on from, before the run.
+        """Refuse, before the run, a checkpoint that could not be written, or from which no run could go on.
 
         Raises:
-            MethodError: the method has no state to go on from. OutputError: no place to write to.
+            MethodError: the method has no state to go on from. OutputError: there is no place to write to.
         """
         if not resumable(method):
             raise MethodError(f"checkpoint: {WHOLE[method.machine]}: there is nothing to go on from; leave it out")
@@ -63,8 +63,10 @@ class Checkpoint:
         return time.monotonic() >= self._due
 
     def write(self, solution: Callable[[], Solution]) -> None:
-        """Between two sweeps, and unless writing would take too much of the time so far. A failure is told once, and the run
-        goes on: what was written before stays."""
+        """Write the file, unless that would take too much of the time so far; called between two wavefronts.
+
+        A failure is told once, and the run goes on: what was written before stays.
+        """
         begun = time.monotonic()
         what = solution()
         if not self._sized:
@@ -78,7 +80,7 @@ class Checkpoint:
         self._due = now + max(self.every, TIMES * (now - begun))
 
     def end(self, solution: Solution) -> None:
-        """The run ends. Of a complete one it is written only where there is one to bring up to date: its results go elsewhere."""
+        """Write the file at the end of a run; that of a complete run only where the run has written one before."""
         if self.written or solution.status != "complete":
             self._save(solution)
 

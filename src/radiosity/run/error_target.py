@@ -1,4 +1,4 @@
-"""Whose error a run is to reach, and whether there is any."""
+"""The error target of a run: the patches or surfaces whose error it must reach."""
 
 import difflib
 from dataclasses import dataclass, field
@@ -14,17 +14,17 @@ from .snapshot import Snapshot
 
 SURFACE, MEAN = KINDS = ("surface:", "mean:")
 SHOWN = 8
-PAIRS = 1e8  # of lights and vertices: more are not looked at
+PAIRS = 1e8  # pairs of light and vertex: with more, they are not checked
 FLAT = 1e-9  # of the scene's size: vertices no further in front of a light's plane lie in it
 
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """Whose error a run is to reach: of all patches, of those of some surfaces, or of the mean irradiance over these surfaces.
+    """The error that a run must reach: of all patches, of those of some surfaces, or of the mean irradiance over these surfaces.
 
     Attributes:
-        rows: the patches that it is about.
-        surfaces: (k,) int, of a mean: the surfaces; None: the error is the RMS over the patches.
+        rows: the patches whose error it is.
+        surfaces: (k,) int, the surfaces whose mean it is; None: the error is the RMS over the patches.
     """
 
     rows: np.ndarray | slice = field(default_factory=lambda: slice(None))
@@ -32,10 +32,11 @@ class Target:
 
     @staticmethod
     def of(patches: Patches, name: str | None) -> "Target":
-        """``surface:NAME``: the RMS over the patches of a surface; ``mean:NAME``: its mean; None: all patches.
+        """Make the target from a text: ``surface:NAME`` is the RMS over the patches of a surface, ``mean:NAME`` its mean; None is
+        all patches.
 
         Raises:
-            MethodError: another form, or no such surface.
+            MethodError: the text has another form, or there is no such surface.
         """
         if name is None:
             return Target()
@@ -43,23 +44,23 @@ class Target:
         return Target(rows, np.unique(patches.surface[rows]) if str(name).startswith(MEAN) else None)
 
     def error(self, snapshot: Snapshot) -> float:
-        """Relative, the largest of the bands; NaN where unknown."""
+        """Return the relative error, the largest of the bands; NaN where unknown."""
         return snapshot.error(self.rows) if self.surfaces is None else snapshot.error_of_mean(self.rows, self.surfaces)
 
     def judged(self, snapshot: Snapshot) -> bool:
-        """Enough lines tell the error."""
+        """Return whether the error comes from enough lines."""
         return snapshot.judged(self.rows) if self.surfaces is None else snapshot.judged_mean(self.rows)
 
     def margin(self, snapshot: Snapshot) -> float:
-        """How many times the stated error the true one may be: of a mean by Student's distribution."""
+        """Return how many times the stated error the true one may be; for a mean by Student's distribution."""
         return snapshot.margin(self.rows) if self.surfaces is None else student(SURE, snapshot.replicates)
 
 
 def rows_of(patches: Patches, name: str) -> np.ndarray:
-    """Indices of the patches that ``surface:NAME`` or ``mean:NAME`` means; ``NAME`` may be a pattern such as ``desk*``.
+    """Return indices of the patches that ``surface:NAME`` or ``mean:NAME`` means; ``NAME`` may be a pattern such as ``desk*``.
 
     Raises:
-        MethodError: another form, or no such surface.
+        MethodError: the text has another form, or there is no such surface.
     """
     kind, wanted = next(((k, str(name).removeprefix(k)) for k in KINDS if str(name).startswith(k)), ("", ""))
     names = list(patches.scene.names)
@@ -77,7 +78,7 @@ def rows_of(patches: Patches, name: str) -> np.ndarray:
 
 
 def nothing_before_lights(patches: Patches) -> bool:
-    """Nothing lies in front of any light, so that no line can land: known for certain where it is said, by the vertices."""
+    """Return True where it is certain, by the vertices, that nothing lies in front of any light, so that no line can hit."""
     scene = patches.scene
     lit = patches.emission.any(axis=1)
     normal, point = patches.normal[lit], patches.centroid[lit]

@@ -1,4 +1,4 @@
-"""About how much memory a run takes beyond scene and patches, by its process; it does not grow with the number of lines.
+"""The memory estimate of a run, beyond scene and patches, by its algorithm; it does not grow with the number of lines.
 
 Baselines have estimates of their own (`algorithms.estimate`).
 """
@@ -15,15 +15,15 @@ from ..patches import Patches
 from ..solution.local_linear import Regions
 from .budget import first_stage
 
-FACE = 800  # bytes, of the tree and the records of hits
-REACHED = 100  # of a cell within a kernel, while planes are fitted; 76 to 100 were measured, and 12 are kept
-TURNS = 12  # of a patch in a replicate, and 8 more in each group of bands: what steps in turns keep apart
-PAIR = 24  # of a pair of patches that is counted, while counts are merged
+FACE = 800  # bytes a face, for the BVH and the hit records
+REACHED = 100  # bytes a cell within a kernel, while planes are fitted; 76 to 100 were measured, and 12 are kept
+TURNS = 12  # bytes a patch in a replicate, and 8 more in each group of bands: what steps in turns keep apart
+PAIR = 24  # bytes a pair of patches that is counted, while counts are merged
 
 
 @dataclass(frozen=True)
 class MemoryEstimate:
-    """Bytes: whatever is solved; a patch, and each band of it; a patch in a replicate, and each group of bands of it."""
+    """Bytes of a run: fixed; for a patch, and each band of it; for a patch in a replicate, and each group of bands of it."""
 
     fixed: float
     patch: float
@@ -34,7 +34,7 @@ class MemoryEstimate:
 
 # peaks of fresh processes, 16 000 and 220 000 patches, 1 and 8 replicates, grey and RGB (benchmarks/memory_estimate.py)
 MEMORY_ESTIMATES = {
-    "firing": MemoryEstimate(50e6, 60, 80, 15, 27),  # of the fixed part, 20e6 while kernels of long runs are compiled
+    "firing": MemoryEstimate(50e6, 60, 80, 15, 27),  # the fixed part includes 20e6 while kernels of long runs are compiled
     "walks": MemoryEstimate(90e6, 60, 80, 36, 17),
     "gathering": MemoryEstimate(120e6, 60, 80, 88, 10),
     "iteration": MemoryEstimate(10e6, 60, 80, 82, 135),
@@ -44,15 +44,15 @@ MEMORY_ESTIMATES = {
 }
 
 
-def demand(method: Method, patches: Patches, groups: int, replicates: int, rays: float | None) -> float:
-    """Bytes.
+def memory_needed(method: Method, patches: Patches, groups: int, replicates: int, rays: float | None) -> float:
+    """Return the bytes that a run will take.
 
     Args:
-        method: what solves.
-        patches: for what.
-        groups: of bands that are one problem each.
-        replicates: of it.
-        rays: lines in all, where they are known: pairs of patches that counts are kept of are no more.
+        method: the method of the run.
+        patches: the patches that it solves.
+        groups: the number of groups of bands.
+        replicates: the number of replicates.
+        rays: lines in all, where they are known: counts are kept of no more pairs of patches than that.
     """
     one, n = MEMORY_ESTIMATES[method.machine], len(patches)
     fixed = one.fixed * max(1.0, (os.cpu_count() or 1) / 4)  # launches grow with the cores
@@ -69,7 +69,7 @@ def demand(method: Method, patches: Patches, groups: int, replicates: int, rays:
 
 
 def _cells_reached(patches: Patches, hit_tally: float) -> float:
-    """By the kernels of all patches together, where landings are spread evenly; kernels are widest where there are few."""
+    """Return the cells within the kernels of all patches together, for evenly spread hits; with few hits kernels are widest."""
     regions = Regions.find(patches)
     width = regions.bandwidth(hit_tally * patches.area / patches.area.sum())
     share = np.minimum(np.pi * width**2 / regions.area, 1.0)
@@ -77,16 +77,16 @@ def _cells_reached(patches: Patches, hit_tally: float) -> float:
 
 
 def check(method: Method | Baseline, patches: Patches, groups: int, replicates: int, rays: float | None) -> None:
-    """Refuse a run that will not fit.
+    """Refuse a run that will not fit in memory.
 
     Raises:
-        MethodError: with the number and the way out.
+        MethodError: the run will not fit; the message has the number of bytes and the way out.
     """
     if isinstance(method, Baseline):
         return
-    wanted, room = (demand(method, patches, groups, replicates, rays), memory.room())
+    wanted, room = (memory_needed(method, patches, groups, replicates, rays), memory.room())
     if wanted <= room:
         return
-    fitting = next((few for few in range(replicates - 1, 0, -1) if demand(method, patches, groups, few, rays) <= room), 0)
+    fitting = next((few for few in range(replicates - 1, 0, -1) if memory_needed(method, patches, groups, few, rays) <= room), 0)
     way_out = f"take {fitting} replicates or fewer, or larger patches" if fitting else "take larger patches"
     memory.refuse(wanted, f"{method} on {len(patches):,} patches in {replicates} replicates", way_out)

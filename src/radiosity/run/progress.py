@@ -1,4 +1,4 @@
-"""What a run tells about itself while it goes on, and how it is asked to stop."""
+"""Progress of a run: what listeners are told while it goes on, and how Ctrl-C stops it."""
 
 import math
 import signal
@@ -12,7 +12,7 @@ from ..device.turn import aside
 from .budget import DONE, Budget
 
 SLOPE = 0.6  # of the error against lines, as measured with low discrepancy numbers
-LAST = 4  # stages that a run's own slope is taken from
+LAST = 4  # stages from which a run's own slope is taken
 FLATTEST, STEEPEST = 0.35, 1.0
 
 
@@ -21,11 +21,11 @@ class Progress:
     """A moment of a run.
 
     Attributes:
-        stage: how many stages are complete.
-        rays: lines of sweeps so far, replicates together; those that send the residue on come where results are read.
-        rays_per_second: since the first sweep began.
+        stage: the number of complete stages.
+        rays: lines of wavefronts so far, replicates together; lines that send the residue on follow when results are read.
+        rays_per_second: lines a second since the first wavefront began.
         error: relative error after the last complete stage, NaN where unknown.
-        fraction: of the budget, 0 to 1, or None where it cannot be told yet.
+        fraction: of the budget, 0 to 1, or None where it is not known yet.
         seconds_left: an estimate, or None.
         message: what is being done.
     """
@@ -43,7 +43,7 @@ Listener = Callable[[Progress], None]
 
 
 class Teller:
-    """Counts a run's lines and tells a listener how far it is."""
+    """The counter of a run's lines, which tells a listener how far the run is."""
 
     def __init__(self, budget: Budget, listener: Listener | None):
         self.budget, self.listener = budget, listener
@@ -57,12 +57,16 @@ class Teller:
         return time.perf_counter() - self.begun
 
     def begin(self, lines: int) -> None:
-        """Tracing begins, with lines of an earlier run done."""
+        """Note that tracing begins, after ``lines`` of an earlier run."""
         self.tracing_since, self.lines, self.lines_before = time.perf_counter(), lines, lines
 
     def complete(self, lines: int, quanta: int, error: float, margin: float = 1.0, swept: int | None = None) -> None:
-        """A stage is complete; the error may be ``margin`` times what is stated (NaN: nobody knows). ``swept`` of its lines were
-        told, or else all."""
+        """Note that a stage is complete.
+
+        Args:
+            error, margin: the true error may be ``margin`` times the stated one (NaN: unknown).
+            swept: lines that were told; all of them by default.
+        """
         swept = lines if swept is None else swept
         self.bound = error * margin
         self.stage, self.lines, self.error, self.lines_a_quantum = self.stage + 1, swept, error, swept / quanta
@@ -71,8 +75,10 @@ class Teller:
 
     @property
     def slope(self) -> float:
-        """Of the error against lines, a positive power: of this run's last stages by least squares, drawn towards `SLOPE` as if
-        by one more doubling."""
+        """Slope of the error against lines, a positive power.
+
+        It is a least squares fit to this run's last stages, drawn towards `SLOPE` as if by one more doubling.
+        """
         last = self.known[-LAST:]
         if len(last) < 2:
             return SLOPE
@@ -82,7 +88,7 @@ class Teller:
         return min(max(slope, FLATTEST), STEEPEST)
 
     def tell(self, message: str) -> None:
-        """Pass the moment on."""
+        """Tell the listener."""
         if self.listener is None:
             return
         tracing = time.perf_counter() - self.tracing_since
@@ -101,7 +107,7 @@ class Teller:
             self.listener(moment)
 
     def _ahead(self, rate: float) -> tuple[float | None, float | None]:
-        """The fraction that is done, and the seconds left: of an error with a limit, by what comes first."""
+        """Return the fraction that is done, and the seconds left; for an error with a limit, by what comes first."""
         fractions, lefts = [], []
         if self.budget.seconds is not None:
             fractions.append(self.elapsed / self.budget.seconds)
@@ -113,7 +119,7 @@ class Teller:
         return max(fractions, default=None), min(lefts, default=None)
 
     def _expected_lines(self) -> float | None:
-        """Of a run to so many quanta, or to an error, once something is known of it."""
+        """Return the expected lines of a run to N quanta, or to an error; None where nothing is known yet."""
         if self.budget.quanta == DONE:
             return None
         if self.budget.quanta is not None:
@@ -124,14 +130,14 @@ class Teller:
 
 
 class Stop:
-    """Set by Ctrl-C; looked at between sweeps, where the counters are whole. A second Ctrl-C stops at once."""
+    """A request to stop. Ctrl-C sets it; it is read between wavefronts, where counters are whole. A second one stops at once."""
 
     def __init__(self):
         self.asked = False
 
     @contextmanager
     def listening(self):
-        """Take over SIGINT in the main thread for a while."""
+        """Handle SIGINT in the main thread during a block."""
         if threading.current_thread() is not threading.main_thread():
             yield self
             return

@@ -1,8 +1,8 @@
-"""Discretisation error apart from sampling error: the same scene solved on two meshes.
+"""The discretisation error apart from the sampling error: the same scene is solved on two meshes.
 
-A solution is constant on each patch and, of discrete methods, sends light from all of it alike. What that costs is seen where
-every patch is cut into four: how much the mean over a patch changes, and how much its four children differ among each other. Both
-fall as patches shrink, and what replicates say of either's noise is taken out.
+A solution is constant on each patch, and discrete methods send light evenly from all of it. The error of this is seen where
+every patch is cut into four: how much the mean over a patch changes, and how much its four children differ from each other. Both
+fall as patches shrink. The noise of both is known from the replicates, and is taken out.
 """
 
 from dataclasses import replace
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .run import Run
 
 RUN = ("rays", "seconds", "error", "error_of", "quanta", "replicates", "seed", "device", "progress")
-APART = 1 << 20  # between the seeds of the two runs, so that their errors are independent
+APART = 1 << 20  # difference of the seeds of the two runs, so that their errors are independent
 
 
 def refine_check(

@@ -1,4 +1,4 @@
-"""The one loop over stages."""
+"""The loop over the stages of a run."""
 
 import math
 import time
@@ -44,8 +44,8 @@ LOST_HITS = (
     "of this run is of no use"
 )
 ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
-LARGE = 1 << 19  # counters: before results are read, memory that sweeps took is given back, which costs some milliseconds
-PATIENCE = 1.2  # times the seconds asked for: then a stage is left unfinished
+LARGE = 1 << 19  # counters: before results are read, memory of wavefronts is given back, which takes some milliseconds
+PATIENCE = 1.2  # times the seconds asked for: after that a stage is left unfinished
 
 
 class Run:
@@ -88,12 +88,12 @@ class Run:
         self.geometry = Geometry(patches, self.device)
 
     def solve(self) -> Solution:
-        """Stage after stage until the budget is used up, or Ctrl-C."""
+        """Run stage after stage until the budget is used up, or until Ctrl-C."""
         with turn(), self.stop.listening():
             return self._stages()
 
     def _stages(self) -> Solution:
-        algorithm, target = self._process(self.problem, self.part), 0
+        algorithm, target = self._algorithm(self.problem, self.part), 0
         self.algorithm = algorithm
         if self.resume is None:
             target = self._first_quanta()
@@ -136,7 +136,7 @@ class Run:
             at = Progressed(target, lines, self.teller.elapsed, stage, error * margin, slope)
             replay = not algorithm.stage_independent
             if replay and self._missed(at):
-                self.algorithm = algorithm = self._process(self.problem, self.part)
+                self.algorithm = algorithm = self._algorithm(self.problem, self.part)
                 steps = self._climb(target)
                 target = steps[-1]
                 continue
@@ -165,7 +165,7 @@ class Run:
         Raises:
             MethodError: see `run.merge.merge`.
         """
-        algorithm = self._process(self.problem, self.part)
+        algorithm = self._algorithm(self.problem, self.part)
         states = [algorithm.read(arrays, replace(algorithm.sizes, replicates=part.replicates)) for arrays, part in parts]
         for state, (_, part) in zip(states, parts, strict=True):
             if state.quanta != quanta:
@@ -193,7 +193,7 @@ class Run:
         return without_results(self.patches, self.replicates, seconds, status, self.provenance, state.arrays())
 
     def _missed(self, at: Progressed) -> bool:
-        """The stage was to be the last, and its error is above what was asked for; the limit leaves room for another run."""
+        """Return whether a stage that was to be the last has missed its error, and the limit leaves room for another run."""
         more = 2 * rung_after(at.quanta, self.rung) / at.quanta
         return (
             self.budget.error is not None
@@ -203,14 +203,14 @@ class Run:
         )
 
     def _climb(self, quanta: int) -> list[int]:
-        """The rungs up to the one above N: from N itself no run goes on to the bits of a longer one, so another one begins."""
+        """Return the rungs up to the one above N, for a new run: from N itself no run goes on to the bits of a longer one."""
         rungs = [self.rung]
         while rungs[-1] < quanta:
             rungs.append(rung_after(rungs[-1], self.rung))
         return rungs
 
     def _reached(self, snapshot: Snapshot) -> bool:
-        """The error was reached, or another budget used up; else the counters were."""
+        """Return whether the error was reached, or another budget used up; otherwise the counters were full."""
         if snapshot.done or self._no_light(snapshot):
             return True
         if self.budget.error is not None:
@@ -220,21 +220,21 @@ class Run:
         return self.budget.rays is None or snapshot.lines >= 0.5 * self.budget.rays
 
     def _margin(self, snapshot: Snapshot) -> float:
-        """How many times the stated error the true one may be, where it is to be reached; NaN where too few lines landed."""
+        """Return how many times the stated error the true one may be, where there is an error target; NaN with too few hits."""
         if self.budget.error is None:
             return 1.0
         return self.target.margin(snapshot) if self.target.judged(snapshot) else math.nan
 
     def _no_light(self, snapshot: Snapshot) -> bool:
-        """No patch can receive anything, and there is no error to wait for."""
+        """Return whether there is an error target, but no patch can receive anything."""
         return self.budget.error is not None and not snapshot.irradiance[0].any() and nothing_before_lights(self.patches)
 
-    def _process(self, problem: Problem, part: Part) -> AbstractAlgorithm:
+    def _algorithm(self, problem: Problem, part: Part) -> AbstractAlgorithm:
         return make(self.geometry, problem, self.method, part.seed, part.replicates)
 
     @property
     def _error_matters(self) -> bool:
-        """Between stages the error costs a pass over all replicates: for a target, or for someone who looks on."""
+        """True where an error target or a listener needs the error between stages; it costs a pass over all replicates."""
         return self.budget.error is not None or self.teller.listener is not None
 
     def _swept(self, count: int) -> None:
@@ -251,7 +251,7 @@ class Run:
             self.checkpoint.write(lambda: self._so_far("interrupted", self.algorithm.capture()))
 
     def _first_quanta(self) -> int:
-        """N of the first stage: the ladder's first rung, or less where the budget asks for less."""
+        """Return N of the first stage: the ladder's first rung, or less where the budget asks for less."""
         if self.budget.quanta is not None:
             return min(self.rung, int(self.budget.quanta))
         if isinstance(self.method, Baseline):
@@ -260,11 +260,11 @@ class Run:
             return self.rung
         counted = self.problem.scalar if self.method.machine == "firing" else self.problem
         found = few_quanta(
-            self.budget.rays, self.replicates, self._process(counted, Part(Seed(self.part.seed.value), 1)), self._tried
+            self.budget.rays, self.replicates, self._algorithm(counted, Part(Seed(self.part.seed.value), 1)), self._pilot_told
         )
         return min(self.rung, found)
 
-    def _tried(self, count: int) -> None:
+    def _pilot_told(self, count: int) -> None:
         self.teller.tell("trying")
         if self.stop.asked:
             raise KeyboardInterrupt

@@ -1,4 +1,4 @@
-"""Is a solution of the same run, so that another may go on from it?"""
+"""The check that a solution is of the same run, so that a run may go on from it."""
 
 from ..errors import MethodError
 

@@ -1,4 +1,4 @@
-"""What is told at the end of a run that traced far more lines than it was asked for, or did not reach its error."""
+"""Warnings at the end of a run that traced far more lines than it was asked for, or did not reach its error."""
 
 import math
 import warnings
@@ -13,7 +13,7 @@ MORE = 2.0  # times the lines asked for
 
 
 def warn_of_more(lines: int, budget: Budget, replicates: int, patches: Patches) -> None:
-    """Tell of a first stage, than which there is none smaller, that took more than `MORE` times the lines asked for."""
+    """Warn of a first stage, the smallest there is, that took more than `MORE` times the lines asked for."""
     if budget.rays is not None and lines > MORE * budget.rays:
         warnings.warn(
             f"{lines:,} lines were traced, {lines / budget.rays:.3g} times the {budget.rays:,} asked for: the smallest stage of "
@@ -25,11 +25,11 @@ def warn_of_more(lines: int, budget: Budget, replicates: int, patches: Patches) 
 
 
 def warn_of_target(snapshot: Snapshot, budget: Budget, target: Target, bound: float, error_of: str | None, *, full: bool) -> None:
-    """Tell of an error that was not reached: what is known of it, and what ended the run.
+    """Warn of an error that was not reached: say what is known of it, and what ended the run.
 
     Args:
-        bound: which the true error is below in 95 % of runs; NaN where that cannot be told.
-        error_of: whose error, as it was asked for.
+        bound: the true error is below this in 95 % of runs; NaN where that is not known.
+        error_of: the error target as it was asked for.
         full: the counters are full.
     """
     if math.isnan(bound):

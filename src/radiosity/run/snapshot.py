@@ -1,4 +1,4 @@
-"""A complete stage: what its state means for the scene's bands."""
+"""Snapshots: the results of a complete stage, in the scene's bands."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from ..solution.intervals import FEW, by_luck, least_error, usual_power
 
 @dataclass(eq=False)
 class Snapshot:
-    """The problem, the state of a process and how it is read; ``also`` reads what else is asked of it."""
+    """A problem, the state of an algorithm after a stage, and the tally that reads it; ``also`` reads something more of it."""
 
     problem: Problem
     tally: AbstractTally
@@ -26,8 +26,10 @@ class Snapshot:
     also: Callable[["Snapshot"], Any] | None = None
 
     def settle(self) -> None:
-        """Read all that is asked of it now, and let go of the state, where that is quick and takes less memory: what the process
-        writes next goes to a copy of whatever is held."""
+        """Read all results now and drop the state, where that is quick and saves memory.
+
+        As long as a state is held, what the algorithm writes next goes to a copy.
+        """
         if self.tally.settles:
             _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power
             _ = self.books, self.asked
@@ -49,7 +51,7 @@ class Snapshot:
 
     @cached_property
     def about_lines(self) -> float:
-        """See `AbstractTally.about_lines`."""
+        """About how many lines there were, see `AbstractTally.about_lines`."""
         return self.tally.about_lines(self.problem, self.state)
 
     @cached_property
@@ -73,14 +75,17 @@ class Snapshot:
 
     @cached_property
     def line(self) -> np.ndarray:
-        """(n_bands,) or (n_patches, n_bands) W or lm that a line would bring to the mean of replicates: `AbstractTally.line`."""
+        """Power that a line would bring to the mean of replicates, (n_bands,) or (n_patches, n_bands), W or lm.
+
+        See `AbstractTally.line`.
+        """
         groups = self.problem.groups
         lines = [np.asarray(self.tally.line(self.problem, self.state, group)) for group in range(groups.n_groups)]
         return np.stack(lines, axis=-1)[..., groups.index] * groups.scale / self.replicates
 
     @cached_property
     def surface_power(self) -> np.ndarray:
-        """See `Solution.surface_power`."""
+        """Power that surfaces receive and reflect, see `Solution.surface_power`."""
         if self.side_power is not None:
             return self.side_power[:, :, 0::2] + self.side_power[:, :, 1::2]
         patches = self.problem.patches
@@ -88,25 +93,25 @@ class Snapshot:
 
     @cached_property
     def asked(self) -> Any:
-        """What ``also`` reads."""
+        """The result of ``also``."""
         return None if self.also is None else self.also(self)
 
     @cached_property
     def side_power(self) -> np.ndarray | None:
-        """See `Solution.side_power`."""
+        """Power that sides of surfaces receive and reflect, see `Solution.side_power`."""
         patches = self.problem.patches
         if not patches.is_back.any():
             return None
         return self.sums(2 * patches.surface.astype(np.int64) + patches.is_back, 2 * len(patches.scene.names))
 
     def sums(self, key: np.ndarray, count: int) -> np.ndarray:
-        """(2, replicates, count, n_bands) W or lm: what patches of an equal key receive, and of it reflect, in each replicate.
+        """Return the power that patches of an equal key receive and reflect, (2, replicates, count, n_bands), W or lm.
 
         Args:
             key: (n_patches,) int, 0 to count - 1.
         """
         groups, found = self.problem.groups, []
-        runs = np.concatenate([[0], np.flatnonzero(key[1:] != key[:-1]) + 1])  # of an equal key: few, since patches follow faces
+        runs = np.concatenate([[0], np.flatnonzero(key[1:] != key[:-1]) + 1])  # of equal keys: few, since patches follow faces
 
         def summed(row):
             return np.bincount(key[runs], np.add.reduceat(row, runs, dtype=np.float64), count)
@@ -118,7 +123,7 @@ class Snapshot:
         return np.stack([np.array(found[g]) * s for g, s in zip(groups.index, groups.scale, strict=True)], axis=-1)
 
     def _irradiance(self, group: int) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
-        """Mean and standard error of a group, a piece of the patches at a time."""
+        """Yield mean and standard error of a group, a piece of the patches at a time."""
         values, unit = self.tally.irradiance(self.problem, self.state, group)
         tally = self.tally
         bias = tally.bias(self.problem, self.state, group) if isinstance(tally, AbstractBiasedTally) else None
@@ -130,16 +135,16 @@ class Snapshot:
             yield part, mean * factor, error * factor
 
     def error(self, rows: np.ndarray | slice = slice(None)) -> float:
-        """See `Solution.error`; of some patches."""
+        """Return the error of some patches, see `Solution.error`."""
         patches = self.problem.patches
         return relative_error(*(value[rows] for value in (patches.reflectance, *self.irradiance, patches.area)))
 
     def judged(self, rows: np.ndarray | slice = slice(None)) -> bool:
-        """The error of some patches is known well enough to stop there: what makes it up comes from `FEW` lines or more.
+        """Return whether the error of some patches is known well enough to stop there: it comes from `FEW` lines or more.
 
-        The relative variance of an error that n lines tell goes with 1 / n. So the sum of squared errors s_i of patches that n_i
-        lines reached is known as well as that of a patch which (sum s)^2 / sum (s^2 / n) of them did. Lines are counted as those
-        from the lights that would bring as much power, where these are fewer; the least error where none landed as one.
+        The relative variance of an error known from n lines is proportional to 1 / n. So the sum of squared errors s_i of patches
+        with n_i hits is known as well as that of one patch with (sum s)^2 / sum (s^2 / n) hits. Where fewer lines from the lights
+        would bring as much power, these are counted instead. The least error, where there is no hit, counts as one line.
         """
         patches, (mean, error) = self.problem.patches, self.irradiance
         area, rho, error = patches.area[rows, None], patches.reflectance[rows], error[rows]
@@ -152,10 +157,12 @@ class Snapshot:
         return bool(known.any() and (FEW * (share**2 / told).sum(axis=0) <= 1 + 1e-9).all())
 
     def error_of_mean(self, rows: np.ndarray | slice, surfaces: np.ndarray) -> float:
-        """Relative standard error of the mean irradiance over some surfaces, the largest of the bands, NaN where nothing landed.
+        """Return the relative standard error of the mean irradiance over some surfaces, the largest of the bands.
+
+        It is NaN where there are no hits.
 
         Args:
-            rows, surfaces: the same, as patches and as surfaces.
+            rows, surfaces: the surfaces, once as patches and once as surfaces.
         """
         power = self.surface_power[0][:, surfaces].sum(axis=1)  # (replicates, n_bands)
         mean, error = mean_and_error(power)
@@ -164,7 +171,7 @@ class Snapshot:
         return float((error[lit] / mean[lit]).max()) if lit.any() and not blind.any() else float("nan")
 
     def judged_mean(self, rows: np.ndarray | slice) -> bool:
-        """`FEW` lines or more landed there, counted as in `judged`."""
+        """Return whether some patches have `FEW` hits or more, counted as in `judged`."""
         patches, mean = self.problem.patches, self.irradiance[0]
         power, line = (mean * patches.area[:, None])[rows], np.broadcast_to(self.line, mean.shape)[rows]
         lines = np.minimum(np.divide(power, line, out=np.full(power.shape, np.inf), where=line > 0), self.arrivals[rows, None])
@@ -172,7 +179,7 @@ class Snapshot:
         return bool(lit.any() and (lines[:, lit].sum(axis=0) >= FEW).all())
 
     def _bias_of_sum(self, rows: np.ndarray | slice) -> np.ndarray:
-        """(n_bands,) W or lm: what the biases of some patches, where a tally tells them, add up to at most."""
+        """Return a bound of the sum of the biases of some patches, (n_bands,), W or lm; 0 where the tally has no biases."""
         if not isinstance(self.tally, AbstractBiasedTally):
             return np.zeros(len(self.problem.groups.index))
         groups, found = self.problem.groups, []
@@ -182,7 +189,7 @@ class Snapshot:
         return np.array(found)[groups.index] * groups.scale
 
     def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
-        """How many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""
+        """Return how many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""
         area, groups, found = self.problem.patches.area[rows], self.problem.groups, []
         for group in range(groups.n_groups):
             values, _ = self.tally.irradiance(self.problem, self.state, group)
@@ -193,7 +200,7 @@ class Snapshot:
 
     @cached_property
     def books(self) -> tuple[dict, ...]:
-        """See `Solution.books`."""
+        """The energy balance of each band, see `Solution.books`."""
         groups = self.problem.groups
         books = [self.tally.books(self.problem, self.state, group) for group in range(groups.n_groups)]
         return tuple(

@@ -1,4 +1,4 @@
-"""Scene in, solution out."""
+"""`solve`, which makes a solution from a scene."""
 
 import math
 from pathlib import Path
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .run import Run
 
 
-SHOOTING = ("firing", "walks")  # processes whose lines carry power from the patches where they begin
+SHOOTING = ("firing", "walks")  # algorithms whose lines carry power from the patches where they begin
 
 
 def solve(
@@ -72,7 +72,7 @@ def solve(
         all_replicates: how many replicates all parts have together. Results that depend on their stages (see ``resume``) need it,
             since the first stage depends on the number of replicates.
         device: "auto", "cpu" or "cuda".
-        progress: called with a `Progress` after each sweep.
+        progress: called with a `Progress` after each wavefront.
         resume: a solution of the same scene, method, seed and replicates to go on from, also an interrupted one; the
             budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
             their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
@@ -139,7 +139,7 @@ def prepared(
     checkpoint=None,
     checkpoint_every=30.0,
 ) -> "Run":
-    """A checked run that has not begun; arguments and errors are those of `solve`."""
+    """Return a checked run that has not begun; arguments and errors are those of `solve`."""
     usual = 1 if isinstance(chosen, Baseline) else 8
     replicates = usual if replicates is None else whole(replicates, "replicates", 1)
     in_all = None if all_replicates is None else whole(all_replicates, "all_replicates", 1)
@@ -169,8 +169,10 @@ def prepared(
 
 
 def _refuse_open(scene: Scene, method: Method | Baseline) -> None:
-    """A lamp that hides nothing is seen along with what is behind it: only lines that carry power from their patch tell the two
-    apart."""
+    """Raise where a scene has open lamps and the method cannot solve it.
+
+    An open lamp is seen together with what is behind it. Only lines that carry power from their patch tell the two apart.
+    """
     if method.machine in SHOOTING or not (scene.back == Back.OPEN).any():
         return
     names = shown([scene.names[i] for i in np.unique(scene.surface[scene.back == Back.OPEN])])

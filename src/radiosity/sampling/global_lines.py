@@ -1,9 +1,9 @@
 """Global lines: uniform and isotropic through a ball about the scene, whatever the scene holds (Sbert 1993).
 
-Each function gives a point of the line and its unit direction, in coordinates whose origin is the ball's centre. A plane element
-of area A is crossed by A / (2 pi R^2) of the lines of the first two kinds, and by A / (8 R^2) of those of a bundle, whose
-lattice covers the square about the disc: the mean over directions of A |cos| is A / 2, and a lattice of n lines has
-n / (4 R^2) of them a unit of area.
+Each function returns a point of the line and its unit direction, in coordinates whose origin is the ball's centre. Of lines of
+the first two kinds, a share of A / (2 pi R^2) crosses a plane element of area A; of those of a bundle, A / (8 R^2), since its
+lattice covers the square about the disc. The mean over directions of A |cos| is A / 2, and a lattice of n lines has n / (4 R^2)
+lines a unit of area.
 """
 
 import drjit as dr
@@ -12,7 +12,7 @@ from .hemisphere import turn
 
 
 def on_sphere(first, second):
-    """A uniform point of the unit sphere: heights are uniform (Archimedes), and so is the angle about the axis."""
+    """Return a uniform point of the unit sphere: heights are uniform (Archimedes), and so is the angle about the axis."""
     z = dr.fma(-2, first, 1)
     radius = dr.sqrt(dr.maximum(dr.fma(-z, z, 1), 0))
     x, y = turn(second)
@@ -20,16 +20,16 @@ def on_sphere(first, second):
 
 
 def by_two_points(numbers, radius, Array3f):
-    """The line through two points, each uniform on the sphere of this radius (Sbert 1993)."""
+    """Return the line through two points, each uniform on the sphere of this radius (Sbert 1993)."""
     one, two = Array3f(*on_sphere(numbers[0], numbers[1])), Array3f(*on_sphere(numbers[2], numbers[3]))
     between = two - one
     length = dr.norm(between)
-    # two equal points are no line: their direction is any, and the line at the sphere's rim meets nothing
+    # two equal points give no line: any direction is taken, and the line at the sphere's rim meets nothing
     return one * radius, dr.select(length > 0, between / length, Array3f(0, 0, 1))
 
 
 def by_disc(numbers, radius, Array3f):
-    """A uniform direction, and a uniform point of the disc across it: concentric circles of equal area."""
+    """Return a uniform direction, and a uniform point of the disc across it, by concentric circles of equal area."""
     direction = Array3f(*on_sphere(numbers[0], numbers[1]))
     x, y = turn(numbers[2])
     distance = dr.sqrt(numbers[3]) * radius
@@ -37,12 +37,12 @@ def by_disc(numbers, radius, Array3f):
 
 
 def of_bundle(numbers, cell, side_bits: int, radius, Array3f):
-    """One of the 4^side_bits parallel lines of a bundle.
+    """Return one of the 4^side_bits parallel lines of a bundle.
 
     Args:
         numbers: of the bundle: two give its direction, two move its lattice by less than a step.
-        cell: UInt32, which line; cells follow a Z-shaped curve (Morton 1966), so that neighbours in number are neighbours
-            in space and packets of rays stay together.
+        cell: UInt32, number of the line; cells follow a Z-shaped curve (Morton 1966), so that neighbours in number are
+            neighbours in space and packets of rays stay together.
         side_bits: the lattice has 2^side_bits lines along each edge of the square about the disc.
     """
     direction = Array3f(*on_sphere(numbers[0], numbers[1]))
@@ -54,7 +54,7 @@ def of_bundle(numbers, cell, side_bits: int, radius, Array3f):
 
 
 def across(direction, u, v):
-    """The point (u, v) of the plane through the centre, in an orthonormal frame about a unit direction
+    """Return the point (u, v) of the plane through the centre, in an orthonormal frame about a unit direction
     (T. Duff and others, "Building an orthonormal basis, revisited", JCGT 6(1), 2017)."""
     x, y, z = direction
     sign = dr.select(z < 0, -1.0, 1.0)
@@ -66,7 +66,7 @@ def across(direction, u, v):
 
 
 def _every_other_bit(code):
-    """Bits 0, 2, 4, ... of a UInt32, side by side."""
+    """Return bits 0, 2, 4, ... of a UInt32, side by side."""
     code = code & 0x55555555
     for shift, mask in ((1, 0x33333333), (2, 0x0F0F0F0F), (4, 0x00FF00FF), (8, 0x0000FFFF)):
         code = (code | (code >> shift)) & mask

@@ -43,12 +43,12 @@ class Seed:
 
 
 class Purpose(IntEnum):
-    """What a stream is for."""
+    """The purposes of streams."""
 
     PHASE = 0  # the rounding offset of each patch
     NUMBERS = 1  # the randomisation of the numbers of lines
     MIXING = 2  # global multipath: the order of spans in a block, which is the key of a child
-    LATER_SEGMENTS = 3  # walks: the legs after the first, one child each
+    LATER_SEGMENTS = 3  # walks: the segments after the first, one child each
     HEMICUBE = 4  # the angle about the normal of each patch
     VISIBILITY = 5  # lines between two polygons
     RESIDUE = 6  # where lines begin that send the residue on

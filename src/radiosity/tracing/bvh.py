@@ -1,8 +1,8 @@
-"""The ray caster's tree over the faces of a scene.
+"""The BVH over the faces of a scene.
 
 It holds whole faces (a parallelogram as two triangles). Coordinates are moved to the scene's centre, a median, in double
-precision and scaled by a power of two before they become single, so that a scene's place and size, and what lies far away, do
-not matter.
+precision and scaled by a power of two before they become single. So a scene's place and size, and what lies far away, do not
+matter.
 """
 
 from dataclasses import dataclass
@@ -14,21 +14,21 @@ import numpy as np
 from ..device.backend import Device, entered, upload
 from ..scene.model import Scene
 
-# Scenes reach from -2^REACH to 2^REACH for the caster. Embree divides by twice a triangle's area seen along a line, and takes
-# no divisor below 1e-18: in a scene of size 1, hits of faces a billionth as long had wrong coordinates.
+# Scenes reach from -2^REACH to 2^REACH in the BVH. Embree divides by twice a triangle's area seen along a line, and takes no
+# divisor below 1e-18: in a scene of size 1, hits of faces a billionth as long had wrong coordinates.
 REACH = 20
 
-_trees: "WeakKeyDictionary[Scene, dict[str, Bvh]]" = WeakKeyDictionary()
+_built: "WeakKeyDictionary[Scene, dict[str, Bvh]]" = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
 class Bvh:
-    """Embree's (or OptiX's) tree over the faces of a scene.
+    """The BVH of Embree (or OptiX) over the faces of a scene.
 
     Attributes:
         scene: the Mitsuba scene, which finds first hits.
-        centre, scale: a point x in metres is (x - centre) * scale for the caster.
-        vertices: (n_vertices, 3) float32, as the caster has them.
+        centre, scale: a point x in metres is (x - centre) * scale in the BVH.
+        vertices: (n_vertices, 3) float32, in the BVH's coordinates.
     """
 
     scene: Any
@@ -37,13 +37,13 @@ class Bvh:
     vertices: np.ndarray
 
     def place(self, points: np.ndarray) -> np.ndarray:
-        """Points in metres, (..., 3), as the caster has them: float32."""
+        """Convert points in metres, (..., 3), to the BVH's coordinates, float32."""
         return ((points - self.centre) * self.scale).astype(np.float32)
 
 
 def bvh(scene: Scene, device: Device) -> Bvh:
-    """The scene's tree on a device; built once."""
-    known = _trees.setdefault(scene, {})
+    """Return the scene's BVH on a device; it is built once."""
+    known = _built.setdefault(scene, {})
     if device.name not in known:
         known[device.name] = _build(scene, device)
     return known[device.name]
@@ -60,13 +60,15 @@ def _build(scene: Scene, device: Device) -> Bvh:
         parameters["vertex_positions"] = upload(device.types.Float, vertices)
         parameters["faces"] = upload(device.types.UInt32, triangles.astype(np.uint32))
         parameters.update()
-        caster = mi.load_dict({"type": "scene", "embree_use_robust_intersections": True, "mesh": mesh})
-    return Bvh(caster, centre, scale, vertices)
+        mitsuba_scene = mi.load_dict({"type": "scene", "embree_use_robust_intersections": True, "mesh": mesh})
+    return Bvh(mitsuba_scene, centre, scale, vertices)
 
 
 def primitives(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Triangles of the caster, (n, 3), and the face of each. A parallelogram a b c d gives a b d and c d b, so that
-    coordinates (u, v) in the second half are (1 - u, 1 - v) in the face."""
+    """Return the triangles of the BVH, (n, 3), and the face of each.
+
+    A parallelogram a b c d gives a b d and c d b, so that coordinates (u, v) in the second half are (1 - u, 1 - v) in the face.
+    """
     quad = scene.is_quad
     face = np.repeat(np.arange(scene.n_faces), 1 + quad)
     second = np.concatenate([[False], face[1:] == face[:-1]])

@@ -31,13 +31,13 @@ class Hits:
 
 @turn()
 def first_hits(scene: Scene, origins: np.ndarray, directions: np.ndarray, device: str = "auto") -> Hits:
-    """The first face that each line meets; backs that let lines pass are passed.
+    """Return the first hit of each line; lines go on through backs that let them pass.
 
     Args:
         origins, directions: (m, 3) metres; directions need not be of unit length.
 
     Raises:
-        DeviceError: no usable back end.
+        DeviceError: there is no usable back end.
     """
     from ..device.backend import choose, upload
 

@@ -1,6 +1,6 @@
-"""The scene as kernels see it: records to go from a patch to a line, and from a hit to a patch.
+"""The records of a scene that kernels read: they lead from a patch to a line, and from a hit to a patch.
 
-A patch is found from a hit by arithmetic, so that finer patches neither grow the tree nor slow a line.
+A patch is found from a hit by arithmetic, so that finer patches neither grow the BVH nor slow a line.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from .bvh import Bvh, primitives
 from .faces import COLUMN_BITS, INVERTED, NORMAL_BITS, NORMAL_ONE, OFFSET, QUAD, SECOND_HALF, Faces
 from .ties import Ties
 
-INSET = 4 * OFFSET  # of a face's largest coordinate: and this far from its edges, so that the offset leads through no neighbour
+INSET = 4 * OFFSET  # of a face's largest coordinate: so far from its edges lines begin, and the offset leads through no neighbour
 
 # Counts the changes of where lines begin and what they meet: runs begun under another number have other bits, and do not go on.
 TRACING = 2
@@ -51,7 +51,7 @@ class Geometry:
         _ = self.face_records, self.patch_records
 
     def prepare_hits(self) -> None:
-        """Of that, what hits are read from."""
+        """Make the part of it that hits are read from."""
         _ = self.bvh, self.hit_records, self.faces.primitive_faces, self.faces.offsets
         if self.ties is not None:
             self.ties.prepare()
@@ -64,7 +64,7 @@ class Geometry:
 
     @cached_property
     def some_backs_pass(self) -> bool:
-        """Lines go on through some faces, from behind or from both sides."""
+        """True where lines go on through some faces, from behind or from both sides."""
         return bool(np.isin(self.scene.back, (Back.PASSES, Back.OPEN)).any())
 
     @cached_property
@@ -77,18 +77,18 @@ class Geometry:
 
     @cached_property
     def whole_faces(self) -> bool:
-        """No face is cut: a hit's coordinates are not asked for."""
+        """True where no face is cut, so that a hit's coordinates are not needed."""
         return bool((self.patches.columns == 1).all() and (self.patches.rows == 1).all())
 
     @cached_property
     def face_records(self):
-        """(n_faces * 16,) Float: origin, edges of a cell, normal, tangent and least offset; the face drawn in from its edges."""
+        """Origin, edges of a cell, normal, tangent and least offset of faces drawn in from their edges, (n_faces * 16,) Float."""
         scene = self.scene
         origin, first, second = self.faces.frames
         area = np.linalg.norm(np.cross(first, second), axis=1)
         lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, second - first)]
         inset = self.faces.offset(np.arange(scene.n_faces), self.faces.corners) * (INSET / OFFSET)
-        # of a triangle the same share about the centroid, of a parallelogram a margin on each side
+        # a triangle is drawn in by a share about its centroid, a parallelogram by a margin on each side
         share = np.minimum(3 * inset * np.max(lengths, axis=0) / area, 0.75)
         margins = [np.minimum(inset * lengths[1 - i] / area, 0.375) for i in (0, 1)]
         low_u, low_v = (np.where(scene.is_quad, m, share / 3) for m in margins)
@@ -104,8 +104,10 @@ class Geometry:
 
     @cached_property
     def hit_records(self):
-        """(n * 4,) UInt32: the front's first patch, cell counts and flags, and the normal in two words; of n primitives, or of n
-        faces where all are quads, which have two each."""
+        """First patch of the front, cell counts and flags, and the normal in two words, (n * 4,) UInt32.
+
+        There is one record for each of n primitives; where all faces are quads, one for each of n faces.
+        """
         _, face = primitives(self.scene)
         if self.all_quads:
             face = face[::2]
@@ -121,7 +123,7 @@ class Geometry:
 
     @cached_property
     def patch_records(self):
-        """(n_patches * 2,) UInt32: face (top bit: its back), and column, row and flags of the cell."""
+        """Face (top bit: its back), and column, row and flags of the cell of each patch, (n_patches * 2,) UInt32."""
         patches = self.patches
         record = np.empty((len(patches), 2), np.uint32)
         for part in pieces(len(patches)):

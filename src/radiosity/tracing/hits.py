@@ -1,4 +1,4 @@
-"""In a kernel: from a line to the patch it lands on."""
+"""Hits: functions, called in kernels, that lead from a line to the patch that it hits."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,7 +19,7 @@ __all__ = ["Hit", "first_hit", "local_line", "local_lines", "patch_of", "place_o
 
 @dataclass(frozen=True)
 class Hit:
-    """Where lines land: primitive, face coordinates, side, distance in the caster's units, and the hit record's first words."""
+    """Where lines end: primitive, face coordinates, side, distance in the BVH's units, and the hit record's first words."""
 
     valid: Any
     primitive: Any
@@ -31,12 +31,12 @@ class Hit:
     packed: Any
 
     def back(self, kind: Back):
-        """Mask: the line came from behind, and backs there are of this kind."""
+        """Return a mask of the lines that came from behind to a face whose back is of this kind."""
         return self.valid & ~self.front & ((self.packed >> BACK_BIT) == int(kind))
 
     @property
     def passes(self):
-        """Mask: the line goes on through the face."""
+        """Mask of the lines that go on through the face."""
         return self.back(Back.PASSES) | (self.valid & ((self.packed >> BACK_BIT) == int(Back.OPEN)))
 
 
@@ -74,7 +74,7 @@ def _fields(hit: Hit):
 
 
 def _hit(geometry: Geometry, origin, direction, coherent: bool, active):
-    """The nearest hit, and the face's normal, not normalised."""
+    """Return the nearest hit, and the face's normal, not normalised."""
     hit, normal, tied = _found(geometry, origin, direction, coherent, active)
     if geometry.ties is None:
         return hit, normal
@@ -83,7 +83,7 @@ def _hit(geometry: Geometry, origin, direction, coherent: bool, active):
 
 
 def both_sides(geometry: Geometry, origin, direction, coherent: bool, active) -> tuple[Hit, Hit]:
-    """The nearest hit, and what a line from the other side would hit there: another face, where two lie in one plane."""
+    """Return the nearest hit, and what a line from the other side would hit there: another face, where two lie in one plane."""
     hit, _, tied = _found(geometry, origin, direction, coherent, active)
     turned = replace(hit, front=~hit.front)
     if geometry.ties is None:
@@ -97,12 +97,12 @@ def _chosen(hit: Hit, met, fields) -> Hit:
 
 
 def _found(geometry: Geometry, origin, direction, coherent: bool, active):
-    """What the caster gives: the nearest hit, the face's normal, and whether the face shares its plane with others."""
+    """Return the nearest hit in the BVH, the face's normal, and whether the face shares its plane with others."""
     types = geometry.device.types
     Float, Int32 = types.Float, types.Int
-    mi, caster = classes(geometry.device), geometry.bvh.scene
+    mi, mitsuba_scene = classes(geometry.device), geometry.bvh.scene
     ray = mi.Ray3f(mi.Point3f(origin), mi.Vector3f(direction))
-    found = caster.ray_intersect_preliminary(ray, coherent=coherent, active=active)
+    found = mitsuba_scene.ray_intersect_preliminary(ray, coherent=coherent, active=active)
     valid = found.is_valid() & active
     place = found.prim_index >> 1 if geometry.all_quads else found.prim_index
     first, packed, low, high = dr.gather(types.Array4u, geometry.hit_records, place, valid)
@@ -117,7 +117,7 @@ def _found(geometry: Geometry, origin, direction, coherent: bool, active):
 
 
 def patch_of(geometry: Geometry, hit: Hit, absorbed: int, escaped: int):
-    """The patch that lines land on, as in `patches.cells.number`; or the code for an absorbing back or for none."""
+    """Return the patch that lines hit, as in `patches.cells.number`; or the code for an absorbing back or for no hit."""
     types = geometry.device.types
     Float, UInt32 = types.Float, types.UInt32
     if geometry.whole_faces:
@@ -138,7 +138,7 @@ def patch_of(geometry: Geometry, hit: Hit, absorbed: int, escaped: int):
 
 
 def _side(geometry: Geometry, hit: Hit, patch, cells, absorbed: int, escaped: int):
-    """From the patch in front to that on the side which lines land on."""
+    """Turn the patch in front into that on the side that lines hit, or into a code."""
     UInt32 = geometry.device.types.UInt32
     if geometry.some_backs_radiate:
         patch = dr.select(hit.back(Back.RADIATES), patch + cells, patch)
@@ -147,7 +147,7 @@ def _side(geometry: Geometry, hit: Hit, patch, cells, absorbed: int, escaped: in
 
 
 def place_of(geometry: Geometry, hit: Hit):
-    """Where on its face a line landed: the face (top bit: its back), and face coordinates in cells, as `departure.Frame` takes
+    """Return where lines hit: the face (top bit: its back), and face coordinates in cells, as `ray_generation.Frame` takes
     them."""
     types = geometry.device.types
     Float, UInt32 = types.Float, types.UInt32

@@ -1,4 +1,4 @@
-"""One lane a line, or a few lines: which patch fires in which lane, and which of its lines."""
+"""The lanes of launches: which patch fires in which lane, and which of its lines. A lane has one line, or a few."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,20 +10,20 @@ from ..device.backend import upload
 from ..sampling.numbers import strata
 
 CHUNK = 1 << 20  # lanes of one launch on a CPU: enough to keep all cores busy, and little memory to touch
-CORE_CHUNK = 1 << 18  # and for each core where they are many: launches wait for the last one (measured on 4 to 16 cores)
-CUDA_CHUNK = 1 << 24  # and on a GPU, which has many more lanes at work at a time, and memory for them
-PIECE = 1 << 18  # patches of a batch: what it holds of each need not be there of all patches at a time
+CORE_CHUNK = 1 << 18  # lanes for each core where cores are many: launches wait for the last one (measured on 4 to 16 cores)
+CUDA_CHUNK = 1 << 24  # lanes of one launch on a GPU, which runs many more lanes at a time, and has memory for them
+PIECE = 1 << 18  # patches of a batch: memory is needed for the patches of one batch, not for all of them at a time
 
 
 @dataclass(frozen=True)
 class Wavefront:
-    """What is fired before anything else is asked: fixed before the first line, so that the pieces it is fired in do not matter.
+    """Lines that are traced together. They are fixed before the first is fired, so the pieces they are fired in do not matter.
 
     Attributes:
         numbers: UInt32, patch numbers; None where they are those from ``low`` on.
-        low, size: the first of them, and how many they are.
-        total: lines of all.
-        counts: UInt32, those of each; None where bands keep what they follow from, see `FiringCounters.batches`.
+        low, size: the first patch number, and how many patches there are.
+        total: lines of all patches.
+        counts: UInt32, lines of each patch; None where bands keep what they follow from, see `FiringCounters.batches`.
     """
 
     numbers: Any
@@ -33,9 +33,15 @@ class Wavefront:
     counts: Any = None
 
     def batches(self, types, target_counts, fired, records, shifts: tuple[int, ...] = ()) -> "Iterator[Batch]":
-        """A piece at a time, of 2^shift lines a lane: the largest of ``shifts`` that leaves few lanes half empty, or else one.
-        For patch numbers ``owed`` gives what each owes in all, ``records`` two words, and the array ``fired`` what was fired
-        before; no other lines than the batches' are fired until the last one is made."""
+        """Yield a batch at a time, of 2^shift lines a lane: the largest of ``shifts`` that leaves few lanes half empty, else one
+        line.
+
+        Args:
+            target_counts: gives the target counts of patch numbers. fired: UInt32, the fired count of each patch.
+            records: gives two words for patch numbers.
+
+        The caller fires no other lines than the batches' until the last batch is made.
+        """
         low = dr.opaque(types.UInt32, self.low)
         for start in range(0, self.size, PIECE):
             width = min(PIECE, few_sizes(self.size - start))
@@ -57,20 +63,20 @@ class Wavefront:
 
 @dataclass(frozen=True)
 class Batch:
-    """Patches that fire in a launch or several: a piece of a sweep.
+    """Patches that fire in a launch or several: a piece of a wavefront.
 
     Attributes:
         numbers: UInt32, patch numbers.
-        counts: UInt32, lines each of them fires now, or none.
-        lanes: UInt32, in so many lanes.
-        begins: UInt64, lanes of all before it.
-        fired: UInt32, lines each has fired before.
-        entries: UInt32, in fours, all that a lane asks: the number; the offset that maps a lane to its first line of the
-            patch (fired + 1 - begins * each; 32-bit arithmetic goes round, and the sum is right); and the patch's
+        counts: UInt32, lines that each patch fires now; may be zero.
+        lanes: UInt32, lanes of each patch.
+        begins: UInt64, lanes of all patches before it.
+        fired: UInt32, lines that each patch has fired before.
+        entries: UInt32, four words a patch, all that a lane reads: the number; the offset that maps a lane to its first line of
+            the patch (fired + 1 - begins * each; 32-bit arithmetic wraps around, and the sum is right); and the patch's
             record, see `Geometry.patch_records`.
-        start: where the piece begins in its sweep, on the device.
-        total: lanes of all.
-        each: lines of a lane, the last one of a patch excepted, which takes what is left: 1, or UInt32, one kernel for all.
+        start: where the piece begins in its wavefront, on the device.
+        total: lanes of all patches.
+        each: lines of a lane; the last lane of a patch takes what is left. 1, or UInt32, which gives one kernel for all sizes.
     """
 
     numbers: Any
@@ -85,8 +91,14 @@ class Batch:
 
     @staticmethod
     def of(types, numbers, counts, fired, records, start=0, shift: int = 0, total: int | None = None) -> "Batch":
-        """From patches, one or more of them, how often they fire and did, and ``records`` that gives two words for numbers; of
-        2^shift lines a lane, the ``total`` of lanes where it is known."""
+        """Make a batch of one or more patches.
+
+        Args:
+            counts, fired: UInt32, lines that each patch fires now, and has fired before.
+            records: gives two words for patch numbers.
+            shift: a lane has 2^shift lines.
+            total: lanes of all patches, where it is known.
+        """
         if dr.width(numbers) == 1:
             both = paired(types, dr.arange(types.UInt32, 1))
             numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
@@ -104,11 +116,11 @@ class Batch:
 
     @property
     def several(self) -> bool:
-        """A lane has more than one line."""
+        """True where a lane has more than one line."""
         return not isinstance(self.each, int)
 
     def launches(self, types) -> "Iterator[Launch]":
-        """Launches of a bounded number of lanes."""
+        """Yield launches of a bounded number of lanes."""
         cuda = dr.backend_v(types.UInt32) is dr.JitBackend.CUDA
         most = CUDA_CHUNK if cuda else max(CHUNK, CORE_CHUNK * dr.thread_count())
         for start in range(0, self.total, most):
@@ -126,18 +138,22 @@ class Batch:
 
 
 def lanes_of(counts, shift):
-    """Of 2^shift lines, for so many."""
+    """Return the lanes of 2^shift lines that ``counts`` lines need."""
     whole = counts >> shift
     return whole + dr.select(whole << shift == counts, type(counts)(0), 1)
 
 
 def fullest(lines: int, lanes: dict[int, int]) -> tuple[int, int]:
-    """The largest of the powers of two whose lanes, this many, so many lines fill to two thirds; and its lanes."""
+    """Return the largest shift whose lanes are filled to two thirds or more, and its number of lanes.
+
+    Args:
+        lanes: the number of lanes for each shift, of 2^shift lines a lane.
+    """
     return max((shift, count) for shift, count in lanes.items() if 2 * count << shift <= 3 * lines)
 
 
 def paired(types, rows):
-    """Indices; a single one is repeated. Arrays of one entry would compile kernels of their own."""
+    """Return the indices; a single one is repeated, since arrays of one entry would compile kernels of their own."""
     if dr.width(rows) != 1:
         return rows
     return dr.gather(types.UInt32, rows, dr.zeros(types.UInt32, 2) + dr.opaque(types.UInt32, 0))
@@ -145,8 +161,11 @@ def paired(types, rows):
 
 @dataclass(frozen=True)
 class Launch:
-    """Lanes of one launch: the rank of each lane's patch in its batch. A single lane has one beside it that is not real:
-    ``lanes`` is less than ``width`` then, and whatever counts must ask `real`."""
+    """The lanes of one launch: the rank of each lane's patch in its batch.
+
+    A single lane has a second one beside it that holds no line: ``lanes`` is then less than ``width``, and code that counts
+    must ask `real`.
+    """
 
     batch: Batch
     rank: Any
@@ -156,12 +175,15 @@ class Launch:
     width: int
 
     def real(self, types):
-        """Mask of the lanes that hold lines."""
+        """Return a mask of the lanes that hold lines."""
         return types.UInt64(dr.arange(types.UInt32, self.width)) + self.first < self.end
 
     def read(self, types, boxes: "Boxes | None" = None):
-        """In a kernel of this width: patch number, index (from 1) of the first line, and patch record of each lane; ``boxes`` for
-        lanes of one line."""
+        """Return patch number, index (from 1) of the first line, and patch record of each lane; called in a kernel of this width.
+
+        Args:
+            boxes: an order of lines for coherent firing; only where lanes have one line.
+        """
         batch = self.batch
         number, ahead, face, place = dr.gather(types.Array4u, batch.entries, self.rank)
         index = (dr.arange(types.UInt32, self.width) + types.UInt32(self.first)) * batch.each + ahead
@@ -172,11 +194,11 @@ class Launch:
         return number, base + by_boxes(types, base, index - base, count, boxes), (face, place)
 
     def mask(self, types, *, always: bool = False):
-        """In a kernel: which lanes are real; True where all are, unless ``always``."""
+        """Return which lanes hold lines, or True where all do, unless ``always``; called in a kernel."""
         return self.real(types) if always or self.lanes < self.width else True
 
     def lines(self, types, first):
-        """In a kernel: how many each lane fires, from the index of the first."""
+        """Return how many lines each lane fires, from the index of its first line; called in a kernel."""
         fired, count = (dr.gather(types.UInt32, column, self.rank) for column in (self.batch.fired, self.batch.counts))
         lines = dr.minimum(fired + count + 1 - first, self.batch.each)
         return dr.select(self.mask(types), lines, 0)
@@ -184,16 +206,21 @@ class Launch:
 
 @dataclass(frozen=True)
 class Boxes:
-    """Of like directions, see `sampling.numbers.strata`: how many, and UInt32, how they are walked."""
+    """Boxes of like directions, see `sampling.numbers.strata`.
+
+    Attributes:
+        count: how many there are.
+        walk: UInt32, the order in which lines take them.
+    """
 
     count: int
     walk: Any
 
 
 def by_boxes(types, base, within, count, boxes: Boxes):
-    """Which of a patch's ``count`` lines from ``base`` on is fired as the ``within``-th, when they go box by box.
+    """Return which of a patch's ``count`` lines from ``base`` on is fired as the ``within``-th, when lines go box by box.
 
-    As many whole cycles of the boxes as fit are permuted; the rest, less than a cycle, keeps its order.
+    As many whole cycles of the boxes as fit are permuted. The rest, less than a cycle, keeps its order.
     """
     n = boxes.count
     cycles = count // n
@@ -205,7 +232,7 @@ def by_boxes(types, base, within, count, boxes: Boxes):
 
 
 def _quotient(types, dividend, divisor):
-    """Of 32-bit numbers, exact while it is below 2^20: a single precision guess that is one off at most."""
+    """Return a quotient of 32-bit numbers, exact while it is below 2^20: a single precision guess, at most one off, is mended."""
     guess = types.UInt32(types.Float(dividend) / types.Float(divisor))
     rest = types.Int(dividend - guess * divisor)
     guess = dr.select(rest < 0, guess - 1, guess)
@@ -213,13 +240,13 @@ def _quotient(types, dividend, divisor):
 
 
 def few_sizes(size: int) -> int:
-    """No less, of four sizes an octave. Dr.Jit keeps the memory that is freed, and gives it to arrays of the same size alone."""
+    """Round a size up to one of four sizes an octave, since Dr.Jit gives freed memory to arrays of the same size alone."""
     step = 1 << max((size - 1).bit_length() - 3, 1)
     return -(-size // step) * step
 
 
 def sums(types, *columns) -> tuple[int, ...]:
-    """Of 32-bit numbers, which may take more, a column each. (``dr.sum`` would store them widened first.)"""
+    """Return the sum of each column of 32-bit numbers, in 64 bits. (``dr.sum`` would store the columns widened first.)"""
     total = dr.opaque(types.UInt64, 0, max(len(columns), 2))
     for i, column in enumerate(columns):
         dr.scatter_add(total, types.UInt64(column), dr.full(types.UInt32, i, dr.width(column)), mode=dr.ReduceMode.Expand)
@@ -228,7 +255,7 @@ def sums(types, *columns) -> tuple[int, ...]:
 
 
 def boxes_for(types, counts) -> Boxes | None:
-    """For coherent firing: the boxes that suit the patch of a typical line; None where none would pay."""
+    """Return the boxes of coherent firing that suit the patch of a typical line; None where boxes would not pay."""
     wide = types.Float64(counts)
     squares, total = dr.sum(wide * wide), dr.sum(wide)
     dr.eval(squares, total)

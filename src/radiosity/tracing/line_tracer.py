@@ -1,4 +1,4 @@
-"""From a source row and an index to the slot where the line lands: the one place that knows lines of patches and of lights."""
+"""`LineTracer` leads from a source row and an index to the slot of the line's hit, for lines of patches and of lights."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -26,15 +26,16 @@ LIGHTS = 1 << 30  # from here on the first word of a row's record is no face: a 
 class LineTracer:
     """Lines of source rows: patches, then lights without area. It counts nothing.
 
-    Row i of replicate r has number r * n + i in every array: replicates go through the same kernels as extra rows. Lines land in
-    slots: slot r * n + i is patch i of replicate r; after ``total`` come two slots a replicate, for lines that escaped, and for
-    lines lost on absorbing backs. The k-th line of a row is a function of (seed, replicate, row, k) alone (contract 2).
+    Row i of replicate r has number r * n + i in every array: replicates go through the same kernels as extra rows. Every line
+    ends in a slot: slot r * n + i is patch i of replicate r. After ``total`` come two slots a replicate: one for lines that
+    escaped, one for lines absorbed by backs. The k-th line of a row is a function of (seed, replicate, row, k) alone
+    (contract 2).
 
     Attributes:
         geometry: the scene on a device.
         numbers: the points of the unit cube, their tables on the device.
-        randomisation: UInt32, eight words a replicate that move them.
-        by_patch: each row moves them by its own shift, too.
+        randomisation: UInt32, eight words a replicate that move the points.
+        by_patch: each row moves the points by a shift of its own, too.
         seed, replicates: as in a run.
         lights: rows after those of the patches, or None.
     """
@@ -56,10 +57,10 @@ class LineTracer:
         replicates: int,
         lights: AbstractLights | None = None,
     ) -> "LineTracer":
-        """Of the choices of a `Method`: its numbers and their randomisation.
+        """Make a tracer for a `Method`'s numbers and their randomisation.
 
         Raises:
-            MethodError: more rows than 32 bits count.
+            MethodError: there are more rows than 32 bits count.
         """
         points, types = ready(numbers, geometry.device.types), geometry.device.types
         drawn = [points.randomisation(stream(seed, r, Purpose.NUMBERS)) for r in range(replicates)]
@@ -77,7 +78,7 @@ class LineTracer:
         _ = self.n_opaque, self._magic, self._own_lines, self._records
 
     def moved_by(self, randomisation) -> "LineTracer":
-        """The same lines' patches with other numbers: eight words a replicate."""
+        """Return a tracer of the same rows with other numbers: ``randomisation`` has eight words a replicate."""
         return replace(self, randomisation=randomisation)
 
     @property
@@ -90,22 +91,22 @@ class LineTracer:
 
     @property
     def n(self) -> int:
-        """Rows of a replicate."""
+        """The number of rows of a replicate."""
         return self.n_patches + (0 if self.lights is None else len(self.lights.power))
 
     @property
     def total(self) -> int:
-        """Rows of all replicates."""
+        """The number of rows of all replicates."""
         return self.n * self.replicates
 
     @property
     def slots(self) -> int:
-        """Places where lines land."""
+        """The number of slots in which lines end."""
         return self.total + 2 * self.replicates
 
     @cached_property
     def n_opaque(self):
-        """UInt32, ``n`` on the device."""
+        """``n`` on the device, UInt32."""
         return dr.opaque(self.types.UInt32, self.n)
 
     @cached_property
@@ -118,7 +119,7 @@ class LineTracer:
 
     @cached_property
     def _records(self):
-        """(n * 2,) UInt32, see `Geometry.patch_records`; of lights their number, and 0."""
+        """Records of rows, (n * 2,) UInt32: of patches see `Geometry.patch_records`; of lights their number, and 0."""
         if self.lights is None:
             return self.geometry.patch_records
         lights = np.zeros((len(self.lights.power), 2), np.uint32)
@@ -130,23 +131,23 @@ class LineTracer:
     # ---- rows, in kernels ------------------------------------------------------------------------------------------
 
     def record(self, number):
-        """Two words of a row's number: face and place, see `Geometry.patch_records`."""
+        """Return the two words of a row from its number: face and place, see `Geometry.patch_records`."""
         return dr.gather(self.types.Array2u, self._records, number - self.replicate(number) * self.n_opaque)
 
     def replicate(self, number):
-        """Of a row's number: its quotient by n, from a product by the reciprocal that is one short at most."""
+        """Return the replicate of a row's number: its quotient by n. A product by the reciprocal gives it, at most one short."""
         quotient = dr.mul_hi(number, self._magic)
         one = self.types.UInt32(1)
         return quotient + dr.select(number - quotient * self.n_opaque >= self.n_opaque, one, self.types.UInt32(0))
 
     def replicate_or_none(self, number):
-        """The same, where one replicate needs no division."""
+        """Return the replicate of a row's number; 0, without a division, where there is one replicate."""
         return self.types.UInt32(0) if self.replicates == 1 else self.replicate(number)
 
     # ---- lines, in kernels -----------------------------------------------------------------------------------------
 
     def leave(self, record) -> Callable[[Any], tuple[Any, Any]]:
-        """Of rows: a function from numbers to the origin and direction of a line, made before a loop and called in it."""
+        """Return a function from numbers to the origin and direction of each row's line; made before a loop, called in it."""
         if self.lights is None:
             return local_lines(self.geometry, record)
         lights, UInt32 = self.lights, self.types.UInt32
@@ -163,31 +164,31 @@ class LineTracer:
         return line
 
     def points(self, number, index, replicate, record, bits: int):
-        """The numbers of the ``index``-th line (from 1) of each row, whose record it is."""
+        """Return the numbers of the ``index``-th line (from 1) of each row, from the row's number and record."""
         row, randomisation = self._stream(number, replicate, record)
         return self.numbers.points(index, row, randomisation(index), bits)
 
     def points_in_turn(self, first, number, replicate, record, bits: int, turns: int):
-        """Those of a few lines of each row from the ``first``-th on, see `AbstractNumbers.in_turn`."""
+        """Return the numbers of ``turns`` lines of each row from the ``first``-th on, see `AbstractNumbers.in_turn`."""
         return self.numbers.in_turn(first, *self._stream(number, replicate, record), bits, turns)
 
     def trace(self, number, index, record, bits: int):
-        """The slot where the ``index``-th line (from 1) of each row lands."""
+        """Return the slot in which the ``index``-th line (from 1) of each row ends."""
         replicate = self.replicate_or_none(number)
         return self.land_in(self.leave(record)(self.points(number, index, replicate, record, bits)), replicate)
 
     def land_in(self, line, replicate, coherent: bool = False, active: Any = True):
-        """The slot where lines land, from their origins and directions."""
+        """Return the slot in which lines end, from their origins and directions."""
         return self.slot(first_hit(self.geometry, *line, coherent=coherent, active=active), replicate)
 
     def slot(self, hit, replicate):
-        """The slot of lines of a replicate, from where they land."""
-        landed, UInt32 = patch_of(self.geometry, hit, LOST, ESCAPED), self.types.UInt32
-        missed = dr.select(landed == ESCAPED, UInt32(self.total), UInt32(self.total + self.replicates)) + replicate
-        return dr.select(landed >= LOST, missed, landed + replicate * self.n_opaque)
+        """Return the slot of lines of a replicate, from their hits."""
+        patch, UInt32 = patch_of(self.geometry, hit, LOST, ESCAPED), self.types.UInt32
+        missed = dr.select(patch == ESCAPED, UInt32(self.total), UInt32(self.total + self.replicates)) + replicate
+        return dr.select(patch >= LOST, missed, patch + replicate * self.n_opaque)
 
     def _stream(self, number, replicate, record):
-        """Row, and its randomisation as a function of the index: its own for its first lines, then that of all rows."""
+        """Return the row, and a function from the index to its randomisation: its own for its first lines, then that of all."""
         types = self.types
         row = number if self.replicates == 1 else number - replicate * self.n_opaque
         halves = [dr.gather(types.Array4u, self.randomisation, replicate * 2 + half) for half in (0, 1)]
@@ -199,6 +200,8 @@ class LineTracer:
 
 
 def own_lines(n: int) -> int:
-    """How many lines of a row take its own randomisation: a power of two between twice and four times as many as there are rows.
-    With more lines than that, one for all is as good for means over surfaces, and better for patches."""
+    """Return how many lines of a row take its own randomisation: a power of two between 2 n and 4 n, for n rows.
+
+    Beyond that, one randomisation for all rows is as good for means over surfaces, and better for patches.
+    """
     return min(1 << (4 * n).bit_length() - 1, LIMIT)

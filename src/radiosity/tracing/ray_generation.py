@@ -1,4 +1,4 @@
-"""In a kernel: how lines leave patches and faces."""
+"""Ray generation: functions, called in kernels, that make the first ray of a line from a patch or face."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,31 +15,35 @@ COLUMN, ROW = 0xF1554989, 0xEB99116D  # steps of a place, see `place_number`; od
 
 
 def local_line(geometry: Geometry, record, numbers):
-    """Origin and direction (three floats each, the caster's coordinates) of a local line, from its patch's record and four
-    numbers: two of direction, two of position."""
+    """Return origin and direction (three floats each, in the BVH's coordinates) of a local line.
+
+    Args:
+        record: of its patch. numbers: four, two of direction and two of position.
+    """
     return local_lines(geometry, record)(numbers)
 
 
 def local_lines(geometry: Geometry, record):
-    """As `local_line`, for lines of one patch that are fired in a loop: made before it, and called in it with the numbers."""
+    """Return a function from numbers to local lines, see `local_line`; made before a loop over lines of a patch, called in it."""
     face, place = record
     frame = Frame.of(geometry, face)
     return lambda numbers: frame.leave(*position(geometry, place, numbers[2], numbers[3]), numbers)
 
 
 def place_number(record):
-    """UInt32 of a patch, from its record: face + column * `COLUMN` + row * `ROW`, modulo 2^32, and a bit for inverted triangles.
+    """Return face + column * `COLUMN` + row * `ROW`, modulo 2^32, and a bit for inverted triangles: UInt32, from patch records.
 
-    It is the place in the Kronecker sequence that moves the patch's numbers (`AbstractNumbers.of_patch`). The steps were searched
-    for among 60 000 pairs of random ones: no wave over the square of directions of up to 12 periods comes to rest, or nearly,
-    along the columns and rows of a face. Patch numbers have no such steps: with 34 columns a face's mean errs 1.5 times as much.
+    It is the patch's place in the Kronecker sequence that moves its numbers (`AbstractNumbers.of_patch`). The steps are the best
+    of 60 000 random pairs: no wave of up to 12 periods over the square of directions is constant, or nearly so, along the
+    columns and rows of a face. Patch numbers have no such steps: with 34 columns, the error of a face's mean is 1.5 times as
+    large.
     """
     face, place = record
     return face + (place & MASK) * COLUMN + ((place >> COLUMN_BITS) & MASK) * ROW + (place & INVERTED)
 
 
 def position(geometry: Geometry, place, x, y):
-    """Face coordinates, in cells, of a uniform point of a patch."""
+    """Return face coordinates, in cells, of a uniform point of a patch."""
     Float = geometry.device.types.Float
     s, t = x, y
     if not geometry.all_quads:
@@ -56,8 +60,11 @@ def position(geometry: Geometry, place, x, y):
 
 @dataclass(frozen=True)
 class Frame:
-    """Of a face on the side that lines leave from, see `Geometry.face_records`: origin, edges of a cell, tangents, normal, which
-    points away from the side where ``side`` is -1, and the least distance of the lines' origins from the face."""
+    """A face and the side that lines leave from, see `Geometry.face_records`.
+
+    It has the origin, the edges of a cell, the tangents, and the normal, which points away from the side where ``side`` is -1.
+    ``offset`` is the least distance of the lines' origins from the face.
+    """
 
     origin: Any
     first: Any
@@ -70,7 +77,7 @@ class Frame:
 
     @staticmethod
     def of(geometry: Geometry, face) -> "Frame":
-        """Of a face number, its top bit the back."""
+        """Make the frame of a face number, whose top bit is the back."""
         types = geometry.device.types
         side = dr.select(face < BACK, types.Float(1), types.Float(-1))
         block = dr.gather(types.Array44f, geometry.face_records, face & (BACK - 1))  # one read of 16 words, not four of four
@@ -79,14 +86,14 @@ class Frame:
         return Frame(origin, first, second, tangent, dr.cross(normal, tangent), normal, side, words[15])
 
     def leave(self, s, t, numbers):
-        """Origin and cosine distributed direction of a line from a point of the face, coordinates in cells."""
+        """Return origin and cosine distributed direction of a line from a point of the face, whose coordinates are in cells."""
         dx, dy, dz = hemisphere(numbers[0], numbers[1])
         direction = self.tangent * dx + self.bitangent * dy + self.normal * (dz * self.side)
         return before(self.origin + self.first * s + self.second * t, self.normal * self.side, self.offset), direction
 
 
 def before(point, normal, least):
-    """Where lines go on in front of a point of a face: some ulps of the numbers there away, so that no rounding leads back.
+    """Return where lines go on in front of a point of a face: some ulps of the coordinates away, so that no rounding leads back.
 
     Args:
         normal: of unit length, towards the side where lines go on. least: the face's plane offset.

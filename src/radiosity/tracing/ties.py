@@ -1,9 +1,9 @@
-"""Which of the faces in one plane a line meets.
+"""Ties: which of several faces in one plane a line meets.
 
-Of faces within 4 ulps of each other where a line meets them (`scene.coplanar`), the caster gives any one. Here a line meets first
-one whose radiating side it comes to, then one whose back absorbs, and last one that lets it pass; of several the smallest,
-as what lies on the others, and of equal ones the first in the scene's order. Each is tried with the line itself: what is met is
-a function of the line and the faces, not of the packet in which the line was traced, and not of how the faces are cut.
+Where faces lie within 4 ulps of each other (`scene.coplanar`), the BVH gives any one of them. Here a line meets first a face
+whose radiating side it comes to, then one whose back absorbs, and last one that lets it pass. Of several it meets the
+smallest, which lies on the others; of equal ones the first in the scene's order. Each face is tried with the line itself. So
+what is met is a function of the line and the faces, not of the packet in which the line was traced, nor of how faces are cut.
 """
 
 from dataclasses import dataclass
@@ -21,15 +21,15 @@ from ..scene.precision import EPSILON
 from .faces import Faces
 
 WORDS = 16  # of a face's record: origin, edges, normal in units of hit records, largest coordinate
-KIND_BIT = 28  # of a rank: what a line meets first is lowest
+KIND_BIT = 28  # of a rank: the face that a line meets first has the lowest rank
 NONE = 0xFFFFFFFF
 QUAD = 1 << 28  # of a face's flags, as in `geometry`
-FEW = 2  # faces in a cell, about: a face is cut into cells, each with those that reach it
-EACH_CELLS = (8, 4, 2, 1)  # along each edge of every face on which others lie, the first that makes few enough cells in all:
-AT_LEAST_ALL = 1 << 18
+FEW = 2  # faces in a cell, about: a face is cut into cells, each with the faces that reach it
+EACH_CELLS = (8, 4, 2, 1)  # least number along each edge of a face on which others lie: the first that needs, in all, at most
+AT_LEAST_ALL = 1 << 18  # cells
 MOST_CELLS = 256  # along each edge
 ALIKE = 1e-5  # areas that differ by less are equal
-BESIDE = 1 / 64  # of a cell, and so much of a face's edge, that faces reach further into others' cells
+BESIDE = 1 / 64  # of a cell and of a face's edge: faces reach this much further into others' cells
 CERTAIN = 4 * EPSILON  # of the line's length: a line this little beside a face meets it
 LEAST = 64  # entries of a table
 
@@ -42,25 +42,25 @@ class Ties:
 
     @cached_property
     def copied(self) -> np.ndarray:
-        """(n_faces,) int64: the face that stands for each, see `scene.coplanar`."""
+        """The face that stands for each face, (n_faces,) int64, see `scene.coplanar`."""
         return copied(self.table.scene)
 
     @cached_property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
-        """Faces that stand for themselves and lie in one plane."""
+        """Pairs of faces that stand for themselves and lie in one plane."""
         every = contacts(self.table.scene)
         rows = every.coplanar & (self.copied[every.one] == every.one) & (self.copied[every.two] == every.two)
         return every.one[rows], every.two[rows]
 
     @cached_property
     def standing(self) -> np.ndarray:
-        """(k,) int64 faces that stand for themselves or for copies, and lie on others."""
+        """Faces that stand for themselves or for copies, and lie on others, (k,) int64."""
         copies = np.flatnonzero(self.copied != np.arange(self.table.scene.n_faces))
         return np.unique(np.concatenate([*self.pairs, self.copied[copies]]))
 
     @cached_property
     def behind(self) -> np.ndarray:
-        """(n_faces,) int64: of a face that stands for copies the one of them that a line from behind meets first; else itself."""
+        """The copy of each face that a line from behind meets first; the face itself where it has none: (n_faces,) int64."""
         order = np.argsort(_kinds(self.table.scene.back), kind="stable")
         best = np.arange(len(order))
         copies, first = np.unique(self.copied[order], return_index=True)
@@ -69,13 +69,13 @@ class Ties:
 
     @cached_property
     def faces(self) -> np.ndarray:
-        """(m,) int64 faces to be met where several lie in one plane, in the order in which lines meet those that show alike."""
+        """Faces that lines may meet where several lie in one plane, (m,) int64; of faces of one kind, lines meet the first."""
         faces = np.unique(np.concatenate([self.standing, self.behind[self.standing]]))
         return faces[np.argsort(np.round(np.log(self.table.scene.area[faces]) / ALIKE), kind="stable")]
 
     @cached_property
     def flagged(self) -> np.ndarray:
-        """(n_faces,) bool: those that lie on others."""
+        """Which faces lie on others, (n_faces,) bool."""
         return np.isin(self.copied, self.standing)
 
     def prepare(self) -> None:
@@ -84,8 +84,11 @@ class Ties:
 
     @cached_property
     def tables(self) -> tuple[Any, Any, Any, Any, Any]:
-        """Of each face where its cells begin and how many there are along an edge; where a cell's entries begin; ranks of faces
-        in cells; and of each rank a record and four words: first patch, flags, and the caster's first triangle."""
+        """Five tables on the device: cells of faces, where cells' entries begin, ranks of faces in cells, records, words.
+
+        A face's entry says where its cells begin and how many there are along an edge. A rank has a record and four words:
+        first patch, flags, the BVH's first triangle, and 0.
+        """
         table = self.table
         types, scene, patches = table.device.types, table.scene, table.patches
         along, begins, entries = self._cells()
@@ -109,7 +112,7 @@ class Ties:
         )
 
     def _cells(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of the standing faces: cells along an edge; (sum of squares + 1,) where each cell's entries begin; ranks of faces."""
+        """Return cells along an edge of standing faces; (sum of squares + 1,) where each cell's entries begin; ranks of faces."""
         one, two = self.pairs
         at = np.searchsorted(self.standing, np.concatenate([one, two, self.standing]))
         other = np.concatenate([two, one, self.standing])
@@ -137,7 +140,7 @@ class Ties:
         return along, np.concatenate([[0], np.cumsum(counts)]), entries[order]
 
     def _places(self, at: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(m, 2) each: the box of other faces in the coordinates of standing ones."""
+        """Return the box of other faces in the coordinates of standing ones: two corners, (m, 2) each."""
         origin, first, second = (part[self.standing[at]] for part in self.table.frames)
         corners = self.table.corners[other] - origin[:, None]
         aa, ab, bb = (np.einsum("mi,mi->m", p, q) for p, q in ((first, first), (first, second), (second, second)))
@@ -147,14 +150,14 @@ class Ties:
         return uv.min(axis=1), uv.max(axis=1)
 
     def meet(self, hit, flagged, origin, direction, *, beyond: bool = False) -> list[tuple]:
-        """In a kernel: what lines meet where the caster has found a face that shares its plane.
+        """Return what lines meet where the first hit is a face that shares its plane; called in a kernel.
 
         Args:
-            hit: a `hits.Hit`, of whose faces those ``flagged`` share a plane.
-            beyond: also what a line that came from the other side would meet there.
+            hit: a `hits.Hit`; the faces that are ``flagged`` share a plane.
+            beyond: also return what a line that came from the other side would meet there.
 
         Returns:
-            Of one or two sides: whether a face was found, the fields of its landing, and its normal, as in `lines._hit`.
+            For one or two sides: whether a face was found, the fields of its hit, and its normal, as in `hits._hit`.
         """
         types = self.table.device.types
         UInt32 = types.UInt32
@@ -190,8 +193,11 @@ class Ties:
         return found, (found, primitive, u, v, ~front if turned else front, distance, first, packed), normal
 
     def _tried(self, rank, origin, direction, active) -> tuple:
-        """The line against the plane of a face (T. Möller, B. Trumbore, JGT 2(1), 1997): whether it goes through the face, from
-        the front, the face's words, coordinates, distance and normal."""
+        """Intersect lines with the planes of faces (T. Möller, B. Trumbore, JGT 2(1), 1997).
+
+        Returns:
+            Whether the line goes through the face, whether from the front, and the face's words, coordinates, distance, normal.
+        """
         types = self.table.device.types
         *_, records, words = self.tables
         block = dr.gather(types.Array44f, records, rank, active)
@@ -211,5 +217,5 @@ class Ties:
 
 
 def _kinds(back: np.ndarray) -> np.ndarray:
-    """Which backs are met first: those that radiate, absorb, let pass."""
+    """Return the rank of backs, lowest first: those that radiate, that absorb, that let lines pass."""
     return np.select([back == Back.RADIATES, back == Back.ABSORBS], [0, 1], 2)

@@ -1,9 +1,10 @@
-"""How much of one polygon sees another: lines between points of both, for pairs of patches or of larger or smaller elements.
+"""Visibility: the share of one polygon that sees another, from lines between points of both.
 
-A pair's share is the sum of the kernel cos cos' / r² over the pairs of points that see each other, over the sum of all of them.
-So it tends, with more rays, to the true form factor over that without obstacles, and it is one where nothing stands between. The
-plain mean of visible lines (P. Hanrahan, D. Salzman, L. Aupperle, "A rapid hierarchical radiosity algorithm", SIGGRAPH 1991)
-differs from it where the kernel varies over the pair.
+A pair's share is the sum of the kernel cos cos' / r² over the pairs of points that see each other, divided by the sum over all
+of them. So it tends, with more rays, to the true form factor divided by that without obstacles, and it is one where nothing
+stands between. The plain mean of visible lines (P. Hanrahan, D. Salzman, L. Aupperle, "A rapid hierarchical radiosity
+algorithm", SIGGRAPH 1991) differs from it where the kernel varies over the pair. Polygons are patches, or larger or smaller
+elements.
 """
 
 from dataclasses import dataclass
@@ -41,23 +42,23 @@ class Polygons:
 
     @staticmethod
     def of(patches: Patches, numbers: np.ndarray | slice = slice(None)) -> "Polygons":
-        """Patches by their numbers; all of them by default."""
+        """Return patches by their numbers; all of them by default."""
         return Polygons(patches.corners[numbers], patches.face[numbers])
 
     def __len__(self) -> int:
         return len(self.face)
 
     def take(self, rows) -> "Polygons":
-        """Some of them (indices, mask or slice)."""
+        """Return some of the polygons (indices, mask or slice)."""
         return Polygons(self.corners[rows], self.face[rows])
 
 
 @turn()
 def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int = 16, seed: int = 0) -> np.ndarray:
-    """(m,) float64 in [0, 1]: share of what goes from ``one`` to ``other`` that meets nothing on its way, for m pairs.
+    """Return the share of what goes from ``one`` to ``other`` that meets nothing on its way: (m,) float64 in [0, 1], for m pairs.
 
-    A function of the two polygons, rays and seed, whatever else is asked in the same call; and the same both ways, unless
-    backs let lines pass: then only from ``one`` to ``other``. Zero where the two do not face each other at any pair of points.
+    A share is a function of the two polygons, rays and seed alone. It is the same both ways, unless backs let lines pass: then
+    it holds from ``one`` to ``other`` only. It is zero where the two do not face each other at any pair of points.
 
     Args:
         rays: points of each pair, of the Sobol' sequence in four dimensions with a digital shift for each pair; powers of two
@@ -121,7 +122,7 @@ def _chunk(geometry: Geometry, one: Polygons, other: Polygons, keys: np.ndarray,
 
 
 def _point(types, records, pair, is_triangle, x, y):
-    """Point of a polygon, its unit normal, and how far in front of it lines begin."""
+    """Return a point of a polygon, its unit normal, and how far in front of it lines begin."""
     words = [dr.gather(types.Float, records, pair * WORDS + i) for i in range(WORDS)]
     origin, first, second = (types.Array3f(*words[at : at + 3]) for at in (0, 3, 6))
     a, b = triangle(x, y)
@@ -130,7 +131,7 @@ def _point(types, records, pair, is_triangle, x, y):
 
 
 def _records(geometry: Geometry, polygons: Polygons) -> np.ndarray:
-    """(m, WORDS) float32 in the caster's coordinates, drawn in from the edges as whole faces are (`Geometry.face_records`)."""
+    """Return (m, WORDS) float32 in the BVH's coordinates; polygons are drawn in as whole faces are (`Geometry.face_records`)."""
     bvh = geometry.bvh
     points = (polygons.corners - bvh.centre) * bvh.scale
     offset = geometry.faces.offset(polygons.face, points)
@@ -148,12 +149,12 @@ def _records(geometry: Geometry, polygons: Polygons) -> np.ndarray:
 
 
 def _is_triangle(polygons: Polygons) -> np.ndarray:
-    """(m,) uint32, 1 or 0."""
+    """Return 1 for triangles and 0 for parallelograms, (m,) uint32."""
     return (polygons.corners[:, 2] == polygons.corners[:, 3]).all(axis=1).astype(np.uint32)
 
 
 def _keys(corners: np.ndarray) -> np.ndarray:
-    """(m,) uint64, a hash of the coordinates."""
+    """Return a hash of the coordinates, (m,) uint64."""
     bits = np.ascontiguousarray(corners + 0.0).reshape(len(corners), 12).view(np.uint64)
     key = np.zeros(len(bits), np.uint64)
     for column in bits.T:
@@ -162,7 +163,7 @@ def _keys(corners: np.ndarray) -> np.ndarray:
 
 
 def _mixed(x: np.ndarray) -> np.ndarray:
-    """A bijection of 64-bit words (S. Vigna's SplitMix64)."""
+    """Map 64-bit words by a bijection (S. Vigna's SplitMix64)."""
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return x ^ (x >> np.uint64(31))

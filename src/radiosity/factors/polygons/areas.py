@@ -1,4 +1,4 @@
-"""A_i F_ij of polygons far apart, by Gauss rules of degree five over both areas.
+"""Exchange areas A_i F_ij of polygons far apart, by Gauss rules of degree five over both areas.
 
 Their error falls with the sixth power of size over distance, while integrals along rims lose digits with its fourth power.
 """
@@ -16,7 +16,7 @@ TRIANGLE_WEIGHTS = np.array([9 / 40, *np.repeat(_SHARES, 3)])
 
 
 def over_both(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """(m,) A_i F_ij in units of length squared; arguments as in `contour.around`."""
+    """Return A_i F_ij, (m,), in units of length squared; arguments as in `contour.around`."""
     (points, weights), (ends, other_weights) = (_rule(p) for p in (one, other))
     normal, facing = (n / np.linalg.norm(n, axis=1, keepdims=True) for n in (normal_of(one), normal_of(other)))
     total = np.zeros(len(one))
@@ -29,7 +29,7 @@ def over_both(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def _rule(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points, (m, p, 3), and weights, (m, p), that sum to the area: of the triangles that a polygon's first corner spans."""
+    """Return points, (m, p, 3), and weights, (m, p), which sum to the area, over triangles from each polygon's first corner."""
     points, weights = [], []
     for k in range(1, corners.shape[1] - 1):
         triangle = corners[:, [0, k, k + 1]]

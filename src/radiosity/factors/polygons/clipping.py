@@ -2,22 +2,22 @@
 
 import numpy as np
 
-ROUNDING = 32 * np.finfo(np.float64).eps  # of the largest coordinate: nearer than this is in the plane
-FLAT = 1e-11  # of the largest distance: likewise
+ROUNDING = 32 * np.finfo(np.float64).eps  # of the largest coordinate: points nearer than this lie in the plane
+FLAT = 1e-11  # of the largest distance: points nearer than this lie in the plane, too
 
 
 def normal_of(corners: np.ndarray) -> np.ndarray:
-    """(m, 3) area vectors, m², of polygons (m, k, 3): the normal to the side they are counterclockwise from, times the area."""
+    """Return area vectors, (m, 3), m², of polygons (m, k, 3): area times the normal, on the counterclockwise side."""
     spokes = corners[:, 1:] - corners[:, :1]
     return np.cross(spokes[:, :-1], spokes[:, 1:]).sum(axis=1) / 2
 
 
 def heights(corners: np.ndarray, point: np.ndarray, normal: np.ndarray, rounding: np.ndarray) -> np.ndarray:
-    """(m, k) metres in front of planes; exactly zero where it cannot be told from that.
+    """Return distances of corners in front of planes, (m, k), metres; exactly zero where they cannot be told from zero.
 
     Args:
         point, normal: (m, 3), the planes; normals of any length.
-        rounding: (m,) metres, what coordinates are known to.
+        rounding: (m,) metres, the accuracy of coordinates.
     """
     way = corners - point[:, None, :]
     length = np.linalg.norm(normal, axis=1, keepdims=True)
@@ -27,8 +27,9 @@ def heights(corners: np.ndarray, point: np.ndarray, normal: np.ndarray, rounding
 
 
 def in_front(corners: np.ndarray, height: np.ndarray) -> np.ndarray:
-    """(m, k + 1, 3): what lies in front, counterclockwise as before; corners are repeated to fill up. Where nothing is left, or
-    nothing but what lies in the plane, it is one point.
+    """Return the parts of polygons in front of planes, (m, k + 1, 3), counterclockwise as before.
+
+    Corners are repeated to fill up. Where nothing is left, or only what lies in the plane, all corners are one point.
 
     Args:
         corners: (m, k, 3), convex. height: (m, k), of the corners in front of the plane.

@@ -1,4 +1,4 @@
-"""A_i F_ij of polygons that see each other whole, by two integrals along their rims.
+"""Exchange areas A_i F_ij of polygons that see each other whole, by two integrals along their rims.
 
     A_i F_ij = 1 / (2 pi) sum over edges e of i and f of j of cos(e, f) times the integral of ln r over e and f
 
@@ -11,11 +11,11 @@ import numpy as np
 
 from .edges import Edges, logarithm
 
-SQUARE = 1e-14  # cosine: what such edges add is below rounding
+SQUARE = 1e-14  # cosine: edges whose cosine is smaller add less than rounding
 
 
 def around(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """(m,) A_i F_ij in units of length squared.
+    """Return A_i F_ij, (m,), in units of length squared.
 
     Args:
         one, other: (m, k, 3) corners counterclockwise seen from the radiating side, each polygon in front of the other; corners

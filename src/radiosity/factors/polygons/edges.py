@@ -1,10 +1,10 @@
 """The integral of ln r over pairs of straight edges.
 
-The inner integral is elementary. Where the edges are parallel so is the outer one, shared and partly shared edges among them.
-Else it is a Gauss rule on pieces of the shorter edge. As a function of the place s on its line the inner integral has branch
-points where the other edge's ends project to, as far into the complex plane as they are from the line, and at the foot of the
-common perpendicular. A piece is fine when all of these are well outside it; else it is cut, geometrically towards the branch
-point, so that corners that touch, T junctions and narrow gaps need a few pieces more.
+The inner integral is elementary. Where the edges are parallel, also shared or partly shared, so is the outer one. Elsewhere the
+outer one is a Gauss rule on pieces of the shorter edge. As a function of the place s on that edge's line, the inner integral has
+branch points. Two are where the other edge's ends project to, as far into the complex plane as the ends are from the line. One is
+at the foot of the common perpendicular. A piece is fine when all of these are well outside it. Otherwise it is cut, geometrically
+towards the branch point, so that corners that touch, T junctions and narrow gaps need only a few pieces more.
 """
 
 from dataclasses import dataclass
@@ -12,10 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 NODES = 10
-CLEAR = (
-    1.6  # half lengths from a piece's middle to the next branch point: the rule's error is below 2.8^-20 of the inner integral
-)
-CUT = 0.25  # of a piece that ends at a branch point: cut here, and the rest is clear
+CLEAR = 1.6  # half lengths from a piece's middle to the next branch point: the error is below 2.8^-20 of the inner integral
+CUT = 0.25  # of a piece that ends at a branch point: it is cut here, and the rest is clear
 LEAST = 1e-5  # of an edge: shorter pieces are not cut. The integrand is like s ln s there, so they hold 1e-10 or so
 PARALLEL = 1e-9  # sine of an angle
 TINY = 1e-300
@@ -37,7 +35,7 @@ class Edges:
 
     @staticmethod
     def of(begin: np.ndarray, end: np.ndarray) -> "Edges":
-        """From their ends, which must differ."""
+        """Make edges from their ends, which must differ."""
         length = np.linalg.norm(end - begin, axis=1)
         return Edges(begin, (end - begin) / length[:, None], length)
 
@@ -46,7 +44,7 @@ class Edges:
 
 
 def where(mask: np.ndarray, one: Edges, other: Edges) -> Edges:
-    """``one`` where the mask says, else ``other``."""
+    """Return ``one`` where the mask is true, else ``other``."""
     wide = mask[:, None]
     return Edges(
         np.where(wide, one.begin, other.begin),
@@ -56,7 +54,7 @@ def where(mask: np.ndarray, one: Edges, other: Edges) -> Edges:
 
 
 def logarithm(one: Edges, other: Edges) -> np.ndarray:
-    """(m,) double integrals of ln r over m pairs of edges."""
+    """Return the double integrals of ln r over m pairs of edges, (m,)."""
     shorter = one.length <= other.length
     one, other = where(shorter, one, other), where(shorter, other, one)
     sine = np.linalg.norm(np.cross(one.direction, other.direction), axis=1)
@@ -67,7 +65,7 @@ def logarithm(one: Edges, other: Edges) -> np.ndarray:
 
 
 def _parallel(one: Edges, other: Edges) -> np.ndarray:
-    """By the second antiderivative of ln sqrt(x² + h²), x along the edges and h the distance of their lines."""
+    """Integrate by the second antiderivative of ln sqrt(x² + h²), x along the edges and h the distance of their lines."""
     way = one.begin - other.begin
     along = np.einsum("mx,mx->m", way, other.direction)
     square = np.maximum(((way - along[:, None] * other.direction) ** 2).sum(axis=1), 0)
@@ -104,7 +102,7 @@ def _oblique(one: Edges, other: Edges) -> np.ndarray:
 
 
 def _branch_points(one: Edges, other: Edges) -> tuple[np.ndarray, np.ndarray]:
-    """Real and imaginary part of the three places on lines ``one``, (m, 3) each."""
+    """Return real and imaginary part of the three branch points on lines ``one``, (m, 3) each."""
     way = other.begin - one.begin
     begin, slope = (np.einsum("mx,mx->m", x, one.direction) for x in (way, other.direction))
     end = begin + slope * other.length
@@ -114,20 +112,20 @@ def _branch_points(one: Edges, other: Edges) -> tuple[np.ndarray, np.ndarray]:
     square = (normal**2).sum(axis=1)
     foot = np.einsum("mx,mx->m", np.cross(way, other.direction), normal) / square
     across = np.einsum("mx,mx->m", np.cross(way, one.direction), normal) / square
-    inside = (across > -0.25 * other.length) & (across < 1.25 * other.length)  # elsewhere what would branch is nearly cancelled
+    inside = (across > -0.25 * other.length) & (across < 1.25 * other.length)  # elsewhere the branch is nearly cancelled
     gap = np.where(inside, np.abs(np.einsum("mx,mx->m", way, normal)) / square, np.inf)
     return np.stack([begin, end, foot], axis=1), np.stack([*depth, gap], axis=1)
 
 
 def _gauss(one: Edges, other: Edges, row, middle, half, size: int) -> np.ndarray:
-    """(size,) sums over pieces, each of the edge in its row."""
+    """Return sums over pieces, (size,); each piece is of the edge in its row."""
     result = np.zeros(size)
     if len(row):
         way, direction, length = one.begin[row] - other.begin[row], other.direction[row], other.length[row]
         steps = middle[:, None] + half[:, None] * POINTS
         slope = np.einsum("mx,mx->m", one.direction[row], direction)
         along = np.einsum("mx,mx->m", way, direction)[:, None] + slope[:, None] * steps
-        # the part of the way that is square to the other edge, as a vector: no cancellation where it is short
+        # the part of the way at right angles to the other edge, as a vector: no cancellation where it is short
         flat = way - np.einsum("mx,mx->m", way, direction)[:, None] * direction
         rise = one.direction[row] - slope[:, None] * direction
         square = sum((flat[:, x, None] + rise[:, x, None] * steps) ** 2 for x in range(3))

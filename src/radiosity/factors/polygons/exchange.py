@@ -6,15 +6,15 @@ from .areas import over_both
 from .clipping import ROUNDING, heights, in_front, normal_of
 from .contour import around
 
-FAR = 10.0  # distance of middles over the sum of the radii, 5e-8 on both sides: farther off areas are integrated, else rims
+FAR = 10.0  # distance of middles over the sum of the radii: beyond it areas are integrated, else rims; the error is 5e-8 in both
 CHUNK = 1 << 13  # pairs at a time: about 100 MB
 
 
 def exchange(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """(m,) float64, A_i F_ij = A_j F_ji in m², for m pairs of convex polygons as if nothing else were there.
+    """Return A_i F_ij = A_j F_ji, (m,) float64, m², for m pairs of convex polygons as if nothing else were there.
 
-    Parts behind the other's plane are cut away first; polygons behind each other, or in one plane, give exactly zero. Neither
-    place nor size matters.
+    Parts behind the other's plane are cut away first. Polygons behind each other, or in one plane, give exactly zero. Neither
+    place nor size changes the accuracy.
 
     Args:
         one, other: (m, 4, 3) float64, metres, corners counterclockwise seen from the radiating side; triangles repeat their last.
@@ -40,7 +40,7 @@ def _chunk(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def _facing(one: np.ndarray, other: np.ndarray, above: np.ndarray, below: np.ndarray) -> np.ndarray:
-    """(m,) of polygons of which some parts see each other; lengths about 1."""
+    """Return exchange areas, (m,), of polygons of which some parts see each other; lengths are about 1."""
     cut = np.any(above < 0, axis=1) | np.any(below < 0, axis=1)
     result = np.empty(len(one))
     for rows in (np.flatnonzero(~cut), np.flatnonzero(cut)):

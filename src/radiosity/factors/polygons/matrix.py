@@ -16,15 +16,15 @@ CHUNK = 1 << 18  # pairs at a time
 def exact(
     geometry: Geometry, rays: int = 16, seed: int = 0, lines: int = 1024, swept: Callable[[int], None] = lambda lines: None
 ) -> Factors:
-    """Form factors of all pairs of patches. Pairs that see each other whole have exact ones, 1e-7 or better; others are off by
-    what ``rays`` leave open of their visible share.
+    """Return form factors of all pairs of patches.
 
-    Rows sum to 1 - escaped - lost but for that; `factors.balance.restored` makes them do so.
+    Pairs that see each other whole have exact ones, 1e-7 or better. Others have the error of their visible share, which more
+    ``rays`` make smaller. Without that error rows would sum to 1 - escaped - lost; `factors.balance.restored` makes them do so.
 
     Args:
-        rays: of each pair, see `visible_share`.
-        lines: of each patch, to find what escapes and what is lost, see `missed`.
-        swept: called between launches with the lines traced since; what it raises ends the work.
+        rays: rays of each pair, see `visible_share`.
+        lines: lines of each patch that find what escapes and what is lost, see `missed`.
+        swept: called between launches with the number of lines traced since; an exception that it raises ends the work.
     """
     patches = geometry.patches
     n, area, polygons = len(patches), patches.area, Polygons.of(patches)
@@ -49,7 +49,7 @@ def exact(
 
 
 def _pairs(n: int):
-    """Pairs of different patches, each once, some at a time: (m,) int64 each."""
+    """Yield pairs of different patches, each pair once, some at a time: (m,) int64 each."""
     step = max(CHUNK // max(n, 1), 1)
     for begin in range(0, n, step):
         one, other = (x.ravel() for x in np.meshgrid(np.arange(begin, min(begin + step, n)), np.arange(n), indexing="ij"))

@@ -1,14 +1,15 @@
 """The share of what leaves a point that arrives at a polygon, without obstacles: exact, horizon included.
 
-J. H. Lambert, "Photometria", 1760: F = 1/(2 pi) sum over edges of n . g_i, with g_i of the angle's size under which the edge is
-seen, at right angles to the triangle of the point and the edge. What lies below the point's horizon is cut off.
+J. H. Lambert, "Photometria", 1760: F = 1/(2 pi) sum over edges of n . g_i. The length of g_i is the angle under which the edge is
+seen, and its direction is at right angles to the triangle of the point and the edge. What lies below the point's horizon is cut
+off.
 """
 
 import numpy as np
 
 
 def from_points(points: np.ndarray, normals: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Form factors from m points to a polygon each.
+    """Return form factors from m points to a polygon each.
 
     Args:
         points: (m, 3) metres, not on the polygon's rim.
@@ -28,14 +29,14 @@ def from_points(points: np.ndarray, normals: np.ndarray, corners: np.ndarray) ->
     cut = to + share * (following - to)  # where an edge meets the horizon
     start, end = np.where(above[:, :, None], to, cut), np.where(next_above[:, :, None], following, cut)
     total = _edge(start, end, normals, above | next_above).sum(axis=1)
-    # a polygon that is cut off goes on along the horizon, from where it sets to where it rises again
+    # a polygon that is cut off has an edge along the horizon, from where it goes below to where it comes up again
     sets, rises = ((cut * mask[:, :, None]).sum(axis=1) for mask in (crossing & above, crossing & next_above))
     total += _edge(sets[:, None], rises[:, None], normals, crossing.any(axis=1)[:, None])[:, 0]
     return np.clip(total / -(2 * np.pi), 0, 1) + 0.0  # no -0
 
 
 def _edge(start: np.ndarray, end: np.ndarray, normals: np.ndarray, mask: np.ndarray) -> np.ndarray:
-    """(m, k): n . g of edges between vectors from the point, (m, k, 3) each; zero where masked out or seen end on."""
+    """Return n . g, (m, k), of edges between vectors from the point, (m, k, 3) each; zero where masked out or seen end on."""
     cross = np.cross(start, end)
     sine = np.linalg.norm(cross, axis=2)
     angle = np.arctan2(sine, np.einsum("mki,mki->mk", start, end))

@@ -1,4 +1,4 @@
-"""How is B = E + rho F B solved, once F is there? One file a solver; all keep the history of their convergence."""
+"""Solvers of B = E + rho F B for a known F. There is one file a solver; all keep the history of their convergence."""
 
 from importlib import import_module
 
@@ -18,10 +18,10 @@ SOLVERS = {  # the file of each; what they are is told by `method.schemes`
 
 
 def solve(name: str, system: System) -> Solved:
-    """The radiosity of a system by the solver called ``name``.
+    """Return the radiosity of a system by the solver called ``name``.
 
     Raises:
-        MethodError: an unknown name, or form factors that the solver cannot take.
+        MethodError: the name is unknown, or the solver cannot take the form factors.
     """
     if name not in SOLVERS:
         raise MethodError(f"solver '{name}' does not exist; known are {', '.join(SOLVERS)}")

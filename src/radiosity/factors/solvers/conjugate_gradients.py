@@ -1,8 +1,10 @@
 """Conjugate gradients on the symmetric form of the equation, through scipy.
 
 With A_i F_ij = A_j F_ji the matrix M = diag(A / rho) - A F is symmetric, and positive definite where rho < 1 and rows of F sum to
-1 or less; M B = A E / rho. Black patches (rho = 0) have B = E and only light the others. M. Hestenes and E. Stiefel, "Methods of
-conjugate gradients for solving linear systems", J. Research of the National Bureau of Standards 49(6), 1952.
+1 or less; the equation is M B = A E / rho. Black patches (rho = 0) have B = E, and only light the others.
+
+M. Hestenes and E. Stiefel, "Methods of conjugate gradients for solving linear systems", J. Research of the National Bureau of
+Standards 49(6), 1952.
 """
 
 import numpy as np
@@ -14,7 +16,7 @@ ASYMMETRY = 1e-9  # of A_i F_ij against A_j F_ji, relative to the largest
 
 
 def solve(system: System) -> Solved:
-    """Band after band (each has a matrix of its own), preconditioned by the diagonal.
+    """Solve band after band (each has a matrix of its own), preconditioned by the diagonal.
 
     Raises:
         MethodError: the form factors are not reciprocal.
@@ -48,7 +50,7 @@ def solve(system: System) -> Solved:
 
         x, start = system.emission[shiny, band].copy(), right / scale
         target = system.enough * np.abs(start).max(initial=0.0)
-        # scipy's residual is in the 2-norm; so it is asked for less until the largest entry is small enough
+        # scipy's residual is in the 2-norm; so its tolerance is made smaller until the largest entry is small enough
         for factor in (1.0, 1e-2, 1e-4):
             x, _ = cg(
                 operator, right, x0=x, rtol=0.0, atol=factor * target * scale.min(), M=inverse, maxiter=len(x) + 8, callback=told
@@ -64,7 +66,7 @@ def solve(system: System) -> Solved:
 
 
 def _relative(system: System, radiosity: np.ndarray, band: int) -> float:
-    """As `System.relative`, of one band."""
+    """Return `System.relative` of one band."""
     new = system.emission[:, [band]] + system.reflectance[:, [band]] * (system.factors @ radiosity)
     largest = np.abs(radiosity).max()
     return float(np.abs(new - radiosity).max() / largest) if largest > 0 else 0.0

@@ -1,5 +1,7 @@
-"""Gauss-Seidel iterations: patch after patch gathers from the newest values (as the first radiosity programs did: M. Cohen and
-D. Greenberg, "The hemi-cube", SIGGRAPH 1985)."""
+"""Gauss-Seidel iterations: patch after patch gathers from the newest values.
+
+The first radiosity programs did the same (M. Cohen and D. Greenberg, "The hemi-cube", SIGGRAPH 1985).
+"""
 
 import numpy as np
 
@@ -7,7 +9,7 @@ from .model import Solved, System
 
 
 def solve(system: System) -> Solved:
-    """B_i <- E_i + rho_i sum_j F_ij B_j for one i after the other, all bands of a patch together."""
+    """Set B_i <- E_i + rho_i sum_j F_ij B_j for one i after the other, all bands of a patch together."""
     factors, emission, reflectance = system.factors, system.emission, system.reflectance
     radiosity, history = emission.copy(), []
     begin, columns, values = factors.indptr, factors.indices, factors.data

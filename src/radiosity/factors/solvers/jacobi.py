@@ -1,4 +1,4 @@
-"""Jacobi iterations: each sends all light once more (gathering form)."""
+"""Jacobi iterations: each one sends all light once more (gathering form)."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from .model import Solved, System
 
 
 def solve(system: System) -> Solved:
-    """B <- E + rho F B, until the change is small enough."""
+    """Set B <- E + rho F B until the change is small enough."""
     radiosity, history = system.emission.copy(), []
     for _ in range(system.most_steps):
         change = system.residual(radiosity)

@@ -1,4 +1,4 @@
-"""What a solver is given, what it returns, and when it may stop."""
+"""The input and output of a solver, and the rule by which it may stop."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +11,7 @@ TOLERANCE = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """B = E + rho F B.
+    """The system B = E + rho F B.
 
     Attributes:
         factors: (n, n) scipy CSR array of form factors F_ij, rows sum to 1 or less.
@@ -29,29 +29,31 @@ class System:
 
     @cached_property
     def contraction(self) -> float:
-        """The largest part of what arrives that any patch sends on: rho times the sum of its row, at most."""
+        """Largest of the products of rho and a row sum: an iteration makes the error smaller by this factor, or more."""
         sums = np.asarray(self.factors.sum(axis=1)).ravel()
         return float((self.reflectance * sums[:, None]).max(initial=0.0))
 
     def residual(self, radiosity: np.ndarray) -> np.ndarray:
-        """(n, n_bands) E + rho F B - B."""
+        """Return E + rho F B - B, (n, n_bands)."""
         return self.emission + self.reflectance * (self.factors @ radiosity) - radiosity
 
     def relative(self, residual: np.ndarray, radiosity: np.ndarray) -> float:
-        """The largest residual over the largest radiosity, of the worst band."""
+        """Return the largest residual divided by the largest radiosity, of the worst band."""
         largest = np.abs(radiosity).max(axis=0, initial=0.0)
         return float((np.abs(residual).max(axis=0, initial=0.0) / np.where(largest > 0, largest, 1)).max(initial=0.0))
 
     @property
     def enough(self) -> float:
-        """A relative residual r leaves an error of r / (1 - contraction) at most (J. Arvo, K. Torrance and B. Smits, "A framework
-        for the analysis of error in global illumination algorithms", SIGGRAPH 1994), so this one is small enough; or all that
-        double precision gives."""
+        """The relative residual that is small enough for the tolerance, or the least that double precision gives.
+
+        A relative residual r leaves an error of r / (1 - contraction) at most (J. Arvo, K. Torrance and B. Smits, "A framework
+        for the analysis of error in global illumination algorithms", SIGGRAPH 1994).
+        """
         return max(self.tolerance * max(1 - self.contraction, 0.0), 64 * float(np.finfo(float).eps))
 
     @property
     def most_steps(self) -> int:
-        """Iterations after which a contraction must have reached `enough`, and some more; no more than a million."""
+        """Iterations that a contraction needs to reach `enough`, and some more; at most a million."""
         if self.contraction <= 0:
             return 8
         if self.contraction >= 1:
@@ -65,7 +67,7 @@ class Solved:
 
     Attributes:
         radiosity: (n, n_bands) float64, B.
-        history: (k,) float64, the relative residual after each iteration (of southwell: after every n shots).
+        history: (k,) float64, the relative residual after each iteration (southwell: after every n shots).
     """
 
     radiosity: np.ndarray

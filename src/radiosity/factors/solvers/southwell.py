@@ -10,7 +10,7 @@ from .model import Solved, System
 
 
 def solve(system: System) -> Solved:
-    """Residuals r are kept: B_i += r_i, r_j += rho_j F_ji r_i, r_i = 0 (bands of a patch together)."""
+    """Solve by residuals r, which are kept: B_i += r_i, r_j += rho_j F_ji r_i, r_i = 0 (bands of a patch together)."""
     columns = system.factors.tocsc()  # shooting needs what sees patch i, not what it sees
     begin, rows, values = columns.indptr, columns.indices, columns.data
     area, reflectance = system.area, system.reflectance

@@ -1,4 +1,4 @@
-"""The experiments: each module has a title, arms and scenes, and says what the paper claims of its results."""
+"""The experiments: each module has a title, arms and scenes, and the paper's claims about its results."""
 
 from importlib import import_module
 
@@ -6,5 +6,5 @@ EXPERIMENTS = {1: "order", 2: "lines", 3: "equation", 4: "numbers", 5: "beyond",
 
 
 def module(number: int):
-    """The module of an experiment."""
+    """Return the module of an experiment."""
     return import_module(f".{EXPERIMENTS[number]}", __package__)

@@ -1,4 +1,4 @@
-"""Experiment 6, the paper's opening claim: more reliable, and less storage, than the methods that form the matrix."""
+"""Experiment 6, the paper's first claim: more reliable, and less storage, than the methods that form the matrix."""
 
 from pathlib import Path
 
@@ -21,7 +21,7 @@ QUICK_REFERENCE, REFERENCE = 30_000_000, 1_000_000_000
 
 
 def extras(protocol: Protocol, folder: Path) -> list[str]:
-    """A figure, a table, and the claim."""
+    """Return a figure, a table, and the claim."""
     quick = protocol.last < Protocol().last
     sizes, lines = (QUICK_SIZES, QUICK_REFERENCE) if quick else (SIZES, REFERENCE)
     found: dict[tuple[str, int], list[Entry]] = {}
@@ -49,13 +49,13 @@ def _cells(entry: Entry) -> list[str]:
 
 
 def _own(truth, patches: Patches) -> float:
-    """Of irradiance, as the entries have it."""
+    """Return the relative error of the reference irradiance itself, computed as the entries' errors are."""
     squares = patches.area @ truth.irradiance_standard_error**2, patches.area @ truth.irradiance**2
     return float(np.sqrt(squares[0] / squares[1]).max())
 
 
 def _claim(found: dict[tuple[str, int], list[Entry]]) -> Claim:
-    """Less storage at equal error, and less error at equal time: of each baseline's best run against the random walk's."""
+    """Return the claim: less storage at equal error, and less error at equal time, of the random walk against each baseline."""
     wins, told = [], []
     for (scene, n), entries in found.items():
         runs = [entry for entry in entries if entry.ran]

@@ -1,4 +1,4 @@
-"""Experiment 5, beyond the paper: order independence to the bit, and whether error bars are true."""
+"""Experiment 5, not in the paper: results do not depend on the order, to the bit; and error bars are true."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ ARMS = (
 
 
 def extras(protocol: Protocol, folder: Path) -> list[str]:
-    """Two tables."""
+    """Return two tables."""
     case = cases.maze("labyrinth-0.5")
     rows = bits(case, protocol.seed)
     same = len({row.digest for row in rows[:-1]}) == 1 and rows[-1].digest != rows[0].digest

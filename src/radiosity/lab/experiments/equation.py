@@ -23,7 +23,7 @@ ARMS = with_both_numbers(KINDS)
 
 
 def extras(protocol: Protocol, folder: Path) -> list[str]:
-    """The discretisation error apart from the computational one, on meshes of the room."""
+    """Return the discretisation error apart from the computational one, on meshes of the room."""
     lines = 20e6 if protocol.last >= 20 else 4e6
     rows = [discretisation(count, lines, protocol.seed) for count in (2, 4, 8)]
     heads = ["patches", "discrete", "continuous", "delta of equation 6"]
@@ -40,7 +40,7 @@ def extras(protocol: Protocol, folder: Path) -> list[str]:
 
 
 def claims(results: Results) -> list[Claim]:
-    """Of section 5."""
+    """Return the claims of section 5."""
     random = [(scene, name, results.slope(scene, f"{name}, random")) for scene in SCENES for name in ("discrete", "continuous")]
     halton = [(scene, results.slope(scene, "discrete, Halton"), results.slope(scene, "continuous, Halton")) for scene in SCENES]
     gaps = [results.ratio(scene, "continuous, Halton", "discrete, Halton")[0] for scene in SCENES[:3]]

@@ -20,7 +20,7 @@ ARMS = with_both_numbers(KINDS)
 
 
 def extras(protocol: Protocol, folder: Path) -> list[str]:
-    """The paper's figure 1."""
+    """Return the paper's figure 1."""
     pictures.sample_lines(folder / "lines")
     return [
         report.figure(folder / "lines"),
@@ -29,7 +29,7 @@ def extras(protocol: Protocol, folder: Path) -> list[str]:
 
 
 def claims(results: Results) -> list[Claim]:
-    """Of section 4."""
+    """Return the claims of section 4."""
     mazes = [scene for scene in SCENES if scene.startswith("labyrinth")]
     slopes = [(scene, results.slope(scene, "local, random"), results.slope(scene, "global, random")) for scene in mazes]
     same = all(a.low <= b.high and b.low <= a.high for _, a, b in slopes)

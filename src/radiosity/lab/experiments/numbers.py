@@ -13,7 +13,7 @@ ARMS = tuple(Arm(name, Method(numbers=name, randomisation="shared"), name) for n
 
 
 def claims(results: Results) -> list[Claim]:
-    """Of section 6."""
+    """Return the claims of section 6."""
     spreads, winners, halton = [], [], []
     for scene in SCENES:
         last = {name: results.last(scene, name) for name in SEQUENCES}

@@ -26,7 +26,7 @@ ARMS = with_both_numbers(ORDERS)
 
 
 def extras(protocol: Protocol, folder: Path) -> list[str]:
-    """The start of a run, as a figure."""
+    """Return the start of a run, as a figure."""
     case = cases.maze("labyrinth-0.5")
     path = folder / "experiment-1-start"
     figures.starts({case.name: starts(case, cases.ones(case), protocol.seed)}, "The start of a run, by order", path)
@@ -43,7 +43,7 @@ def extras(protocol: Protocol, folder: Path) -> list[str]:
 
 
 def claims(results: Results) -> list[Claim]:
-    """Of section 3."""
+    """Return the claims of section 3."""
     found, alike = [], True
     for scene in SCENES:
         for kind in ("random", "Halton"):

@@ -1,8 +1,8 @@
-"""Digital sequences in base 2, whatever their matrices: a table for each byte of the index.
+"""Digital sequences in base 2 with any matrices, by a table for each byte of the index.
 
-Point n has, as the binary digits of its coordinate in dimension d, the digits of n times the matrix C_d modulo 2
-(H. Niederreiter, "Point sets and sequences with small discrepancy", Monatshefte für Mathematik 104, 1987). That is linear: the
-words of the four bytes of n are looked up and added, which is an exclusive or.
+The binary digits of point n's coordinate in dimension d are the digits of n times the matrix C_d modulo 2 (H. Niederreiter,
+"Point sets and sequences with small discrepancy", Monatshefte für Mathematik 104, 1987). That is linear: the words of the four
+bytes of n are looked up and added, which is an exclusive or.
 """
 
 from collections.abc import Callable
@@ -23,7 +23,7 @@ STEPS = (16, 24, 32)  # whole bytes
 
 @dataclass(frozen=True)
 class Binary(AbstractNumbers):
-    """Patches of replicates have a digital shift each: the words of the randomisation are added to those of the coordinates.
+    """A digital sequence in base 2 with a digital shift: the randomisation's words are added to those of the coordinates.
 
     Line ``index`` takes point index - 1, so that the first 2^m lines are a net (A. B. Owen, "On dropping the first Sobol' point",
     MCQMC 2020); the shift moves point 0 away from the corner.
@@ -46,7 +46,7 @@ class Binary(AbstractNumbers):
         return [Float(word >> 8) * 2.0**-24 for word in self.words(index, randomisation, bits)]
 
     def words(self, index, randomisation, bits: int) -> list:
-        """Five UInt32: the coordinates times 2^32, of which `points` keeps the first 24 bits."""
+        """Return five UInt32: the coordinates times 2^32, of which `points` keeps the first 24 bits."""
         UInt32 = type(index)
         Array4u, four, fifth = _tables(self.matrices, UInt32)
         words = [UInt32(word) for word in randomisation[:DIMENSIONS]]
@@ -65,7 +65,7 @@ class Binary(AbstractNumbers):
 
 
 def table(matrices: np.ndarray) -> np.ndarray:
-    """(4, 256, 5) uint32: for each byte of an index and each of its values the words of five coordinates.
+    """Return the words of five coordinates for each byte of an index and each of its values, (4, 256, 5) uint32.
 
     Args:
         matrices: (5, 32, 32), see `Binary`.
@@ -81,7 +81,7 @@ def table(matrices: np.ndarray) -> np.ndarray:
 
 @cache
 def _tables(matrices: Callable[[], np.ndarray], UInt32):
-    """A type of four words, and `table` on the device: dimensions 1 to 4 side by side for one read, and dimension 5."""
+    """Return a type of four words, and `table` on the device: dimensions 1 to 4 side by side for one read, and dimension 5."""
     values = table(matrices())
     four, fifth = upload(UInt32, values[:, :, :4]), upload(UInt32, values[:, :, 4])
     return import_module(UInt32.__module__).Array4u, four, fifth

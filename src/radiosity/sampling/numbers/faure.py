@@ -10,16 +10,16 @@ from .quinary import BASE, COLUMNS, ROWS, Quinary
 
 
 def faure() -> Quinary:
-    """The sequence in the order of its definition."""
+    """Return the sequence in the order of its definition."""
     return Quinary(matrices)
 
 
 def matrices() -> np.ndarray:
-    """(5, 12, 15), see `Quinary`."""
+    """Return the matrices, (5, 12, 15), see `Quinary`."""
     return np.array([pascal(d)[:ROWS] for d in range(DIMENSIONS)], np.uint8)
 
 
 def pascal(power: int) -> np.ndarray:
-    """(15, 15): a power of Pascal's upper triangular matrix modulo 5, binom(column, row) power^(column - row)."""
+    """Return a power of Pascal's upper triangular matrix modulo 5, (15, 15): binom(column, row) power^(column - row)."""
     entry = [[comb(c, r) * power ** (c - r) % BASE if c >= r else 0 for c in range(COLUMNS)] for r in range(COLUMNS)]
     return np.array(entry, np.int64)

@@ -1,8 +1,8 @@
 """Generalised Faure points in base 5 (S. Tezuka, "Polynomial arithmetic analogue of Halton sequences", ACM TOMACS 3, 1993).
 
-The matrices are L_d U_d, where U_d is the d-th power of Pascal's matrix, as in `faure`. For any lower triangular L_d without
-zeros on the diagonal that is a (0, 5)-sequence too: the first rows of the product span what the first rows of U_d do. Here,
-as in RenderPark, L_d is the transpose of U_d.
+The matrices are L_d U_d, where U_d is the d-th power of Pascal's matrix, as in `faure`. With any lower triangular L_d without
+zeros on the diagonal this is a (0, 5)-sequence too: the first rows of the product span the same space as the first rows of U_d.
+Here, as in RenderPark, L_d is the transpose of U_d.
 """
 
 import numpy as np
@@ -13,10 +13,10 @@ from .quinary import BASE, ROWS, Quinary
 
 
 def generalized_faure() -> Quinary:
-    """The sequence in the order of its definition."""
+    """Return the sequence in the order of its definition."""
     return Quinary(matrices)
 
 
 def matrices() -> np.ndarray:
-    """(5, 12, 15), see `Quinary`."""
+    """Return the matrices, (5, 12, 15), see `Quinary`."""
     return np.array([(pascal(d).T @ pascal(d) % BASE)[:ROWS] for d in range(DIMENSIONS)], np.uint8)

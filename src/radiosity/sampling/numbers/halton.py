@@ -17,7 +17,7 @@ STEPS = (14, 16, 19, 24, 32)  # 2^19 is less than the smallest base**digits of o
 
 @dataclass(frozen=True)
 class Halton(AbstractNumbers):
-    """Radical inverses, each moved by a seeded shift modulo 1 (Cranley and Patterson 1976)."""
+    """The Halton sequence: radical inverses, each moved by a seeded shift modulo 1 (Cranley and Patterson 1976)."""
 
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
@@ -46,31 +46,31 @@ class Halton(AbstractNumbers):
 
 
 def _float_of(array) -> Any:
-    """The type of single precision that goes with an array's type."""
+    """Return the type of single precision that goes with an array's type."""
     return dr.float32_array_t(type(array))
 
 
 def shifts(randomisation) -> list:
-    """Of each dimension, in [0, 1)."""
+    """Return the shift of each dimension, in [0, 1)."""
     return [_float_of(shift)(shift >> 8) * 2.0**-24 for shift in randomisation[: len(BASES)]]
 
 
 def moved(point: list, by: list) -> list:
-    """Modulo 1."""
+    """Return a point moved by a shift, modulo 1."""
     sums = [value + shift for value, shift in zip(point, by, strict=True)]
     return [value - dr.floor(value) for value in sums]
 
 
 def binary(index):
-    """The radical inverse in base 2, to 24 bits."""
+    """Return the radical inverse in base 2, to 24 bits."""
     return _float_of(index)(dr.brev(index) >> 8) * 2.0**-24
 
 
 def radical_inverse(index, base: int, bits: int):
-    """Digits of ``index`` (UInt32, below 2**bits) in ``base``, mirrored at the point; Float32 in [0, 1].
+    """Return the digits of ``index`` (UInt32, below 2**bits) in ``base``, mirrored at the point; Float32 in [0, 1].
 
-    Quotients are taken in single precision, which costs four instructions a digit; larger indices are split once. The
-    value depends on the index alone: fewer digits are scaled by an exact power before anything is rounded.
+    Quotients are computed in single precision, with four instructions a digit; larger indices are split once. The value
+    depends on the index alone: fewer digits are scaled by an exact power before anything is rounded.
     """
     return _value(_mirrored(index, base, bits, 0), base)
 
@@ -79,13 +79,14 @@ def radical_inverse(index, base: int, bits: int):
 class Neighbours:
     """The radical inverses of consecutive indices, to the same bits.
 
-    They differ in a few low digits and in one carry at most, so the others are mirrored twice for all of them.
+    They differ in a few low digits and in one carry at most. So the other digits are mirrored only twice: without and with the
+    carry.
 
     Attributes:
         base: of the digits.
-        short: how many low digits differ.
-        begin: those of the first index, as a number.
-        before, after: the others mirrored, see `_mirrored`: of the first index, and as they are after a carry.
+        short: the number of low digits that differ.
+        begin: the low digits of the first index, as a number.
+        before, after: the other digits mirrored, see `_mirrored`: of the first index, and after a carry.
     """
 
     base: int
@@ -96,14 +97,14 @@ class Neighbours:
 
     @staticmethod
     def of(first, base: int, bits: int, turns: int) -> "Neighbours":
-        """Of so many indices from ``first`` (UInt32) on."""
+        """Make those of ``turns`` indices from ``first`` (UInt32) on."""
         short = next(digits for digits in range(1, turns + 1) if base**digits >= turns)
         quotient = first // base**short
         begin = _float_of(first)(first - quotient * base**short)
         return Neighbours(base, short, begin, *(_mirrored(q, base, bits, short) for q in (quotient, quotient + 1)))
 
     def at(self, turn):
-        """That of the index ``turn`` (UInt32) after the first."""
+        """Return the radical inverse of the index ``turn`` (UInt32) after the first."""
         period, unit = self.base**self.short, float(self.base ** (LOW_DIGITS[self.base] - self.short))
         digits = self.begin + type(self.begin)(turn)
         carried = digits >= period
@@ -117,8 +118,10 @@ def _value(parts: list, base: int):
 
 
 def _mirrored(index, base: int, bits: int, short: int) -> list:
-    """The mirrored digits of an index of 2**bits without its ``short`` lowest digits, which are the first ones then, in units of
-    base**-LOW_DIGITS: whole ones, and the rest where there are more digits."""
+    """Return the mirrored digits of an index below 2**bits whose ``short`` lowest digits are taken away.
+
+    They are in units of base**-LOW_DIGITS: whole units, and a fraction where there are more digits.
+    """
     Float = _float_of(index)
     low, high = LOW_DIGITS[base] - short, HIGH_DIGITS[base]
     if 2**bits <= base ** LOW_DIGITS[base]:
@@ -130,7 +133,7 @@ def _mirrored(index, base: int, bits: int, short: int) -> list:
 
 
 def digits_of(base: int, bits: int) -> int:
-    """Digits that hold every index below 2**bits."""
+    """Return the number of digits that every index below 2**bits needs."""
     digits = 1
     while base**digits < 2**bits:
         digits += 1
@@ -138,12 +141,12 @@ def digits_of(base: int, bits: int) -> int:
 
 
 def _mirror(number, base: int, digits: int, places: int):
-    """The lowest ``digits`` digits of ``number`` (which has no more), mirrored within ``places`` digits."""
+    """Return the lowest ``digits`` digits of ``number`` (which has no more), mirrored within ``places`` digits."""
     return _mirror_chains(number, base, digits) * float(base ** (places - digits))
 
 
 def _mirror_chains(number, base: int, digits: int):
-    """Mirrored digits; halves are taken side by side until a chain of dependent instructions is short."""
+    """Return mirrored digits; halves are computed side by side until a chain of dependent instructions is short."""
     if digits > CHAIN:
         low = (digits + 1) // 2
         quotient = _quotient(number, base**low)
@@ -160,5 +163,5 @@ def _mirror_chains(number, base: int, digits: int):
 
 
 def _quotient(number, divisor: int):
-    """Whole part of number / divisor, exact below 2^22 for the divisors used here: half a step is more than the rounding."""
+    """Return the whole part of number / divisor, exact below 2^22 for the divisors used here: rounding is below half a step."""
     return dr.floor(dr.fma(number, 1.0 / divisor, 0.5 / divisor))

@@ -14,12 +14,12 @@ POLYNOMIALS = (0b10, 0b11, 0b111, 0b1011, 0b1101)  # x, x + 1, x^2 + x + 1, x^3 
 
 
 def niederreiter() -> Binary:
-    """The sequence in the order of its definition; other programs go through each block of 2^m points by a Gray code."""
+    """Return the sequence in the order of its definition; other programs order each block of 2^m points by a Gray code."""
     return Binary(matrices)
 
 
 def matrices() -> np.ndarray:
-    """(5, 32, 32), see `Binary`."""
+    """Return the matrices, (5, 32, 32), see `Binary`."""
     result = np.zeros((DIMENSIONS, DIGITS, DIGITS), np.uint8)
     for d, polynomial in enumerate(POLYNOMIALS):
         degree, power = polynomial.bit_length() - 1, 1
@@ -32,7 +32,10 @@ def matrices() -> np.ndarray:
 
 
 def _recursion(polynomial: int, zeros: int, count: int) -> list[int]:
-    """Values that the polynomial (bit k is the coefficient of x^k) makes zero: ``zeros`` zeros, ones, and what follows."""
+    """Return a sequence that obeys the recursion of a polynomial (bit k is the coefficient of x^k).
+
+    It begins with ``zeros`` zeros, then ones.
+    """
     length = polynomial.bit_length() - 1
     values = [0] * zeros + [1] * (length - zeros)
     while len(values) < count:
@@ -42,7 +45,7 @@ def _recursion(polynomial: int, zeros: int, count: int) -> list[int]:
 
 
 def _times(a: int, b: int) -> int:
-    """Product of polynomials modulo 2."""
+    """Return the product of polynomials modulo 2."""
     product = 0
     while b:
         product ^= a * (b & 1)

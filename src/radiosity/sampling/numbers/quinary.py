@@ -1,6 +1,6 @@
-"""Digital sequences in base 5, whatever their matrices: a table for every five digits of the index.
+"""Digital sequences in base 5 with any matrices, by a table for every five digits of the index.
 
-Point n has, as the digits of its coordinate in dimension d, the digits of n times the matrix C_d modulo 5 (H. Niederreiter,
+The digits of point n's coordinate in dimension d are the digits of n times the matrix C_d modulo 5 (H. Niederreiter,
 "Point sets and sequences with small discrepancy", Monatshefte für Mathematik 104, 1987). Digits have four bits each, eight of
 them in a word, and all digits of a word are added and reduced at once.
 """
@@ -26,11 +26,11 @@ BELOW_ONE = 1 - 2.0**-24
 
 @dataclass(frozen=True)
 class Quinary(AbstractNumbers):
-    """Patches of replicates have a digital shift each: digits of the randomisation are added to those of the coordinates.
+    """A digital sequence in base 5 with a digital shift: the randomisation's digits are added to those of the coordinates.
 
-    Line ``index`` takes point index - 1, so that the first 5^m lines are a net. The eight words of an entry, and of the
-    randomisation: the first eight digits of coordinates 1 to 4; the last four digits of 1 and 2, and of 3 and 4; the first
-    eight of 5, and its last four in the upper half.
+    Line ``index`` takes point index - 1, so that the first 5^m lines are a net. An entry, and the randomisation, has eight words:
+    the first eight digits of coordinates 1 to 4; the last four digits of 1 and 2, and of 3 and 4; the first eight of 5, and its
+    last four in the upper half.
 
     Attributes:
         matrices: a module's function that gives (5, 12, 15) digits, rows from the most significant digit of the coordinate
@@ -43,7 +43,7 @@ class Quinary(AbstractNumbers):
         return packed(np.random.Generator(np.random.Philox(stream)).integers(0, BASE, (DIMENSIONS, ROWS)))
 
     def of_patch(self, randomisation, place):
-        """The first four digits of each coordinate are moved, by multiples of 1/625."""
+        """Move the first four digits of each coordinate, by multiples of 1/625."""
         moved = list(randomisation)
         for word, step in zip((0, 1, 2, 3, 6), KRONECKER, strict=True):
             total = moved[word] + first_digits(place * step)
@@ -61,7 +61,7 @@ class Quinary(AbstractNumbers):
         return [dr.minimum(value, BELOW_ONE) for value in values]
 
     def digits(self, index, randomisation, bits: int) -> list[tuple]:
-        """Of five coordinates the first eight and the next four digits, as whole numbers below 5^8 and 5^4."""
+        """Return the first eight and the next four digits of five coordinates, as whole numbers below 5^8 and 5^4."""
         UInt32 = type(index)
         Array4u, table = _table(self.matrices, UInt32)
         n = index - 1
@@ -89,19 +89,19 @@ class Quinary(AbstractNumbers):
 
 
 def _fives(word):
-    """Five in each digit whose highest bit is set: it is eight or more."""
+    """Return five in each digit whose highest bit is set, which is eight or more."""
     high = word & 0x88888888
     return (high >> 1) + (high >> 3)
 
 
 def _halves(word):
-    """Four digits become a whole number below 5^4, in both halves of a word."""
+    """Turn four digits into a whole number below 5^4, in both halves of a word."""
     word = word - ((word >> 4) & 0x0F0F0F0F) * (16 - BASE)
     return word - ((word >> 8) & 0x00FF00FF) * (256 - BASE**2)
 
 
 def first_digits(word):
-    """UInt32: the first four digits of ``word`` / 2^32, at the upper end, four bits each."""
+    """Return the first four digits of ``word`` / 2^32, UInt32, at the upper end, four bits each."""
     four: Any = dr.mul_hi(word, type(word)(BASE**4))
     two = (four * 1311) >> 15  # the quotient by 25
     pairs = (two << 16) | (four - two * BASE**2)
@@ -111,7 +111,7 @@ def first_digits(word):
 
 
 def packed(digits: np.ndarray) -> np.ndarray:
-    """(..., 8) uint32, see `Quinary`, from (..., 5, 12) digits."""
+    """Return the words of entries, (..., 8) uint32, see `Quinary`, from digits, (..., 5, 12)."""
     digits = digits.astype(np.uint32)
     high = (digits[..., :8] << np.arange(28, -1, -4, dtype=np.uint32)).sum(axis=-1, dtype=np.uint32)
     low = (digits[..., 8:] << np.arange(12, -1, -4, dtype=np.uint32)).sum(axis=-1, dtype=np.uint32)
@@ -120,7 +120,7 @@ def packed(digits: np.ndarray) -> np.ndarray:
 
 
 def table(matrices: np.ndarray) -> np.ndarray:
-    """(3, 3125, 8) uint32: for each five digits of an index and each of their values the words of five coordinates.
+    """Return the words of five coordinates for each five digits of an index and each of their values, (3, 3125, 8) uint32.
 
     Args:
         matrices: (5, 12, 15), see `Quinary`.
@@ -132,5 +132,5 @@ def table(matrices: np.ndarray) -> np.ndarray:
 
 @cache
 def _table(matrices: Callable[[], np.ndarray], UInt32):
-    """A type of four words, and `table` on the device."""
+    """Return a type of four words, and `table` on the device."""
     return import_module(UInt32.__module__).Array4u, upload(UInt32, table(matrices()))

@@ -18,7 +18,7 @@ ROUNDS = 10
 
 @dataclass(frozen=True)
 class Random(AbstractNumbers):
-    """The counter is (index, patch), the key and the rest of the counter come from the seed and replicate."""
+    """Random numbers whose counter is (index, patch); the key and the rest of the counter come from the seed and replicate."""
 
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return stream.generate_state(WORDS, np.uint32)
@@ -43,7 +43,7 @@ class Random(AbstractNumbers):
 
 
 def philox(counter, key):
-    """Four UInt32 words from a counter of four and a key of two."""
+    """Return four UInt32 words from a counter of four words and a key of two."""
     UInt32 = type(counter[0])
     x, (k0, k1) = list(counter), (UInt32(key[0]), UInt32(key[1]))
     for _ in range(ROUNDS):

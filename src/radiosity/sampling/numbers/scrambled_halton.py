@@ -1,10 +1,10 @@
 """The Halton sequence with its digits permuted, in bases 2, 3, 5, 7, 11.
 
 The permutations are those of H. Faure, "Good permutations for extreme discrepancy", J. Number Theory 42, 1992: one for each base,
-and 0 stays 0. They leave bases 2 and 3 as they are, and part the larger bases, whose first points lie on a line.
+and 0 stays 0. They change nothing in bases 2 and 3. In the larger bases, whose first points lie on a line, they separate them.
 
-RenderPark adds its place m = 0, 1, ... to each digit up to the leading one instead, modulo the base. That is not used here: in
-base 2 its numbers 1 and 3 are equal, and without the cut at the leading digit it would be one digital shift.
+RenderPark adds instead, up to the leading digit, the digit's place m = 0, 1, ... to each digit, modulo the base. That is not used
+here: in base 2 its numbers 1 and 3 are equal, and without the limit at the leading digit it would be one digital shift.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ STEPS = (14, 16, 19, 22, 32)  # 2^22 < 7^8: up to here two blocks are enough
 
 @dataclass(frozen=True)
 class ScrambledHalton(AbstractNumbers):
-    """Scrambled radical inverses, each moved by a seeded shift modulo 1 (Cranley and Patterson 1976)."""
+    """The scrambled Halton sequence: each coordinate is moved by a seeded shift modulo 1 (Cranley and Patterson 1976)."""
 
     def randomisation(self, stream: np.random.SeedSequence) -> np.ndarray:
         return np.random.Generator(np.random.Philox(stream)).integers(0, 2**32, WORDS, dtype=np.uint32)
@@ -45,7 +45,7 @@ class ScrambledHalton(AbstractNumbers):
 
 
 def scrambled(index, base: int, bits: int):
-    """Digits of ``index`` (UInt32, below 2**bits) in ``base``, permuted and mirrored at the point; Float32 in [0, 1]."""
+    """Return the digits of ``index`` (UInt32, below 2**bits) in ``base``, permuted and mirrored; Float32 in [0, 1]."""
     Float: Any = dr.float32_array_t(type(index))
     parts, place, start = [], 1, 0
     for digits in BLOCKS[base]:
@@ -62,7 +62,7 @@ def scrambled(index, base: int, bits: int):
 
 
 def permutation(base: int) -> list[int]:
-    """Faure's: halves that interleave for even bases; the base below with a new middle for odd ones."""
+    """Return Faure's permutation: for even bases two halves interleave; for odd ones the base below gets a new middle."""
     if base == 2:
         return [0, 1]
     if base % 2 == 0:
@@ -75,7 +75,7 @@ def permutation(base: int) -> list[int]:
 
 @cache
 def _table(base: int, UInt32):
-    """Permuted and mirrored digits of each block's values as whole numbers, one block after the other."""
+    """Return permuted and mirrored digits of each block's values as whole numbers, one block after the other."""
     tables = []
     for digits in BLOCKS[base]:
         rest, mirrored = np.arange(base**digits), np.zeros(base**digits, np.int64)

@@ -1,13 +1,13 @@
-"""More dimensions than a sequence has: copies of it in other orders, one for each leg of a walk.
+"""More dimensions than a sequence has: copies of it in other orders, one for each segment of a walk.
 
 A. B. Owen, "Latin supercube sampling for very high-dimensional simulations", ACM TOMACS 8(1), 1998, pads a sequence with shuffled
 copies of itself; B. Burley, "Practical hash-based Owen scrambling", JCGT 9(4), 2020, shuffles by a nested uniform permutation of
 the index in base 2, computed by a hash. So every aligned block of 2^m lines takes the points of an aligned block, and a copy
 is as even as the sequence.
 
-In such a permutation each bit is flipped or not as the bits above it say. Burley's hash leaves relations between
-the flips of neighbours, because sums and products carry as simply as they add; the steps here multiply bits too (A. Klimov and
-A. Shamir, "A new class of invertible mappings", CHES 2002). Four rounds leave nothing that we could measure with 10^6 keys.
+In such a permutation the bits above a bit say whether it is flipped. Burley's hash leaves relations between the flips of
+neighbours, since the carries of sums and products are as simple as the sums. The steps here multiply bits too (A. Klimov and
+A. Shamir, "A new class of invertible mappings", CHES 2002). After four rounds no relation was measured with 10^6 keys.
 """
 
 import drjit as dr
@@ -23,11 +23,11 @@ FACTORS = (  # of each round; odd, so that each bit of a product holds the same 
 
 
 def key(randomisation, leg):
-    """UInt32, another for each leg; zero for leg 0 (and, with a chance of 2^-32, for one more).
+    """Return the key of a segment, UInt32, another for each; zero for segment 0 (and, with a chance of 2^-32, for one more).
 
     Args:
         randomisation: eight UInt32, of the scene and replicate.
-        leg: UInt32, how often the walk was reflected before; it may differ from lane to lane.
+        leg: UInt32, the number of the segment: how often the walk was reflected before; it may differ from lane to lane.
     """
     mixed = leg
     for word in randomisation[4:]:
@@ -36,7 +36,7 @@ def key(randomisation, leg):
 
 
 def shuffled(index, key):
-    """Which line's point a line takes: UInt32 in [1, 2^28], another permutation of these for each key; key 0 changes nothing.
+    """Return the index of the point that a line takes: UInt32 in [1, 2^28], another permutation for each key; key 0 changes none.
 
     Args:
         index: UInt32 in [1, 2^28]; larger ones begin again at 1.
@@ -57,7 +57,7 @@ def shuffled(index, key):
 
 
 def mix(x):
-    """A bijection of 32-bit words in which each bit depends on all (C. Wellons, "Prospecting for hash functions", 2018)."""
+    """Map 32-bit words by a bijection in which each bit depends on all (C. Wellons, "Prospecting for hash functions", 2018)."""
     x = (x ^ (x >> 16)) * 0x7FEB352D
     x = (x ^ (x >> 15)) * 0x846CA68B
     return x ^ (x >> 16)

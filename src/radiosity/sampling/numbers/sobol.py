@@ -12,12 +12,12 @@ DIRECTIONS = ((1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)), (3, 2, (1, 1, 1))
 
 
 def sobol() -> Binary:
-    """The sequence in the order of its definition; other programs go through each block of 2^m points by a Gray code."""
+    """Return the sequence in the order of its definition; other programs order each block of 2^m points by a Gray code."""
     return Binary(matrices)
 
 
 def matrices() -> np.ndarray:
-    """(5, 32, 32), see `Binary`."""
+    """Return the matrices, (5, 32, 32), see `Binary`."""
     result = np.zeros((DIMENSIONS, DIGITS, DIGITS), np.uint8)
     result[0] = np.eye(DIGITS)
     for d, (degree, inner, first) in enumerate(DIRECTIONS, start=1):

@@ -1,12 +1,12 @@
 """Indices of the Halton sequence whose lines have like directions.
 
-Indices with equal remainder modulo S = 2^a 3^b have their first two numbers, a line's direction, in one box of
-2^-a x 3^-b. A patch that fires many lines for each box can fire them box by box, which gives packets of 16 like lines and
-needs no sorting. Boxes are walked to and fro, so that neighbours in the walk are neighbours in the square.
+Indices with equal remainder modulo S = 2^a 3^b have their first two numbers, a line's direction, in one box of 2^-a x 3^-b. A
+patch that fires many lines for each box can fire them box by box. This gives packets of 16 like lines and needs no sorting. The
+boxes are taken forward and backward in turn, so that consecutive boxes are neighbours in the square.
 
-The first number turns a line about the normal, by 2 pi of it, the second is the square of its sine to the normal: where that
-angle is 45 degrees, a step of the first moves the direction 4.4 times as far as one of the second. So there are more columns
-than rows.
+The first number times 2 pi is the angle about the normal. The second is the square of the sine of the angle to the normal. Where
+that angle is 45 degrees, a step of the first moves the direction 4.4 times as far as one of the second. So there are more
+columns than rows.
 """
 
 import numpy as np
@@ -16,24 +16,24 @@ SIZES = ((6, 3), (7, 3), (8, 3), (8, 4))  # (a, b): 1728, 3456, 6912, 20736 boxe
 
 
 def boxes(a: int, b: int) -> int:
-    """S."""
+    """Return the number of boxes, S."""
     return 2**a * 3**b
 
 
 def largest(lines_per_patch: float) -> tuple[int, int] | None:
-    """The finest boxes that a patch's lines fill, or None where even the coarsest are too many."""
+    """Return the finest boxes that a patch's lines fill, or None where even the coarsest are too many."""
     fitting = [size for size in SIZES if boxes(*size) * FULL <= lines_per_patch]
     return fitting[-1] if fitting else None
 
 
 def walk(a: int, b: int) -> np.ndarray:
-    """(S,) uint32: remainders modulo S in the order in which their boxes are walked."""
+    """Return remainders modulo S in the order in which lines take their boxes, (S,) uint32."""
     columns, rows = 2**a, 3**b
     row = np.repeat(np.arange(rows), columns)
     column = np.tile(np.arange(columns), rows)
     column = np.where(row % 2, columns - 1 - column, column)
     low, high = _mirrored(column, 2, a), _mirrored(row, 3, b)
-    # the remainder modulo S that is low modulo 2^a and high modulo 3^b
+    # the remainder modulo S that equals low modulo 2^a and high modulo 3^b
     inverse = pow(columns, -1, rows) if rows > 1 else 0
     return (low + columns * (((high - low) * inverse) % rows)).astype(np.uint32)
 

@@ -1,4 +1,4 @@
-"""Lines through the whole scene, and their spans: line by line, and along each line in order."""
+"""Chords: lines through the whole scene, and their spans, line by line, and along each line in order."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -26,7 +26,7 @@ class Walked:
 
 
 def crossing_box(origin, direction, low, high):
-    """Whether lines meet a box; where they enter it, as a distance; and through a side across which axis."""
+    """Return whether lines meet a box, the distance at which they enter it, and the axis across which that side lies."""
     inverse = 1 / direction
     one, two = (low - origin) * inverse, (high - origin) * inverse
     each = dr.minimum(one, two)
@@ -37,13 +37,14 @@ def crossing_box(origin, direction, low, high):
 
 
 def walk(crossings: Crossings, index: Any, count: int, line, capacity: int, *, coherent: bool) -> Walked:
-    """All spans of the lines ``index``.
+    """Return all spans of the lines ``index``.
 
     Args:
-        index: UInt32, numbers that ``line`` turns into origins, directions, and, as a mask and patches, whether lines begin
-            behind the first face already, and on which patch; in any order.
-        count: all of them are below it.
-        capacity: spans that there is room for at first.
+        index: UInt32, numbers of lines, in any order.
+        count: all numbers are below it.
+        line: turns numbers into origins, directions, a mask of the lines that begin behind the first face already, and the
+            patches on which those begin.
+        capacity: the number of spans for which there is room at first.
     """
     types = crossings.geometry.device.types
     UInt32 = types.UInt32
@@ -77,7 +78,7 @@ def walk(crossings: Crossings, index: Any, count: int, line, capacity: int, *, c
 
 
 def _walk(crossings: Crossings, index, lines: int, line, sink: Sink, coherent: bool) -> None:
-    """Walk lines to their ends, all in one kernel."""
+    """Follow lines until they end, all in one kernel."""
     types = crossings.geometry.device.types
     UInt32, Bool, width = types.UInt32, types.Bool, dr.width(index)
     crossings.prepare()
@@ -94,7 +95,7 @@ def _walk(crossings: Crossings, index, lines: int, line, sink: Sink, coherent: b
 
 
 def _resolved(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What is seen through backs that let lines pass: what the next span of the line ends on, seen from one side only."""
+    """Fill in what is seen through backs that let lines pass: what the next span of the line ends on, seen from one side only."""
     pending = other == PENDING
     if pending.any():
         at = np.where(pending, len(other), np.arange(len(other)))

@@ -1,4 +1,4 @@
-"""In a kernel: the next face on a line, what it shows to either side, and where the line goes on behind it."""
+"""Crossings: the next face on a line, what it shows to either side, and where the line goes on behind it."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,8 +14,8 @@ from ..hits import both_sides, patch_of
 from ..ray_generation import before
 from .hull import nothing_beyond
 
-ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `firing`: no patch has these numbers
-PENDING, NOBODY = 0xFFFFFFFB, 0xFFFFFFFA  # what is not known yet, and who looks forward where a passing back hides all behind
+ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `line_tracer`: no patch has these numbers
+PENDING, NOBODY = 0xFFFFFFFB, 0xFFFFFFFA  # not known yet; and no side looks forward, since a passing back hides all behind
 CODES = NOBODY  # from here on numbers are no patches
 ONE_WAY = 1 << 31  # of a patch number: `one` sees it, but it does not see `one`
 
@@ -25,10 +25,10 @@ class Crossing:
     """A face on a line.
 
     Attributes:
-        valid: there is one.
+        valid: there is a face.
         near, far: the patch on the side where the line comes from, and on that where it goes on; LOST for an absorbing
             back, and near is ESCAPED where there is no face.
-        near_passes, far_passes: that side is a back that lets lines pass, and ``near`` or ``far`` means nothing.
+        near_passes, far_passes: that side is a back that lets lines pass, and ``near`` or ``far`` has no meaning.
         origin: where the line goes on: behind the face.
         free: nothing lies behind the face.
     """
@@ -44,7 +44,7 @@ class Crossing:
 
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """The faces of a scene, as lines that go through them meet them."""
+    """The faces of a scene, for lines that go on through them."""
 
     geometry: Geometry
 
@@ -55,7 +55,7 @@ class Crossings:
 
     @cached_property
     def records(self):
-        """(n_faces * 16,) Float: origin, edges, normal, whether there is nothing in front and behind, and the plane's offset."""
+        """Origin, edges, normal, whether there is nothing in front and behind, and the plane's offset: (n_faces * 16,) Float."""
         geometry = self.geometry
         origin, first, second = geometry.faces.frames
         free, least = nothing_beyond(geometry), geometry.faces.plane_offsets[:, None]
@@ -63,10 +63,10 @@ class Crossings:
         return upload(self.geometry.device.types.Float, record.astype(np.float32))
 
     def next(self, origin, direction, active, *, coherent: bool = False) -> Crossing:
-        """The first face from ``origin`` on.
+        """Return the first face from ``origin`` on; called in a kernel.
 
-        Lines go on from the point with the hit's coordinates on the face, which is as exact as the face's own corners; the
-        point a distance along the line is as inexact as the line is long, and may lie before a small face near the centre.
+        Lines go on from the point with the hit's coordinates on the face, which is as exact as the face's own corners. The point
+        at the hit's distance along the line is as inexact as the line is long, and may lie before a small face near the centre.
         """
         geometry = self.geometry
         types = geometry.device.types

@@ -1,4 +1,4 @@
-"""What span ends gather from the patches at the other ends, replicates side by side."""
+"""The ends of spans, and what they gather from the patches at the other ends, replicates side by side."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Ends:
 
     @staticmethod
     def of(drawn: Sequence[Pairs], n_patches: int) -> "Ends":
-        """Of the spans of each replicate."""
+        """Make the ends of the spans of each replicate."""
         ones, others = ([getattr(pairs, end) for pairs in drawn] for end in ("one", "other"))
         shift = np.repeat(np.arange(len(drawn)) * n_patches, [len(one) for one in ones])
         one, other = (np.concatenate(ends).astype(np.int64) for ends in (ones, others))
@@ -39,15 +39,18 @@ class Ends:
         )
 
     def number(self, total: int) -> np.ndarray:
-        """(total,) int64 ends on each patch."""
+        """Return the number of ends on each patch, (total,) int64."""
         return np.bincount(self.counted, minlength=total)
 
     def received(self, radiosity: np.ndarray) -> np.ndarray:
-        """(n_groups, total) sums of partners' radiosity, likewise given: in the order of spans, the same on every machine."""
+        """Return sums of the radiosity of the patches at the other ends, (n_groups, total) as ``radiosity`` is.
+
+        They are added in the order of spans, which is the same on every machine.
+        """
         return np.stack([np.bincount(self.at, band[self.sees], len(band)).astype(float) for band in radiosity])
 
 
 def of_lines(pairs: Pairs, first: int, end: int) -> Pairs:
-    """The spans of some of the lines."""
+    """Return the spans of the lines ``first`` to below ``end``."""
     rows = slice(*np.searchsorted(pairs.line, (first, end)))
     return Pairs(pairs.line[rows], pairs.one[rows], pairs.other[rows], pairs.ends_per_line)

@@ -1,7 +1,7 @@
-"""Where lines enter a scene whose hull is a box, as that of most rooms: found by a table, without a trace.
+"""Entrance: where lines enter a scene whose hull is a box, as that of most rooms. A table finds it, without a trace.
 
-A line that comes from outside meets nothing before the box about the scene. Where a face lies in a side of that box and shows
-it an absorbing or passing back, the line's first crossing is known from the point of entrance.
+A line that comes from outside meets nothing before the box about the scene. Where a face lies in a side of that box, and its
+back absorbs or lets lines pass, the line's first crossing is known from the point of entrance.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from .crossing import ESCAPED, LOST, Crossings
 
 CELLS = 128  # of a table, along each edge of each side of the box
 NONE = 0xFFFFFFFF
-INSIDE = 1e-5  # of a face: nearer its edges, and where no face of the table is, lines are traced
+INSIDE = 1e-5  # of a face: lines are traced where they enter nearer its edges than this, and where the table has no face
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class Entrance:
 
     Attributes:
         crossings: the scene's faces.
-        low, high: (3,) corners of the box, in the caster's units.
+        low, high: (3,) corners of the box, in the BVH's units.
     """
 
     crossings: Crossings
@@ -37,7 +37,7 @@ class Entrance:
 
     @cached_property
     def faces(self) -> np.ndarray:
-        """(6, CELLS, CELLS) uint32: for each axis the low and the high side, the face that holds a cell's centre."""
+        """The face that holds each cell's centre, for each axis on the low and the high side: (6, CELLS, CELLS) uint32."""
         geometry = self.crossings.geometry
         origin, first, second = geometry.faces.frames
         offset = geometry.faces.offset(np.arange(len(origin)), origin)
@@ -67,12 +67,12 @@ class Entrance:
 
     @cached_property
     def known(self) -> bool:
-        """Some cell holds a face."""
+        """True where some cell holds a face."""
         return bool((self.faces != NONE).any())
 
     @cached_property
     def _tables(self):
-        """The faces of all cells, and for each face its first patch, and cell counts and flags as in hit records."""
+        """The faces of all cells; and each face's first patch, and cell counts and flags as in hit records."""
         geometry = self.crossings.geometry
         scene, patches = geometry.scene, geometry.patches
         packed = patches.columns | (patches.rows.astype(np.int64) << COLUMN_BITS) | np.where(scene.is_quad, QUAD, 0)
@@ -81,10 +81,12 @@ class Entrance:
         return upload(UInt32, self.faces), upload(UInt32, np.column_stack([patches.first[:-1], packed]).astype(np.uint32))
 
     def find(self, point, direction, axis):
-        """In a kernel: whether the first face is known, the patch on its inner side, and where lines go on behind it.
+        """Return whether the first face is known, the patch on its inner side, and where lines go on behind it.
+
+        It is called in a kernel.
 
         Args:
-            point: where lines enter the box; axis: UInt32, through a side across this axis.
+            point: where lines enter the box. axis: UInt32, the axis across which the side lies that they enter by.
         """
         geometry = self.crossings.geometry
         types = geometry.device.types

@@ -1,4 +1,4 @@
-"""Sides of faces beyond which there is nothing: a line that leaves one for good need not be traced."""
+"""Sides of faces beyond which there is nothing: a line that leaves the scene there need not be traced."""
 
 import numpy as np
 
@@ -6,14 +6,14 @@ from ...scene.precision import EPSILON
 from ..faces import OFFSET
 from ..geometry import Geometry
 
-DIRECTIONS = 96  # the farthest vertices of so many directions sort out nearly all faces inside
-MOST = 1 << 28  # products of faces and vertices: where more would be asked for, no side is known to be free
-FEW = 1 << 22  # of them at a time
+DIRECTIONS = 96  # the farthest vertices in so many directions sort out nearly all faces inside
+MOST = 1 << 28  # products of faces and vertices: where more would be needed, no side is known to be free
+FEW = 1 << 22  # products at a time
 BESIDE = 4 * EPSILON  # of a vertex's largest coordinate: vertices this little in front of a plane lie in it
 
 
 def nothing_beyond(geometry: Geometry) -> np.ndarray:
-    """(n_faces, 2) bool: no vertex of the scene lies in front of the face; or behind it."""
+    """Return whether no vertex of the scene lies in front of each face, and whether none lies behind it: (n_faces, 2) bool."""
     vertices = geometry.bvh.vertices.astype(np.float64)
     vertices = vertices[np.unique(geometry.scene.faces[geometry.scene.faces >= 0])]
     origin, normal = geometry.faces.frames[0], geometry.faces.normals
@@ -28,7 +28,7 @@ def nothing_beyond(geometry: Geometry) -> np.ndarray:
 
 
 def _highest(normals: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """The largest height of the points above a plane through the origin, for each normal, less what they are rounded by."""
+    """Return the largest height of points above a plane through the origin, for each normal, less what points are rounded by."""
     result, rounded = np.full(len(normals), -np.inf), BESIDE * np.abs(points).max(axis=1)
     at_once = max(1, FEW // max(len(points), 1))
     for start in range(0, len(normals), at_once):
@@ -38,7 +38,7 @@ def _highest(normals: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def _sphere(count: int) -> np.ndarray:
-    """(count + 6, 3) directions about evenly on the sphere (a spiral), and the axes."""
+    """Return directions about evenly on the sphere (a spiral), and the axes: (count + 6, 3)."""
     z = 1 - (2 * np.arange(count) + 1) / count
     angle = np.pi * (1 + 5**0.5) * np.arange(count)
     radius = np.sqrt(1 - z * z)

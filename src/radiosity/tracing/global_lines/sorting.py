@@ -1,7 +1,7 @@
-"""Lines in an order in which neighbours are near each other: they touch the same parts of the tree, and trace faster.
+"""An order of lines in which neighbours are near each other: they touch the same parts of the BVH, and trace faster.
 
 The order changes no result: every line is traced by itself. It costs no sorting: Halton indices with equal remainders modulo
-powers of the bases lie in one box of the cube (see `sampling.numbers.strata`), and the boxes are walked one by one.
+powers of the bases lie in one box of the cube (see `sampling.numbers.strata`), and lines go box by box.
 """
 
 from functools import cache
@@ -22,8 +22,10 @@ LEAST = 16  # lines of a box: a packet
 
 
 def ordered(types, kind: str, numbers: str, begin, count: int):
-    """UInt32, a permutation of the lanes 0 to ``count`` - 1, such that like lines follow each other; as they are where that
-    cannot be. Lane 0 has the line of index ``begin`` (UInt32, opaque)."""
+    """Return a permutation of the lanes 0 to ``count`` - 1, UInt32, in which like lines follow each other.
+
+    Lane 0 has the line of index ``begin`` (UInt32, opaque). Where there are no boxes, the lanes stay in their order.
+    """
     lane = dr.arange(types.UInt32, max(count, 2))
     n = _boxes(kind)
     if numbers != "halton" or n == 1 or count < LEAST * n:
@@ -43,7 +45,7 @@ def _boxes(kind: str) -> int:
 
 @cache
 def _walk(UInt32, kind: str):
-    """Remainders in the order of their boxes, on the device."""
+    """Return remainders in the order of their boxes, on the device."""
     remainder, keys = np.arange(_boxes(kind)), []
     for base, digits in zip(BASES, DIGITS[kind], strict=True):
         value, mirrored = remainder.copy(), np.zeros_like(remainder)

@@ -1,7 +1,7 @@
-"""Spans of global lines: pairs of patches that see each other, for whoever needs them.
+"""Spans of global lines: pairs of patches that see each other.
 
-A span is a straight piece between two sides that radiate. Its ends are uniform on patches and cosine distributed, so that the
-other end of a span of patch i lies on patch j with probability F_ij, at both ends alike (Sbert 1993).
+A span is a straight piece between two sides that radiate. Its ends are uniform on patches and cosine distributed. So the other
+end of a span of patch i lies on patch j with probability F_ij; this holds for both ends (Sbert 1993).
 """
 
 import warnings
@@ -32,10 +32,10 @@ from .surfaces import Surfaces
 __all__ = ["CODES", "ESCAPED", "LOST", "ONE_WAY", "Pairs", "Spans"]
 
 CHUNK = 1 << 20  # lines of a launch
-FEW_ENDS, NO_ENDS = 1e-2, 1e-4  # of the ends of a line: where there are fewer, that is told; and refused
+FEW_ENDS, NO_ENDS = 1e-2, 1e-4  # expected ends of a line: below the first is a warning, below the second an error
 LEAST_SIDE, MOST_SIDE = 3, 9  # a bundle's lattice has 2^3 to 2^9 lines along an edge
-DENSE = 16  # lines of a bundle to a face: from here on packets pay
-ROOM = 1.25  # spans that a launch makes room for, over those expected
+DENSE = 16  # lines of a bundle for each face: with more, packets pay
+ROOM = 1.25  # spans for which a launch makes room, divided by those expected
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class Pairs:
 
 @dataclass(frozen=True, eq=False)
 class Spans:
-    """Draws spans; every span is a function of (seed, replicate, number of its line).
+    """A source of spans; every span is a function of (seed, replicate, number of its line).
 
     Attributes:
         geometry: the scene on a device.
@@ -77,7 +77,7 @@ class Spans:
         self._check_filled()
 
     def _check_filled(self) -> None:
-        """Tell where the faces fill next to nothing of the ball that lines go through, and refuse where no run would end."""
+        """Warn where the faces fill next to nothing of the ball that lines go through, and raise where no run would end."""
         ends = float(self.ends_per_line.sum())
         if ends >= FEW_ENDS:
             return
@@ -94,10 +94,10 @@ class Spans:
 
     @turn()
     def draw(self, replicate: int, first: int, count: int) -> Pairs:
-        """Spans of the lines ``first`` to below ``first + count`` (from 0) of a replicate.
+        """Return the spans of the lines ``first`` to below ``first + count`` (from 0) of a replicate.
 
         Raises:
-            MethodError: the sequence of numbers has not so many points.
+            MethodError: the sequence of numbers has fewer points.
         """
         parts = []
         for start in range(0, count, CHUNK):
@@ -132,13 +132,13 @@ class Spans:
 
     @cached_property
     def radius(self) -> float:
-        """Of the ball about the middle of the scene's box, in the caster's units."""
+        """Radius of the ball about the middle of the scene's box, in the BVH's units."""
         distance = np.linalg.norm(self._vertices - self.middle, axis=1).max()
         return float(np.float32(distance * (1 + 8 * EPSILON)))
 
     @cached_property
     def middle(self) -> np.ndarray:
-        """(3,) of that ball."""
+        """Centre of that ball, (3,)."""
         return self._bounds.mean(axis=0)
 
     @cached_property
@@ -163,7 +163,7 @@ class Spans:
         return upload(self.geometry.device.types.UInt32, np.array(drawn, np.uint32))
 
     def _launch(self, replicate: int, first: int, count: int):
-        """Number of the line, one end and the other, of the spans of at most CHUNK lines."""
+        """Return the number of the line, one end and the other, of the spans of at most CHUNK lines."""
         types = self.geometry.device.types
         UInt32 = types.UInt32
         begin, at = dr.opaque(UInt32, first + 1), dr.opaque(UInt32, 2 * replicate)
@@ -195,7 +195,7 @@ class Spans:
         return walked.line, walked.one, walked.other
 
     def _line(self, points, begin, lane):
-        """A point and the direction of the line with number ``begin`` + ``lane``, from 1 on."""
+        """Return a point and the direction of the line with number ``begin`` + ``lane``, from 1 on."""
         types = self.geometry.device.types
         radius = dr.opaque(types.Float, self.radius)
         if self.method.lines == "global":
@@ -210,16 +210,16 @@ class Spans:
 
     @cached_property
     def _vertices(self) -> np.ndarray:
-        """(n, 3) float64, those that faces use, in the caster's units."""
+        """Vertices that faces use, (n, 3) float64, in the BVH's units."""
         faces = self.geometry.scene.faces
         return self.geometry.bvh.vertices[np.unique(faces[faces >= 0])].astype(np.float64)
 
     @cached_property
     def _bounds(self) -> np.ndarray:
-        """(2, 3) the scene's box in the caster's units."""
+        """The scene's box in the BVH's units, (2, 3)."""
         return np.stack([self._vertices.min(axis=0), self._vertices.max(axis=0)])
 
     @property
     def _box(self) -> np.ndarray:
-        """(2, 3) the box, a little wider."""
+        """The box, a little wider, (2, 3)."""
         return self._bounds + np.array([[-1.0], [1.0]]) * 4 * EPSILON * 2.0**REACH

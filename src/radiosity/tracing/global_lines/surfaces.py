@@ -1,6 +1,6 @@
-"""Spans without chords: from a point uniform on all sides that radiate, in a cosine distributed direction.
+"""Spans without chords: each begins at a uniform point of all sides that radiate, in a cosine distributed direction.
 
-The density of such a line's two ends is cos cos' / (pi r^2 A), A the area of all sides: it is the same with the ends
+The density of such a line's two ends is cos cos' / (pi r^2 A), where A is the area of all sides. It is the same with the ends
 exchanged, and it is the density of a span of global lines. So one trace gives a span, and both its ends count.
 """
 
@@ -32,7 +32,7 @@ class Surfaces:
 
     @cached_property
     def sides(self) -> np.ndarray:
-        """(n_sides,) int64 face numbers, the top bit for a back: in the order of patches."""
+        """Face numbers, the top bit for a back, in the order of patches: (n_sides,) int64."""
         back = self.geometry.scene.back == Back.RADIATES
         face = np.repeat(np.arange(len(back)), 1 + back)
         second = np.concatenate([[False], face[1:] == face[:-1]])
@@ -40,7 +40,7 @@ class Surfaces:
 
     @cached_property
     def area(self) -> float:
-        """Of all sides, m²."""
+        """Area of all sides, m²."""
         return float(self._areas.sum())
 
     @property
@@ -49,19 +49,19 @@ class Surfaces:
 
     @cached_property
     def ends(self) -> np.ndarray:
-        """(n_sides,) uint32: where each side's interval of 32-bit words ends, the last word included."""
+        """The last 32-bit word of each side's interval, (n_sides,) uint32."""
         share = np.cumsum(self._areas) / self._areas.sum()
         share[-1] = 1.0
         return (np.ceil(share * 2.0**32) - 1).clip(0, 2**32 - 1).astype(np.uint32)
 
     @cached_property
     def bits(self) -> int:
-        """The guide table has 2^bits cells."""
+        """Binary logarithm of the number of cells of the guide table."""
         return int(np.clip(np.ceil(np.log2(4 * len(self.sides))), 4, np.log2(MOST_CELLS)))
 
     @cached_property
     def _tables(self):
-        """Ends of intervals, side of the first word of each cell, and face of each side, on the device."""
+        """Three tables on the device: ends of intervals, side of the first word of each cell, face of each side."""
         UInt32 = self.geometry.device.types.UInt32
         first_words = np.arange(1 << self.bits, dtype=np.uint64) << np.uint64(32 - self.bits)
         guide = np.searchsorted(self.ends, first_words.astype(np.uint32), side="left")
@@ -69,14 +69,14 @@ class Surfaces:
 
     @cached_property
     def _places(self):
-        """(n_faces * 2,) UInt32: first patch, and cell counts and flags as in hit records."""
+        """First patch, and cell counts and flags as in hit records, (n_faces * 2,) UInt32."""
         scene, patches = self.geometry.scene, self.geometry.patches
         packed = patches.columns | (patches.rows.astype(np.int64) << COLUMN_BITS) | np.where(scene.is_quad, QUAD, 0)
         packed |= scene.back.astype(np.int64) << 30
         return upload(self.geometry.device.types.UInt32, np.column_stack([patches.first[:-1], packed]).astype(np.uint32))
 
     def choose(self, word):
-        """In a kernel: the side whose interval holds each word."""
+        """Return the side whose interval holds each word; called in a kernel."""
         UInt32 = self.geometry.device.types.UInt32
         ends, guide, sides = self._tables
         side = dr.gather(UInt32, guide, word >> (32 - self.bits))
@@ -84,11 +84,11 @@ class Surfaces:
         return dr.gather(UInt32, sides, side)
 
     def word(self, numbers, index):
-        """In a kernel: 32 bits to choose a side by. A number has 24; the index, spread evenly, gives the rest."""
+        """Return 32 bits that choose a side; called in a kernel. A number has 24; the index, spread evenly, gives the rest."""
         return (self.geometry.device.types.UInt32(numbers[4] * 2.0**24) << 8) | ((index * GOLDEN) >> 24)
 
     def leave(self, numbers, index):
-        """In a kernel: patch, origin and direction of a line from a uniform point of all sides."""
+        """Return patch, origin and direction of a line from a uniform point of all sides; called in a kernel."""
         geometry = self.geometry
         types = geometry.device.types
         Float = types.Float
@@ -105,9 +105,12 @@ class Surfaces:
         return patch, *Frame.of(geometry, face).leave(s * columns, t * rows, numbers)
 
     def spans(self, crossings: Crossings, points, lane, count: int):
-        """Number of the line, one end and the other; ``points`` gives the numbers of lanes, ``lane`` is a permutation of them.
+        """Return the number of the line, one end and the other, of each span.
 
-        A line that meets no patch, or one that does not look back, was found from this end only: it counts twice.
+        A line that meets no patch, or a patch that does not look back, was found from this end only: it counts twice.
+
+        Args:
+            points: gives the numbers of lanes. lane: a permutation of the lanes.
         """
         types = self.geometry.device.types
         patch, origin, direction = self.leave(points(lane), lane)
@@ -128,7 +131,7 @@ class Surfaces:
         return line, one, other
 
     def _through(self, crossings: Crossings, origin, direction):
-        """What lines land on, with ONE_WAY where they passed a back."""
+        """Return the patch that lines hit, with ONE_WAY where they passed a back; called in a kernel."""
         crossings.prepare()
         types = self.geometry.device.types
 

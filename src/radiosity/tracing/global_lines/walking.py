@@ -1,7 +1,7 @@
-"""In a kernel: one step of a line from face to face, and the span that it ends.
+"""One step of a line from face to face, and the span that it ends; called in a kernel.
 
-The side of a face that looks forward begins a span, the next side that looks backward ends it. Where backs let lines pass, two
-sides need not see each other: one looks through a back whose front hides the other.
+The side of a face that looks forward begins a span, and the next side that looks backward ends it. Where backs let lines pass,
+it may be that only one of two sides sees the other: it looks through a back whose front hides it from the other.
 """
 
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ WIDE = 64  # entries of a counter: arrays of one entry compile kernels of their 
 
 @dataclass(eq=False)
 class Sink:
-    """Where spans go, in any order: (line, rank of the span on its line, one, other) each.
+    """Buffers for spans, in any order: (line, rank of the span on its line, one, other) each.
 
     Attributes:
-        counter: UInt32, its first entry counts spans; also those that there was no room for.
+        counter: UInt32, its first entry counts spans; also those for which there was no room.
         records: UInt32, ``capacity`` times four words.
         counts: UInt32, spans of each line.
     """
@@ -41,15 +41,15 @@ class Sink:
 
 
 def step(crossings: Crossings, index, direction, state, sink: Sink, coherent: bool):
-    """Go on to the next face.
+    """Go on to the next face; called in a kernel.
 
     Args:
         index: UInt32, the lines' numbers.
-        state: origin; going; blind: nothing lies ahead; open: the side behind that looks for the end of its span, NOBODY where a
-            passing back hides it; seen: what one sees who looks back from here; and spans so far.
+        state: origin; going; blind: nothing lies ahead; begun: the side behind whose span has no end yet, NOBODY where a passing
+            back hides it; seen: what is seen when looking back from here; and the number of spans so far.
 
     Returns:
-        The same behind the face.
+        The state behind the face.
     """
     geometry = crossings.geometry
     types = geometry.device.types
