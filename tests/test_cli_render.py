@@ -5,15 +5,14 @@ from dataclasses import replace
 import pytest
 
 import radiosity as rd
-from radiosity.cli.render import _view
+from radiosity.cli.render import Viewpoint, _view
 from radiosity.scene import Camera
 
 FIRST, SECOND = Camera((1, 2, 3), (4, 5, 6), (0, 0, 1), 30.0, 100, 50), Camera((7, 8, 9), (1, 1, 1), (0, 1, 0), 60.0, 20, 10)
-NOTHING = {"number": None, "origin": None, "target": None, "up": None, "fov": None}
 
 
 def view(scene, **options):
-    return _view(scene, *(NOTHING | options).values())
+    return _view(scene, Viewpoint(**options))
 
 
 @pytest.fixture
@@ -23,15 +22,15 @@ def two():
 
 def test_the_scene_s_own(two):
     assert view(two) is None  # the renderer takes the first
-    assert view(two, number=0) == 0
-    assert view(two, number=1) == 1
-    assert view(two, number=7) == view(two, number=7, fov=20.0) == 7  # which it refuses
+    assert view(two, camera=0) == 0
+    assert view(two, camera=1) == 1
+    assert view(two, camera=7) == view(two, camera=7, fov=20.0) == 7  # which it refuses
 
 
 def test_changes_are_those_of_the_camera_asked_for(two):
     assert view(two, fov=20.0) == replace(FIRST, fov=20.0)
-    assert view(two, number=1, fov=20.0) == replace(SECOND, fov=20.0)
-    assert view(two, number=1, up="1,0,0") == replace(SECOND, up=(1, 0, 0))
+    assert view(two, camera=1, fov=20.0) == replace(SECOND, fov=20.0)
+    assert view(two, camera=1, up="1,0,0") == replace(SECOND, up=(1, 0, 0))
     with pytest.raises(rd.SceneError, match="no camera for --up or --fov"):
         view(replace(two, cameras=()), fov=20.0)
 
@@ -49,7 +48,7 @@ def test_one_of_the_user_s_own(name, up):
     [
         ({"origin": "0,0,0"}, "go together"),
         ({"target": "0,0,0"}, "go together"),
-        ({"number": 0, "origin": "0,0,0", "target": "1,0,0"}, "not both"),
+        ({"camera": 0, "origin": "0,0,0", "target": "1,0,0"}, "not both"),
     ],
 )
 def test_what_does_not_go_together(two, options, message):

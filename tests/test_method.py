@@ -26,6 +26,8 @@ def test_a_method_prints_as_its_choices():
     [
         ({"lines": "global", "equation": "continuous", "order": "multipath"}, "fresh uniform point"),
         ({"lines": "global"}, "cross patches as they come"),
+        ({"lines": "spans", "order": "well-distributed"}, "cross patches as they come"),
+        ({"lines": "bundles", "order": "incremental"}, "take multipath, matrix or regular"),
         ({"lines": "bundles", "order": "multipath"}, "parallel"),
         ({"order": "multipath"}, "take --lines global"),
         ({"order": "regular", "equation": "continuous"}, "discrete equation only"),

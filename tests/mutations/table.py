@@ -1640,6 +1640,13 @@ MISTAKES = (
         "another sequence keeps the scrambling of the one before",
     ),
     Mistake(
+        "method/combinations.py",
+        "if method.order not in GLOBAL_ORDERS:",
+        "if method.order in WALK_ORDERS:",
+        ("test_method.py",),
+        "global lines run orders that are not theirs",
+    ),
+    Mistake(
         "cli/solve_options.py",
         '"flag": Chosen',
         '"flag": bool | None',

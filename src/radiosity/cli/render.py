@@ -1,5 +1,6 @@
 """``radiosity render``"""
 
+from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,27 +13,83 @@ from .options import Count, Flag, Outputs, Pair, Point, Stops
 from .streams import tell
 
 
+@dataclass(frozen=True)
+class Viewpoint:
+    """From where the scene is seen.
+
+    Attributes:
+        camera: Number of the scene's camera, from 0. Default: the first, or one fitted to the scene.
+        origin: A camera of your own: where it stands, in metres, such as 1,2,1.5.
+        target: What it looks at, in metres.
+        up: Its upward direction. Default: the one usual in the scene's format.
+        fov: Its vertical field of view, in degrees.
+    """
+
+    camera: int | None = None
+    origin: Point = None
+    target: Point = None
+    up: Point = None
+    fov: float | None = None
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What a picture shows, and how.
+
+    Attributes:
+        width: Of the picture, in pixels.
+        height: Of the picture, in pixels.
+        exposure: Stops brighter than the automatic scale; +1 is twice.
+        smooth: Interpolate within surfaces, or show each patch as it is.
+        quantity: radiosity, irradiance, standard_error, irradiance_standard_error or relative_error.
+        band: One band, by name or number. Default: all.
+        false_color: Colours for values, with a legend in physical units.
+        limits: Of false colours: lowest and highest value of the legend, such as 0,500.
+        log: Of false colours: a logarithmic legend.
+        color_map: Of false colours: one of matplotlib's. Default: viridis.
+        samples: Lines of sight for each pixel, 1 to 1024; more of them make smoother edges. Default: 4.
+    """
+
+    width: int | None = None
+    height: int | None = None
+    exposure: Stops = None
+    smooth: bool = True
+    quantity: str = "radiosity"
+    band: str | None = None
+    false_color: Flag = False
+    limits: Annotated[Pair, Parameter(name="--range")] = None
+    log: Flag = False
+    color_map: str | None = None
+    samples: Count = None
+
+    @property
+    def range(self) -> tuple[float, float] | None:
+        """The limits as numbers.
+
+        Raises:
+            OutputError: options of false colours are given without them.
+        """
+        given = {"--range": self.limits is not None, "--log": self.log, "--color-map": self.color_map is not None}
+        idle = [name for name, there in given.items() if there]
+        if idle and not self.false_color:
+            raise OutputError(f"{' and '.join(idle)}: for false colours only; add --false-color")
+        low_high = None if self.limits is None else amounts.numbers(self.limits, 2)
+        return None if low_high is None else (low_high[0], low_high[1])
+
+
+class Unset:
+    """Each group of options where none of them is given."""
+
+    viewpoint, picture = Viewpoint(), Picture()
+
+
 def render(
     solution: Path,
     /,
     *,
     output: Outputs,
-    camera: int | None = None,
-    origin: Point = None,
-    target: Point = None,
-    up: Point = None,
-    fov: float | None = None,
-    width: int | None = None,
-    height: int | None = None,
-    exposure: Stops = None,
-    smooth: bool = True,
-    quantity: str = "radiosity",
-    band: str | None = None,
-    false_color: Flag = False,
-    limits: Annotated[Pair, Parameter(name="--range")] = None,
-    log: Flag = False,
-    color_map: str | None = None,
-    samples: Count = None,
+    viewpoint: Annotated[Viewpoint, Parameter(name="*")] = Unset.viewpoint,
+    picture: Annotated[Picture, Parameter(name="*")] = Unset.picture,
 ) -> None:
     """Render a saved solution to pictures.
 
@@ -42,38 +99,6 @@ def render(
         An .npz file that `radiosity solve` wrote.
     output
         Pictures to write: .png to look at, .exr to measure in.
-    camera
-        Number of the scene's camera, from 0. Default: the first, or one fitted to the scene.
-    origin
-        A camera of your own: where it stands, in metres, such as 1,2,1.5.
-    target
-        What it looks at, in metres.
-    up
-        Its upward direction. Default: the one usual in the scene's format.
-    fov
-        Its vertical field of view, in degrees.
-    width
-        Of the picture, in pixels.
-    height
-        Of the picture, in pixels.
-    exposure
-        Stops brighter than the automatic scale; +1 is twice.
-    smooth
-        Interpolate within surfaces, or show each patch as it is.
-    quantity
-        radiosity, irradiance, standard_error, irradiance_standard_error or relative_error.
-    band
-        One band, by name or number. Default: all.
-    false_color
-        Colours for values, with a legend in physical units.
-    limits
-        Of false colours: lowest and highest value of the legend, such as 0,500.
-    log
-        Of false colours: a logarithmic legend.
-    color_map
-        Of false colours: one of matplotlib's. Default: viridis.
-    samples
-        Lines of sight for each pixel, 1 to 1024; more of them make smoother edges. Default: 4.
     """
     outputs.check(output)
     for path in output:
@@ -81,36 +106,31 @@ def render(
             raise OutputError(f"{path}: pictures are .png or .exr; meshes and tables come from `radiosity solve`")
     if not output:
         raise OutputError("no output; name a picture with -o, such as -o view.png")
-    given = {"--range": limits is not None, "--log": log, "--color-map": color_map is not None}
-    idle = [name for name, there in given.items() if there]
-    if idle and not false_color:
-        raise OutputError(f"{' and '.join(idle)}: for false colours only; add --false-color")
-    low_high = None if limits is None else amounts.numbers(limits, 2)
-    interval = None if low_high is None else (low_high[0], low_high[1])
+    interval = picture.range
 
     import radiosity as rd
 
     from ..image import render as draw
 
     loaded = rd.load_solution(solution)
-    view = _view(loaded.patches.scene, camera, origin, target, up, fov)
+    view = _view(loaded.patches.scene, viewpoint)
 
     def written(path: Path) -> None:
         draw(
             loaded,
             path,
             camera=view,
-            width=width,
-            height=height,
-            exposure=exposure,
-            smooth=smooth,
-            quantity=quantity,
-            band=band,
-            false_color=false_color,
+            width=picture.width,
+            height=picture.height,
+            exposure=picture.exposure,
+            smooth=picture.smooth,
+            quantity=picture.quantity,
+            band=picture.band,
+            false_color=picture.false_color,
             range=interval,
-            log=log,
-            color_map=color_map or "viridis",
-            samples=4 if samples is None else samples,
+            log=picture.log,
+            color_map=picture.color_map or "viridis",
+            samples=4 if picture.samples is None else picture.samples,
         )
         tell(f"wrote {printable(path)}")
 
@@ -121,13 +141,14 @@ def render(
         raise OutputError("; ".join(outputs.told(failures)))
 
 
-def _view(scene, number: int | None, origin: str | None, target: str | None, up: str | None, fov: float | None):
+def _view(scene, viewpoint: Viewpoint):
     """The camera asked for: a `Camera`, the number of one of the scene's, or None for what the renderer chooses."""
     from dataclasses import replace
 
     from ..image.view import up_axis
     from ..scene import Camera
 
+    number, origin, target, up, fov = (getattr(viewpoint, field.name) for field in fields(viewpoint))
     if (origin is None) != (target is None):
         raise SceneError("--origin and --target go together: where the camera stands and what it looks at")
     if number is not None and origin is not None:
