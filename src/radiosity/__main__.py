@@ -1,4 +1,4 @@
-"""``python -m radiosity``"""
+"""The command line, for ``python -m radiosity``."""
 
 import sys
 

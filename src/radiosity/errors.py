@@ -31,7 +31,7 @@ class SceneError(RadiosityError, ValueError):
 
 
 class MethodError(RadiosityError, ValueError):
-    """A method, one of its axes, or a budget was asked for that does not exist or makes no sense.
+    """A method, one of its axes, or a budget does not exist or makes no sense.
 
     Example:
         >>> try:
@@ -83,8 +83,10 @@ class RadiosityWarning(UserWarning):
 
 @contextmanager
 def result_kept() -> Iterator[None]:
-    """What is warned of within, though warnings be errors (``python -W error``), is told on stderr and raises nothing: what was
-    computed before it is not lost."""
+    """Show on stderr the warnings of a block that the user has made errors (``python -W error``), and raise nothing.
+
+    So what was computed before is not lost.
+    """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         yield
@@ -96,21 +98,21 @@ def result_kept() -> Iterator[None]:
 
 
 def tell_instead(text: str) -> None:
-    """Show a warning that is not to end the program."""
-    with suppress(OSError, AttributeError, ValueError):  # nobody may read there
+    """Show a warning that must not end the program."""
+    with suppress(OSError, AttributeError, ValueError):  # stderr may be closed
         sys.stderr.write(text)
 
 
-INSTALL = "pip install 'radiosity[all]' brings it (in a clone of the project: pip install '.[all]')"  # what is optional
+INSTALL = "pip install 'radiosity[all]' brings it (in a clone of the project: pip install '.[all]')"  # for optional libraries
 
 
 def shown(names, most: int = 8) -> str:
-    """``'a', 'b' and 12 more``: the first names of a long list, for a message."""
+    """Return the first names of a long list, for a message, such as ``'a', 'b' and 12 more``."""
     names = [str(name) for name in names]
     text = ", ".join(f"'{name}'" for name in names[:most])
     return text if len(names) <= most else f"{text} and {len(names) - most} more"
 
 
 def printable(text) -> str:
-    """A name or message for one line of a terminal: control characters, which could move its cursor or hide text, as escapes."""
+    """Return a text for one line of a terminal: control characters, which could move the cursor or hide text, become escapes."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape", "backslashreplace").decode() for c in str(text))

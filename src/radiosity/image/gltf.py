@@ -28,8 +28,8 @@ def write(solution, path, look: Look) -> None:
     Raises:
         OutputError: the file cannot be written, or would pass the 4 GB that GLB can hold.
     """
-    tree, blocks = document(coloured(solution, look))
-    text = json.dumps(tree, separators=(",", ":")).encode()
+    contents, blocks = document(coloured(solution, look))
+    text = json.dumps(contents, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     size = sum(len(block) for block in blocks)
     if 12 + 8 + len(text) + 8 + size >= 2**32:
@@ -80,7 +80,7 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
             }
         )
     root = {"name": "scene", "children": list(range(1, len(meshes) + 1)), **({"rotation": TURN} if mesh.up == "z" else {})}
-    tree = {
+    contents = {
         "asset": {"version": "2.0", "generator": "radiosity", "extras": mesh.facts()},
         "extensionsUsed": ["KHR_materials_unlit"],
         "scene": 0,
@@ -99,4 +99,4 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         "bufferViews": views,
         "buffers": [{"byteLength": length}],
     }
-    return tree, blocks
+    return contents, blocks

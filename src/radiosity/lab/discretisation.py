@@ -78,10 +78,10 @@ def delta(scene: Scene, fine: Patches, coarse: Patches, parent: np.ndarray, radi
     point = origin + u[:, None] * first + v[:, None] * second + normal * 1e-5
     hits = first_hits(scene, point, direction)
     met = np.zeros(len(face))
-    lands = (hits.face >= 0) & hits.front
-    at = hits.face[lands]
-    number = cells.number(hits.u[lands], hits.v[lands], coarse.columns[at], coarse.rows[at], scene.is_quad[at])
-    met[lands] = radiosity[coarse.first[at] + number]
+    lit = (hits.face >= 0) & hits.front
+    at = hits.face[lit]
+    number = cells.number(hits.u[lit], hits.v[lit], coarse.columns[at], coarse.rows[at], scene.is_quad[at])
+    met[lit] = radiosity[coarse.first[at] + number]
     arriving = met.reshape(len(fine), each).mean(axis=1)
     mean = np.bincount(parent, arriving * fine.area) / np.bincount(parent, fine.area)
     return fine.reflectance[:, 0] * (arriving - mean[parent])

@@ -113,12 +113,14 @@ def walks(scene: Scene, face: int, count: int, seed: int) -> list[np.ndarray]:
 
 def breadth_first(lengths: list[int]) -> list[tuple[int, int]]:
     """Return (walk, segment) in the order in which they are fired: all first segments, then all second ones."""
-    return [(walk, leg) for leg in range(max(lengths, default=0)) for walk, length in enumerate(lengths) if leg < length]
+    return [
+        (walk, segment) for segment in range(max(lengths, default=0)) for walk, length in enumerate(lengths) if segment < length
+    ]
 
 
 def depth_first(lengths: list[int]) -> list[tuple[int, int]]:
     """Return (walk, segment) in the order in which they are fired: each walk until it ends."""
-    return [(walk, leg) for walk, length in enumerate(lengths) for leg in range(length)]
+    return [(walk, segment) for walk, length in enumerate(lengths) for segment in range(length)]
 
 
 def _cosine(random: np.random.Generator, normal: np.ndarray) -> np.ndarray:

@@ -17,7 +17,8 @@ BASELINE_RUNGS = {"full-matrix": 1, "progressive": 64, "hierarchical": 1}  # the
 
 @dataclass(frozen=True)
 class Budget:
-    """When a run ends. Exactly one of the four is not None; but an error may have a limit beside it: rays, seconds or both.
+    """The budget of a run says when it ends. Exactly one of the four is not None; but an error may have rays, seconds or both
+    beside it as a limit.
 
     Attributes:
         rays: lines in all, replicates together.

@@ -61,7 +61,7 @@ def solve(
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
             scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run bit
             for bit. An error alone may have a limit beside it, rays, seconds or both. Where it is not reached within that, or
-            within what counters hold (2^32 lines for each replicate), or where too few lines landed to tell it, the status is
+            within what counters hold (2^32 lines for each replicate), or where there are too few hits to know it, the status is
             "not reached" and a warning says what is known.
         error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead; or
             "mean:NAME": that of the mean irradiance over it, as `Solution.surface_interval` tells it.

@@ -19,7 +19,7 @@ __all__ = ["Hit", "first_hit", "local_line", "local_lines", "patch_of", "place_o
 
 @dataclass(frozen=True)
 class Hit:
-    """Where lines end: primitive, face coordinates, side, distance in the BVH's units, and the hit record's first words."""
+    """The hits of lines: primitive, face coordinates, side, distance in the BVH's units, and the hit record's first words."""
 
     valid: Any
     primitive: Any

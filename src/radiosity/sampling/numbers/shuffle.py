@@ -22,17 +22,17 @@ FACTORS = (  # of each round; odd, so that each bit of a product holds the same 
 )
 
 
-def key(randomisation, leg):
+def key(randomisation, segment):
     """Return the key of a segment, UInt32, another for each; zero for segment 0 (and, with a chance of 2^-32, for one more).
 
     Args:
         randomisation: eight UInt32, of the scene and replicate.
-        leg: UInt32, the number of the segment: how often the walk was reflected before; it may differ from lane to lane.
+        segment: UInt32, its number: how often the walk was reflected before; it may differ from lane to lane.
     """
-    mixed = leg
+    mixed = segment
     for word in randomisation[4:]:
         mixed = mix(mixed + word)
-    return dr.select(leg == 0, type(leg)(0), mixed)
+    return dr.select(segment == 0, type(segment)(0), mixed)
 
 
 def shuffled(index, key):

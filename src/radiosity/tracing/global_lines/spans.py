@@ -111,7 +111,7 @@ class Spans:
 
     @cached_property
     def ends_per_line(self) -> np.ndarray:
-        """(n_patches,) float64: expected ends on each patch per line."""
+        """Expected ends on each patch per line, (n_patches,) float64."""
         area, radius = self.geometry.patches.area, self.radius / self.geometry.bvh.scale
         if self.method.lines == "spans":
             return 2 * area / self.surfaces.area
