@@ -52,7 +52,7 @@ class Report:
 
     @property
     def serious(self) -> bool:
-        """Whether a solution would be worthless or impossible."""
+        """True where a solution would be worthless or impossible."""
         return any(finding.severity == SERIOUS for finding in self.findings)
 
 

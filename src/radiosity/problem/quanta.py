@@ -82,7 +82,7 @@ class Source:
 
 
 def phases(seed: Seed | int, replicates: int, n_patches: int) -> np.ndarray:
-    """(replicates, n_patches) uint32, uniform: the rounding offset of each patch."""
+    """Return the rounding offset of each patch, uniform, (replicates, n_patches) uint32."""
     result = np.empty((replicates, n_patches), np.uint32)
     for replicate in range(replicates):
         generator = np.random.Generator(np.random.Philox(stream(seed, replicate, Purpose.PHASE)))

@@ -47,7 +47,7 @@ class Part:
 
     @property
     def range(self) -> str:
-        """For people."""
+        """Return the name that people read."""
         return f"{self.first} to {self.end - 1}"
 
     def rung(self, order: str, share) -> int:
@@ -55,7 +55,7 @@ class Part:
         return first_rung(order, self.in_all or self.replicates, share)
 
     def facts(self) -> dict:
-        """For the provenance: nothing that is as in a whole run."""
+        """Return what the provenance holds, without what is as in a whole run."""
         facts = {"seed": self.seed.value, "replicates": self.replicates}
         facts |= {"first_replicate": self.first} if self.first else {}
         return facts | ({} if self.in_all is None else {"all_replicates": self.in_all})

@@ -34,7 +34,7 @@ class Seed:
         return replace(self, value=self.value + by)
 
     def split(self, parts: int) -> "Seed":
-        """For streams of parts of replicates: part p of replicate r is counted as r * parts + p."""
+        """Return a seed for streams of parts of replicates: part p of replicate r is counted as r * parts + p."""
         return replace(self, first_replicate=self.first_replicate * parts)
 
     def number_of(self, replicate: int) -> int:

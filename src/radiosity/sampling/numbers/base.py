@@ -27,7 +27,7 @@ class AbstractNumbers(ABC):
 
     @abstractmethod
     def randomisation(self, stream: "np.random.SeedSequence") -> "np.ndarray":
-        """(8,) uint32 drawn on the host from a strong generator: one for the scene and replicate."""
+        """Return (8,) uint32 drawn on the host from a strong generator: the randomisation of a scene and replicate."""
 
     def of_patch(self, randomisation: list, place: Any) -> list:
         """Return the randomisation of a patch, made from that of its replicate, which is that of place 0; called in a kernel.
