@@ -46,6 +46,8 @@ def merge(solutions: Iterable[Solution], *, memory: str | float | None = None) -
         >>> merged.replicates, bool((merged.irradiance == rd.solve(patches, quanta=4096, replicates=8).irradiance).all())
         (8, True)
     """
+    if not isinstance(solutions, Iterable):
+        raise MethodError(f"merge takes a list of Solutions, not a {type(solutions).__name__}")
     given = list(solutions)
     for at, solution in enumerate(given, 1):
         if not isinstance(solution, Solution):
