@@ -76,7 +76,7 @@ def _merged(given: list[Solution]) -> Solution:
     first, quanta = given[0], given[0].quanta
     run = Run(first.patches, _method(first), _budget(given), _whole(parts), first.provenance.get("device", "auto"))
     for solution in given:
-        different = differences(solution.provenance, run.provenance, FACTS, ("then", "now"))
+        different = differences(solution.provenance, run.record.provenance, FACTS, ("then", "now"))
         if different:
             raise MethodError(f"cannot merge solutions of another program or scene: {'; '.join(different)}; solve them anew")
     merged = run.merged(quanta, [(solution.state, part) for solution, part in zip(given, parts, strict=True)])

@@ -2,10 +2,8 @@
 
 import math
 import time
-import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from importlib.metadata import version
 from typing import Any
 
 from ..algorithms.base import AbstractAlgorithm, AbstractMeanTally, Interrupted
@@ -14,7 +12,7 @@ from ..algorithms.state import AbstractState
 from ..algorithms.table import make
 from ..device.backend import choose, give_back_memory
 from ..device.turn import turn
-from ..errors import DeviceError, MethodError, RadiosityWarning, result_kept
+from ..errors import MethodError, result_kept
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..problem.model import Problem
@@ -23,7 +21,7 @@ from ..solution.model import Solution
 from ..solution.status import NOT_REACHED
 from ..solution.without_results import without_results
 from ..tally import unmet
-from ..tracing.geometry import TRACING, Geometry
+from ..tracing.geometry import Geometry
 from . import memory_estimate
 from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, next_quanta, on_ladder, rung_after
@@ -32,18 +30,13 @@ from .error_target import Target, nothing_before_lights
 from .part import Part, check_stages
 from .pilot import few_quanta
 from .progress import Listener, Stop, Teller
+from .record import Record
 from .same import check_same
-from .shortfall import warn_of_more, warn_of_target
+from .shortfall import warn_of_few_ends, warn_of_more, warn_of_target
 from .snapshot import Snapshot
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
-LOST_HITS = (
-    "the energy balance does not close: hits were lost while another thread of this process ran kernels of Dr.Jit or Mitsuba "
-    "(runs of radiosity wait for each other). Solve again while nothing else uses them, or in a process of its own; a checkpoint "
-    "of this run is of no use"
-)
-ENDS_ENOUGH = 100  # of spans on a mean patch of a replicate, for form factors
 LARGE = 1 << 19  # counters: before results are read, memory of wavefronts is given back, which takes some milliseconds
 PATIENCE = 1.2  # times the seconds asked for: after that a stage is left unfinished
 
@@ -83,8 +76,10 @@ class Run:
         self.error_of, self.target = error_of, Target.of(patches, error_of)
         self.teller.tell("compiling")
         self.device = choose(device)
+        given = {name: value for name, value in {**vars(budget), "error_of": error_of}.items() if value is not None}
+        self.record = Record(patches, method, part, self.device.name, given)
         if resume is not None:
-            check_same(resume.provenance, self.provenance)
+            check_same(resume.provenance, self.record.provenance)
         self.geometry = Geometry(patches, self.device)
 
     def solve(self) -> Solution:
@@ -102,7 +97,7 @@ class Run:
             algorithm.restore(resumed)
             target = algorithm.quanta
             last = not algorithm.stage_independent and not resumed.unfinished and not on_ladder(target, self.rung)
-            if last and (self.budget.seconds is not None or self._budget != self.resume.provenance.get("budget")):
+            if last and (self.budget.seconds is not None or self.record.budget != self.resume.provenance.get("budget")):
                 raise MethodError(
                     f"a run by {self.method} in {self.problem.groups.n_groups} groups of bands cannot go on from {target} quanta "
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
@@ -187,10 +182,10 @@ class Run:
         """Results of the last complete stage, if any, and a state to go on from."""
         seconds = self.teller.elapsed + self.seconds_before
         if self.snapshot is not None:
-            return self._read(self.snapshot, status, state)
+            return self.record.solution(self.snapshot, status, state, seconds)
         if self.resume is not None and self._had_results:
-            return replace(self.resume, seconds=seconds, status=status, state=state.arrays(), provenance=self.provenance)
-        return without_results(self.patches, self.replicates, seconds, status, self.provenance, state.arrays())
+            return replace(self.resume, seconds=seconds, status=status, state=state.arrays(), provenance=self.record.provenance)
+        return without_results(self.patches, self.replicates, seconds, status, self.record.provenance, state.arrays())
 
     def _missed(self, at: Progressed) -> bool:
         """Return whether a stage that was to be the last has missed its error, and the limit leaves room for another run."""
@@ -270,68 +265,17 @@ class Run:
             raise KeyboardInterrupt
 
     def _solution(self, snapshot: Snapshot, status: str, pending: AbstractState | None) -> Solution:
-        solution = self._read(snapshot, status, pending or snapshot.state)
+        solution = self.record.solution(snapshot, status, pending or snapshot.state, self.teller.elapsed + self.seconds_before)
         with result_kept():
             if self.resume is None:
                 warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
             if status == NOT_REACHED:
-                full = (
-                    snapshot.lines / self.replicates >= self.most / 2
-                )  # a stage that full counters forbid would have doubled the lines
+                # a stage that full counters forbid would have doubled the lines
+                full = snapshot.lines / self.replicates >= self.most / 2
                 warn_of_target(snapshot, self.budget, self.target, self.teller.bound, self.error_of, full=full)
             if isinstance(snapshot.tally, AbstractMeanTally):
                 unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
-            ends = snapshot.lines / self.replicates / len(self.patches)
-            global_factors = isinstance(self.method, Method) and self.method.machine == "matrix" and self.method.lines != "local"
-            if global_factors and ends < ENDS_ENOUGH:
-                warnings.warn(
-                    f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over "
-                    "that number, and in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
-                    RadiosityWarning,
-                    stacklevel=5,
-                )
+            warn_of_few_ends(self.method, snapshot.lines / self.replicates / len(self.patches))
             if isinstance(self.method, Baseline):
                 warn_of_missing(self.method, snapshot.books, snapshot.state)
         return solution
-
-    def _read(self, snapshot: Snapshot, status: str, state: AbstractState) -> Solution:
-        if any(book["closes"] is False for book in snapshot.books):
-            raise DeviceError(LOST_HITS)
-        mean, error = snapshot.irradiance
-        return Solution(
-            self.patches,
-            mean,
-            error,
-            snapshot.arrivals,
-            snapshot.lines,
-            self.teller.elapsed + self.seconds_before,
-            snapshot.quanta,
-            self.replicates,
-            snapshot.books,
-            status,
-            self.provenance,
-            state.arrays(),
-            snapshot.surface_power,
-            snapshot.side_power,
-        )
-
-    @property
-    def _budget(self) -> dict:
-        return {name: value for name, value in {**vars(self.budget), "error_of": self.error_of}.items() if value is not None}
-
-    @property
-    def provenance(self) -> dict:
-        """See `Solution.provenance`."""
-        return {
-            "scene": self.patches.scene.hash,
-            "source": self.patches.scene.source,
-            "method": str(self.method),
-            "choices": self.method.choices,
-            **self.part.facts(),
-            "device": self.device.name,
-            "patches": len(self.patches),
-            "cut": self.patches.hash,
-            "tracing": TRACING,
-            "budget": self._budget,
-            "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
-        }

@@ -4,11 +4,13 @@ import math
 import warnings
 
 from ..errors import RadiosityWarning
+from ..method import Baseline, Method
 from ..patches import Patches
 from .budget import Budget
 from .error_target import Target
 from .snapshot import Snapshot
 
+ENDS_ENOUGH = 100  # ends of spans on a mean patch of a replicate, for form factors
 MORE = 2.0  # times the lines asked for
 
 
@@ -44,3 +46,14 @@ def warn_of_target(snapshot: Snapshot, budget: Budget, target: Target, bound: fl
         RadiosityWarning,
         stacklevel=6,
     )
+
+
+def warn_of_few_ends(method: Method | Baseline, ends: float) -> None:
+    """Warn of form factors from fewer than `ENDS_ENOUGH` ends of global lines on a patch of a replicate."""
+    if isinstance(method, Method) and method.machine == "matrix" and method.lines != "local" and ends < ENDS_ENOUGH:
+        warnings.warn(
+            f"form factors from {ends:.3g} ends of spans a patch and replicate: the bias is of the order of one over "
+            "that number, and in the stated errors; take more lines, fewer replicates, larger patches, or --lines local",
+            RadiosityWarning,
+            stacklevel=6,
+        )
