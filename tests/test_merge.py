@@ -115,6 +115,14 @@ def test_one_stage_of_incremental_iterations_is_the_whole(coloured, name):
     assert_same(rd.merge(halves(coloured, method, quanta=ONE)), solved(coloured, method, quanta=ONE))
 
 
+@pytest.mark.parametrize("seed", [4, 6])
+def test_a_merged_run_has_made_the_steps_of_the_part_that_needed_most(grey, seed):
+    method, parts = INCREMENTAL["incremental"], halves(grey, INCREMENTAL["incremental"], quanta=ONE, seed=seed)
+    steps = [int(part.state["step"]) for part in parts]
+    assert (steps[1] > steps[0]) == (seed == 4)
+    assert_same(rd.merge(parts), solved(grey, method, quanta=ONE, seed=seed))
+
+
 @pytest.mark.parametrize("name", MATRICES)
 def test_parts_of_a_full_matrix_are_the_whole(grey, name):
     assert_same(rd.merge(halves(grey, MATRICES[name])), solved(grey, MATRICES[name]))

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity.algorithms.merging import merge
 from radiosity.problem.model import Problem
+from radiosity.sampling.streams import Seed
 
 LINES = 256  # a patch
 FILE = Path(__file__).parents[1] / "docs" / "skeletons" / "algorithm.py"
@@ -28,9 +30,9 @@ def made(skeleton, cube, geometry_of):
     """Makes a new process on a furnace: reflectance 1/2, emission 1/2, so that B = H = 1 where no face is left out."""
     method = rd.Baseline(factors="lines", samples=LINES)
 
-    def make(faces=slice(None)):
+    def make(faces=slice(None), seed=3, replicates=2):
         patches = rd.subdivide(rd.Scene.from_arrays(cube.vertices, cube.faces[faces], 0.5, 0.5), cells=2)
-        return skeleton.Reflections(geometry_of(patches), Problem.of(patches), method, 3, 2)
+        return skeleton.Reflections(geometry_of(patches), Problem.of(patches), method, seed, replicates)
 
     return make
 
@@ -101,6 +103,16 @@ def test_an_interrupted_run_goes_on_to_the_same_bits(made):
     assert found.keys() == wanted.keys()
     for name, value in wanted.items():
         assert np.array_equal(value, found[name]), name
+
+
+def test_parts_are_merged_to_the_bits_of_one_run(made):
+    runs = [made(seed=Seed(3, first), replicates=count) for first, count in ((0, 3), (0, 2), (2, 1))]
+    for run in runs:
+        run.advance(4, silent)
+    whole, *parts = (run.capture() for run in runs)
+    merged = merge(parts)
+    assert merged.sizes == whole.sizes
+    assert all(np.array_equal(merged.arrays()[name], value) for name, value in whole.arrays().items())
 
 
 def test_a_state_of_another_size_is_refused(made):

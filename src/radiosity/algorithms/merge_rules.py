@@ -19,11 +19,6 @@ def added(layout, values: list, records: list):
     return functools.reduce(np.add, values) if layout is not None else sum(values)
 
 
-def largest(layout, values: list, records: list):
-    """Of one run with all replicates, what went on longest counts."""
-    return max(values)
-
-
 def of_first(layout, values: list, records: list):
     """What a run tells of its first replicate alone."""
     return values[0]

@@ -12,7 +12,6 @@ from ..sampling.streams import Seed
 from ..solution.model import Solution
 from .budget import Budget
 from .part import Part
-from .run import Run
 from .same import SAME, differences
 from .whole_number import whole
 
@@ -74,6 +73,8 @@ def _merged(given: list[Solution]) -> Solution:
         _check_follows(one + 1, parts[one], other + 1, parts[other])
     parts, given = [parts[at] for at in order], [given[at] for at in order]
     first, quanta = given[0], given[0].quanta
+    from .run import Run
+
     run = Run(first.patches, _method(first), _budget(given), _whole(parts), first.provenance.get("device", "auto"))
     for solution in given:
         different = differences(solution.provenance, run.record.provenance, FACTS, ("then", "now"))

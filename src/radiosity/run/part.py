@@ -2,15 +2,12 @@
 
 from dataclasses import dataclass
 
-from ..algorithms.global_lines.state import PoolingState
-from ..algorithms.hierarchical.state import HierarchicalState
-from ..algorithms.progressive.state import ProgressiveState
+from ..algorithms.alone import ALONE
 from ..errors import MethodError
 from ..method import Baseline, Method
 from ..sampling.streams import Seed
 from .budget import Budget, first_rung, stages
 
-ALONE = {"pooling": PoolingState.alone, "progressive": ProgressiveState.alone, "hierarchical": HierarchicalState.alone}
 TOGETHER = "all replicates of a run make as many steps of {} as the one that needs most"
 
 

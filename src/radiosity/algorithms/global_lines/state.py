@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..alone import ALONE
 from ..firing.state import FiringState
 from ..merge_rules import alike
 from ..state import AbstractState, array, number, part
@@ -47,7 +48,7 @@ class PoolingState(AbstractState):
         shot: the lines of the first shot, where there is one.
     """
 
-    alone = "the warm-up of pooled global lines balances the power of all replicates together"
+    alone = ALONE["pooling"]
 
     carried: np.ndarray = array("groups", "rows of halves")
     recent: np.ndarray = array("groups", "rows of halves")

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ..alone import ALONE
 from ..baseline_state import AbstractSolvedState
 from ..state import number
 
@@ -10,7 +11,7 @@ from ..state import number
 class HierarchicalState(AbstractSolvedState):
     """Rounds of refinement made, and links between elements after them."""
 
-    alone = "hierarchical radiosity has no replicates"
+    alone = ALONE["hierarchical"]
 
     rounds: int = number(int)
     links: int = number(int)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..alone import ALONE
 from ..baseline_state import AbstractSolvedState
 from ..state import array, number
 
@@ -20,7 +21,7 @@ class ProgressiveState(AbstractSolvedState):
         cut: the same over the emitted power, of the worst group.
     """
 
-    alone = "progressive refinement has no replicates"
+    alone = ALONE["progressive"]
 
     shots: int = number(int)
     unshot: np.ndarray = array("rows", "groups")
