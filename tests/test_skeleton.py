@@ -112,7 +112,8 @@ def test_parts_are_merged_to_the_bits_of_one_run(made):
     whole, *parts = (run.capture() for run in runs)
     merged = merge(parts)
     assert merged.sizes == whole.sizes
-    assert all(np.array_equal(merged.arrays()[name], value) for name, value in whole.arrays().items())
+    for name, value in whole.arrays().items():
+        assert np.array_equal(merged.arrays()[name], value), name
 
 
 def test_a_state_of_another_size_is_refused(made):

@@ -94,7 +94,7 @@ class Reflections(AbstractAlgorithm[ReflectionsState]):
             lines=self.lines,
             received=self.received.copy(),
             missed=self.missed.copy(),
-            seen=np.full(len(self.area), len(self.area) - 1),
+            seen=np.full(len(self.area), self.replicates * (len(self.area) - 1)),
             history=np.zeros((0, 2)),
         )
         return ReflectionsState(sizes=self.sizes, quanta=self.wanted, solved=solved, steps=self.steps, unsent=self.unsent.copy())

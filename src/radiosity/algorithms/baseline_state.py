@@ -17,7 +17,7 @@ class Solved(Record):
         lines: traced by all replicates.
         received: (replicates, n_patches, groups) float64, W or lm.
         missed: (replicates, 2, groups) float64, W or lm that escaped and was lost.
-        seen: (n_patches,) how many of others each patch exchanges light with.
+        seen: (n_patches,) how many of others each patch exchanges light with, summed over replicates.
         history: (k, 2) steps, and the largest residual relative to the largest radiosity.
     """
 
