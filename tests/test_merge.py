@@ -285,6 +285,35 @@ def test_damaged_choices_and_states_are_refused(grey):
         rd.merge([one, replace(other, state={})])
 
 
+DAMAGE = {  # a kind of run, an array of its state, and what becomes of it; None: it is gone
+    "no powers of bands": ("firing", "received", None),
+    "quanta in words": ("firing", "quanta", lambda value: np.array("x")),
+    "broken quanta": ("firing", "quanta", lambda value: np.array(1.5)),
+    "counts in words": ("firing", "arrivals", lambda value: value.astype(str)),
+    "no scores": ("continuous", "received", None),
+    "other sums": ("gathering", "met", lambda value: value[..., :1]),
+    "no powers of a shot's bands": ("first shot", "shot_sent", None),
+    "another ledger": ("first shot", "ledger", lambda value: value[:, :3]),
+    "a source too few": ("two ends", "source", lambda value: value[: value.size // 2]),
+    "a sequence too few": ("two ends", "fired_apart", lambda value: value[:1]),
+    "no weights": ("two ends", "weights", None),
+    "fewer counts than pairs": ("local matrix", "counts", lambda value: value[1:]),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_damaged_states_are_refused(coloured, damage):
+    """Whatever a file lacks or holds in another shape: no run goes on from it, and no part is merged."""
+    name, key, change = DAMAGE[damage]
+    part = solved(coloured, PARTS[name], SPLIT, 2, quanta=ONE)
+    state = {one: value for one, value in part.state.items() if one != key}
+    damaged = replace(part, state=state if change is None else state | {key: change(part.state[key])})
+    with pytest.raises(rd.MethodError, match="start anew"):
+        solved(coloured, PARTS[name], SPLIT, 2, quanta=2 * ONE, resume=damaged)
+    with pytest.raises(rd.MethodError, match="start anew"):
+        rd.merge([solved(coloured, PARTS[name], 0, SPLIT, quanta=ONE), damaged])
+
+
 @pytest.mark.parametrize("given", [[], [1], None, "one"], ids=str)
 def test_what_is_no_solution_is_refused(grey, given):
     with pytest.raises(rd.MethodError, match="merge"):

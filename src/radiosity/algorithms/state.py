@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 Arrays = Mapping[str, np.ndarray]
+KINDS = {int: "iu", float: "fiu", bool: "b", np.ndarray: "biuf"}  # of arrays that fields are made of
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,7 @@ class Record:
 
     @classmethod
     def fits(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> bool:
-        """All arrays that are there have their shape."""
+        """All arrays that are there have their shape, and hold numbers."""
         for one in fields(cls)[1:]:
             facts = one.metadata
             if not _taken(one, arrays, wanted, prefix):
@@ -139,7 +140,9 @@ class Record:
             if "record" in facts:
                 if not facts["record"].fits(arrays, sizes, prefix=prefix + facts["prefix"]):
                     return False
-            elif not facts.get("layout", Layout(())).fits(np.asarray(arrays[prefix + one.name]), sizes):
+                continue
+            value, kinds = np.asarray(arrays[prefix + one.name]), KINDS[facts.get("kind", np.ndarray)]
+            if value.dtype.kind not in kinds or not facts.get("layout", Layout(())).fits(value, sizes):
                 return False
         return True
 

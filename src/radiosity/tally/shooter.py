@@ -62,6 +62,11 @@ class Shooter:
             self._tracers.append(tracer.moved_by(upload(self.types.UInt32, np.array(drawn, np.uint32))))
             self._fired.append(dr.opaque(self.types.UInt32, 0, self.total))
 
+    @property
+    def sequences(self) -> int:
+        """How many there are."""
+        return len(self._fired)
+
     def take(self, sequence: int) -> None:
         """Fire lines of this sequence from now on."""
         self._fired[self.sequence] = self.fired

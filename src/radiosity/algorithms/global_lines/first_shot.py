@@ -49,6 +49,11 @@ class FirstShot:
         firing_state.restore(self.counters, state)
 
 
+def whole(shot: FiringState | None) -> bool:
+    """There was no shot, or it has the powers of bands where there are several."""
+    return shot is None or shot.sizes.groups == 1 or shot.bands is not None
+
+
 def fired(shot: FiringState | None) -> int:
     """Lines of all replicates; 0 where there was no shot."""
     return 0 if shot is None else int(shot.fired.sum(dtype=np.uint64))

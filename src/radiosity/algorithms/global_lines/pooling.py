@@ -180,9 +180,11 @@ class Pooling(AbstractAlgorithm[PoolingState]):
 
     def read(self, arrays: Arrays, sizes: Sizes) -> PoolingState:
         wanted = () if self.shot is None else ("shot",)
-        if PoolingState.lacking(arrays, sizes, wanted):
-            raise MethodError("the solution to go on from lacks the sums of its iterations; start anew")
-        return PoolingState.read(arrays, sizes, wanted)
+        if not PoolingState.lacking(arrays, sizes, wanted):
+            state = PoolingState.read(arrays, sizes, wanted)
+            if first_shot.whole(state.shot):
+                return state
+        raise MethodError("the solution to go on from lacks the sums of its iterations; start anew")
 
     def restore(self, state: PoolingState) -> None:
         for name in ARRAYS:

@@ -65,9 +65,11 @@ class Iteration(AbstractAlgorithm[IterationState]):
         wanted = {"incremental" if isinstance(self.scheme, Incremental) else "regular"}
         wanted |= {"fired_apart"} if self.exchange.turns > 1 else set()
         wanted |= {"control"} if self.control is not None else set()
-        if IterationState.lacking(arrays, sizes, wanted):
-            raise MethodError("the solution to go on from lacks the counters of its iterations, or has other sizes; start anew")
-        return IterationState.read(arrays, sizes, wanted)
+        if not IterationState.lacking(arrays, sizes, wanted):
+            state = IterationState.read(arrays, sizes, wanted)
+            if state.fits_turns(self.exchange.turns, self.exchange.shooter.sequences):
+                return state
+        raise MethodError("the solution to go on from lacks the counters of its iterations, or has other sizes; start anew")
 
     def restore(self, state: IterationState) -> None:
         self.exchange.shooter.write(state.arrivals, state.fired, state.missed, state.fired_apart)

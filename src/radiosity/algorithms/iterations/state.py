@@ -113,6 +113,12 @@ class IterationState(AbstractState):
     incremental: IncrementalState | None = part(IncrementalState, optional=True)
     control: ControlState | None = part(ControlState, optional=True)
 
+    def fits_turns(self, turns: int, sequences: int) -> bool:
+        """There is a source for each turn, and a count for each sequence."""
+        each = self.sizes.replicates * self.sizes.rows * self.sizes.groups
+        fits_source = self.regular is None or self.regular.source.size == turns * each
+        return fits_source and (self.fired_apart is None or len(self.fired_apart) == sequences)
+
     @property
     def scheme(self) -> RegularState | IncrementalState:
         """What the order keeps."""

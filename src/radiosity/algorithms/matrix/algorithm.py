@@ -75,7 +75,8 @@ class Matrix(AbstractAlgorithm[MatrixState]):
         return MatrixState(sizes=self.sizes, keys=keys, counts=counts, **numbers)
 
     def read(self, arrays: Arrays, sizes: Sizes) -> MatrixState:
-        if MatrixState.lacking(arrays, sizes) or int(arrays["replicates"]) != sizes.replicates:
+        lacking = MatrixState.lacking(arrays, sizes)
+        if lacking or int(arrays["replicates"]) != sizes.replicates or len(arrays["keys"]) != len(arrays["counts"]):
             raise MethodError("the solution to go on from lacks the counts of its lines, or has other replicates; start anew")
         return MatrixState.read(arrays, sizes)
 
