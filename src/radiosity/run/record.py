@@ -21,7 +21,7 @@ LOST_HITS = (
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """Where the solutions of a run come from.
+    """The facts that all solutions of a run share: what they come from.
 
     Attributes:
         patches: of the scene.
