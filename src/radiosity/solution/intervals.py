@@ -3,8 +3,8 @@
 Replicates are independent. Where enough lines hit for the mean of one replicate to be near normal, (mean - truth) over standard
 error follows Student's distribution with one degree of freedom less than there are replicates. Where few lines hit, only their
 number is known. It bounds from above what the patch receives, as a count of a Poisson distribution (F. Garwood, "Fiducial limits
-for the Poisson distribution", Biometrika 28, 1936). Where hit counts vary more than those of Poisson, it counts clusters of lines:
-all patches share one sequence, so at few lines a patch hits come in clusters.
+for the Poisson distribution", Biometrika 28, 1936). Where hit counts vary more than those of Poisson, it counts clusters of
+lines: all patches share one sequence, so at few lines a patch hits come in clusters.
 """
 
 import numpy as np
