@@ -1,4 +1,4 @@
-"""What runs a method from stage to stage, and how its state is read."""
+"""The interfaces of algorithms, which run a method stage by stage, and of tallies, which read their states."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -17,19 +17,19 @@ Swept = Callable[[int], None]
 
 
 class Interrupted(Exception):
-    """The run was asked to stop where its state is whole."""
+    """Raised where the state is whole, when the run was asked to stop."""
 
 
 @dataclass(eq=False)
 class AbstractAlgorithm(ABC, Generic[S]):
-    """The counters of all replicates of a method, on the device or the host.
+    """Runs a method: it holds the counters of all replicates, on the device or the host.
 
     Attributes:
         geometry: the scene on the device.
-        problem: what is solved.
-        method: how.
-        seed: of all randomisation, and the first of its replicates.
-        replicates: independent randomised runs.
+        problem: the problem to solve.
+        method: the method to solve it with.
+        seed: the seed of all randomisation, and the number of the first replicate.
+        replicates: the number of independent randomised runs.
     """
 
     geometry: Geometry
@@ -40,31 +40,34 @@ class AbstractAlgorithm(ABC, Generic[S]):
 
     @property
     def sizes(self) -> Sizes:
-        """Of its states."""
+        """The sizes of its states."""
         return Sizes(self.replicates, *self.problem.rows.emission.shape)
 
     @property
     @abstractmethod
     def quanta(self) -> int:
-        """N of the stage that was begun last; 0 at first. Lines grow in proportion to it."""
+        """N of the stage that began last; 0 at first. The number of lines is proportional to it."""
 
     @property
     @abstractmethod
     def stage_independent(self) -> bool:
-        """The state after N depends on N alone, not on the stages that led there."""
+        """True where the state after N depends on N alone, not on the stages that led there."""
 
     @abstractmethod
     def advance(self, quanta: int, swept: Swept) -> None:
-        """Complete the stage of N quanta a replicate. ``swept(lines)`` is called where the state is whole, with the lines traced
-        since; what it raises ends the stage early, and `capture` then holds what is there."""
+        """Complete the stage of N quanta a replicate.
+
+        ``swept(lines)`` is called where the state is whole, with the number of lines traced since the last call. An exception of
+        it ends the stage early, and `capture` then returns the state so far.
+        """
 
     @abstractmethod
     def capture(self) -> S:
-        """All that is needed to go on, and to read the result. The run may go on, and the state stays as it is."""
+        """Return all that is needed to continue, and to read the result. The state does not change when the run continues."""
 
     @abstractmethod
     def read(self, arrays: Arrays, sizes: Sizes) -> S:
-        """The state of a run of this method that `AbstractState.arrays` wrote, with so many replicates.
+        """Return the state of a run of this method from the arrays that `AbstractState.arrays` gave.
 
         Raises:
             MethodError: arrays are missing or of another shape.
@@ -72,24 +75,24 @@ class AbstractAlgorithm(ABC, Generic[S]):
 
     @abstractmethod
     def restore(self, state: S) -> None:
-        """Put a captured state back.
+        """Continue from a captured state.
 
         Raises:
-            MethodError: there is no going on from a state of this method.
+            MethodError: no run can continue from a state of this method.
         """
 
     @property
     @abstractmethod
     def tally(self) -> "AbstractTally[S]":
-        """How states are read."""
+        """The tally that reads its states."""
 
 
 class AbstractTally(ABC, Generic[S]):
-    """What a process's state means.
+    """Reads results from the states of an algorithm.
 
     Attributes:
-        settles: with several replicates, results are quick to read and smaller than the state they are read from.
-        counts_hits: arrivals are lines that landed, and a patch's power comes with them.
+        settles: True where, with several replicates, results are quick to read and smaller than the state they are read from.
+        counts_hits: True where arrivals are hits, and a patch's power comes with them.
     """
 
     settles: ClassVar[bool] = False
@@ -97,46 +100,53 @@ class AbstractTally(ABC, Generic[S]):
 
     @abstractmethod
     def lines(self, problem: Problem, state: S) -> int:
-        """Lines of all replicates, as the paper counts them: a local line 1, a span of a global line 2."""
+        """Return the lines of all replicates, as the paper counts them: 1 for a local line, 2 for a span of a global line."""
 
     def about_lines(self, problem: Problem, state: S) -> float:
-        """The same where it is quick to tell, else an estimate."""
+        """Return the value of `lines` where it is quick to find, else an estimate."""
         return self.lines(problem, state)
 
     def swept_lines(self, problem: Problem, state: S) -> int:
-        """The same without lines that are traced where results are read."""
+        """Return the value of `lines` without lines that are traced when results are read."""
         return self.lines(problem, state)
 
     def forget(self) -> None:
-        """Let go of what was read of a state."""
+        """Free the results that were read from a state."""
         return
 
     @abstractmethod
     def arrivals(self, problem: Problem, state: S) -> np.ndarray:
-        """(n_patches,) int64: lines that landed on each patch, replicates together."""
+        """Return the hit count of each patch, replicates together, (n_patches,) int64."""
 
     @abstractmethod
     def irradiance(self, problem: Problem, state: S, group: int) -> tuple[np.ndarray, float]:
-        """(replicates, n_patches) values of a group of bands, and their unit: irradiance times area is value times unit."""
+        """Return values of a group of bands, (replicates, n_patches), and their unit.
+
+        Irradiance times area is value times unit.
+        """
 
     def line(self, problem: Problem, state: S, group: int) -> np.ndarray | float:
-        """W or lm that one line more from the lights would bring where it lands, to the irradiance times area of a replicate: one
-        number, or (n_patches,). It is what is known of patches where none landed. Default: the largest share that a group has in
-        a quantum."""
+        """Return the power that one more line from the lights would bring where it hits, W or lm, one number or (n_patches,).
+
+        It adds to the irradiance times area of a replicate. It is all that is known of patches without hits. Default: the
+        largest share that a group has in a quantum.
+        """
         return line_of_quanta(problem, state.quanta, group)
 
     @abstractmethod
     def books(self, problem: Problem, state: S, group: int) -> dict:
-        """Emitted, rounding, absorbed, escaped and lost power of a group, and ``closes`` (see `Solution.books`)."""
+        """Return the emitted, rounding, absorbed, escaped and lost power of a group, and ``closes`` (see `Solution.books`)."""
 
 
 class AbstractBiasedTally(AbstractTally[S]):
-    """A tally whose values have a bias that it can tell the size of."""
+    """A tally whose values have a bias of known size."""
 
     @abstractmethod
     def bias(self, problem: Problem, state: S, group: int) -> np.ndarray:
-        """(n_patches,) the size of the bias of the values' mean, in the unit of `irradiance`; NaN where unknown. Stated standard
-        errors hold it."""
+        """Return the size of the bias of the values' mean, (n_patches,), in the unit of `irradiance`; NaN where unknown.
+
+        Stated standard errors include it.
+        """
 
 
 class AbstractMeanTally(AbstractBiasedTally[S]):
@@ -144,11 +154,11 @@ class AbstractMeanTally(AbstractBiasedTally[S]):
 
     @abstractmethod
     def measured(self, problem: Problem, state: S) -> np.ndarray:
-        """(replicates, n_patches): lines that each patch's value is the mean of."""
+        """Return the number of lines that each patch's value is the mean of, (replicates, n_patches)."""
 
 
 def line_of_quanta(problem: Problem, quanta: int, group: int) -> float:
-    """W or lm: the largest share that a group has in a quantum of N."""
+    """Return the largest share that a group has in a quantum of N, W or lm."""
     largest = problem.groups.emission.max(axis=1)
     share = problem.groups.emission[:, group] / np.where(largest > 0, largest, 1)
     return float(share.max()) * problem.source.power / max(quanta, 1)

@@ -1,4 +1,4 @@
-"""What baselines that solve the equation find."""
+"""States of the baselines that solve the equation."""
 
 from dataclasses import dataclass
 
@@ -10,14 +10,14 @@ from .state import AbstractState, Record, array, number, part
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Solved(Record):
-    """A solution, or what there is of it so far.
+    """A solution, complete or so far.
 
     Attributes:
-        done: more quanta would change nothing.
-        lines: traced by all replicates.
+        done: True where more quanta would change nothing.
+        lines: lines traced by all replicates.
         received: (replicates, n_patches, groups) float64, W or lm.
         missed: (replicates, 2, groups) float64, W or lm that escaped and was lost.
-        seen: (n_patches,) how many of others each patch exchanges light with, summed over replicates.
+        seen: (n_patches,) the number of others that each patch exchanges light with, summed over replicates.
         history: (k, 2) steps, and the largest residual relative to the largest radiosity.
     """
 
@@ -31,14 +31,14 @@ class Solved(Record):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AbstractSolvedState(AbstractState):
-    """The state of a baseline; ``solved`` is None before there is anything."""
+    """The state of a baseline; ``solved`` is None before there is a solution."""
 
     solved: Solved | None = part(Solved, optional=True)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FullMatrixState(AbstractSolvedState):
-    """A full matrix is made whole or not at all."""
+    """The state of a full matrix, which is made whole or not at all."""
 
     @property
     def unfinished(self) -> bool:

@@ -1,4 +1,4 @@
-"""How the state of a baseline is read: powers that it found, and what it left over."""
+"""The tally of baselines: it reads the powers that they found, and the residual."""
 
 import numpy as np
 

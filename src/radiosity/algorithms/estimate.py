@@ -1,4 +1,7 @@
-"""What a baseline will take, before it begins: refused where memory would not do, told where it takes long."""
+"""The memory and time that a baseline will take, before it begins.
+
+A baseline that needs more memory than there is is refused. For one that takes long there is a warning.
+"""
 
 import time
 import warnings
@@ -11,13 +14,13 @@ from ..errors import RadiosityWarning
 from ..factors.rows import AbstractRows
 
 BYTES_A_FACTOR = 96  # 12 in the matrix, the rest while pairs are sorted; 91 were measured in a closed cube
-LONG = 60.0  # seconds that are worth a word
+LONG = 60.0  # seconds above which a warning tells the time
 PILOT_ROWS = 16
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Memory in bytes, time in seconds (NaN: unknown), and what they are for; ``way_out`` says what would take less."""
+    """Memory in bytes, time in seconds (NaN: unknown), and their purpose; ``way_out`` says what would take less."""
 
     memory: float
     seconds: float
@@ -25,7 +28,7 @@ class Estimate:
     way_out: str
 
     def check(self) -> None:
-        """Refuse what will not fit; tell what takes long.
+        """Refuse a run that does not fit into memory, and warn of one that takes long.
 
         Raises:
             MethodError: more memory than there is.
@@ -41,7 +44,7 @@ class Estimate:
 
 
 def full_matrix(rows: AbstractRows, n: int, times: float, *, reciprocal: bool) -> Estimate:
-    """Of n patches, so many times all rows."""
+    """Return the estimate for the rows of n patches, made ``times`` times."""
     factors = float(n) * n
     what = f"the matrix of {n} patches ({factors:.2g} form factors)"
     way_out = "take larger patches, or a method that forms no matrix, such as random-walk"
@@ -52,7 +55,10 @@ def full_matrix(rows: AbstractRows, n: int, times: float, *, reciprocal: bool) -
 
 
 def seconds_a_row(rows: AbstractRows, n: int) -> float:
-    """From a few rows that are made and thrown away, twice, since the first time compiles kernels."""
+    """Return the measured seconds of a row.
+
+    A few rows are made and discarded, twice, since the first time compiles kernels.
+    """
     some = np.unique(np.linspace(0, n - 1, min(PILOT_ROWS, rows.at_once, n)).astype(np.int64))
     seconds = 0.0
     for _ in range(2):
@@ -63,7 +69,10 @@ def seconds_a_row(rows: AbstractRows, n: int) -> float:
 
 
 def progressive(rows: AbstractRows, n: int) -> Estimate:
-    """Of n patches: a few numbers for each, and the rows that are kept for a while; about one row a patch is made."""
+    """Return the estimate for n patches: a few numbers for each, and the rows that are kept.
+
+    About one row a patch is made.
+    """
     from .progressive.recent import AHEAD, MOST_ENTRIES
 
     wanted = 400.0 * n + 32.0 * MOST_ENTRIES + 64.0 * AHEAD * n

@@ -24,7 +24,7 @@ from .state import Arrays, Sizes
 
 
 class FullMatrix(AbstractAlgorithm[FullMatrixState]):
-    """One stage: replicate after replicate, the matrix is made, solved and forgotten."""
+    """Forms and solves the matrix of each replicate, one after the other, in one stage. No matrix is kept."""
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
@@ -58,7 +58,7 @@ class FullMatrix(AbstractAlgorithm[FullMatrixState]):
             self.lines += lines
             swept(lines)
 
-        if self.method.factors == "polygons":  # each pair once
+        if self.method.factors == "polygons":  # each pair is computed once
             made = exact(self.geometry, self.method.lines_of_pair, Seed.of(self.seed).number_of(replicate), swept=counted)
         else:
             made = self.rows.make(np.arange(self.n), replicate, counted).factors
@@ -73,7 +73,7 @@ class FullMatrix(AbstractAlgorithm[FullMatrixState]):
         return made.sent(area) if self.geometry.some_backs_pass else made
 
     def _solve(self, matrix: Factors) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Power received and missed, entries of each column, and the history of convergence."""
+        """Return power received and missed, entries of each column, and the history of convergence."""
         groups, area = self.problem.groups, self.problem.patches.area
         system = solvers.System(matrix.sparse(self.n), groups.emission, groups.reflectance, area)
         found = solvers.solve(self.method.solver, system)
@@ -113,7 +113,10 @@ class FullMatrix(AbstractAlgorithm[FullMatrixState]):
 
 
 def _symmetric(factors: Factors, area: np.ndarray) -> Factors:
-    """A_i F_ij equal both ways to rounding, as conjugate gradients need them; row sums move by what was missing to that."""
+    """Return factors with A_i F_ij = A_j F_ji up to rounding, which conjugate gradients need.
+
+    Row sums change by as much as this was not so.
+    """
     exchange = factors.values * area[factors.rows]
     order, other = (np.lexsort(keys) for keys in ((factors.columns, factors.rows), (factors.rows, factors.columns)))
     mean = np.empty_like(exchange)

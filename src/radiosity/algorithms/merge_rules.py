@@ -1,4 +1,4 @@
-"""Rules that join a field of several states, where it is not put side by side along the replicates (`state.array`)."""
+"""Rules that join a field of several states, where they are not put side by side along the replicates (`state.array`)."""
 
 import functools
 
@@ -8,22 +8,22 @@ from ..errors import MethodError
 
 
 def alike(layout, values: list, records: list) -> np.ndarray:
-    """Arrays that all states have in common."""
+    """Return the array that all states have in common."""
     if not all(np.array_equal(value, values[0]) for value in values):
         raise MethodError("merge: states differ in what runs of one scene and method have in common; solve them alike")
     return values[0]
 
 
 def added(layout, values: list, records: list):
-    """Sums over the replicates."""
+    """Return the sum of values that are sums over replicates."""
     return functools.reduce(np.add, values) if layout is not None else sum(values)
 
 
 def of_first(layout, values: list, records: list):
-    """What a run tells of its first replicate alone."""
+    """Return the value of the first state: a run has it for its first replicate alone."""
     return values[0]
 
 
 def one_after_another(layout, values: list, records: list) -> np.ndarray:
-    """Entries of the replicates follow each other."""
+    """Return the entries of all states, one state after the other."""
     return np.concatenate(values)

@@ -1,4 +1,4 @@
-"""States of runs that have other replicates of one seed, put together: the state of one run with all of them."""
+"""The merge of states of runs that have different replicates of one seed, to the state of one run with all of them."""
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
@@ -13,7 +13,9 @@ S = TypeVar("S", bound=AbstractState)
 
 
 def merge(states: Sequence[S]) -> S:
-    """The state of one run with the replicates of all, in the order given. Whose replicates they are is for the caller to know.
+    """Return the state of one run with the replicates of all states, in the order given.
+
+    The caller makes sure that the replicates are different.
 
     Raises:
         MethodError: states of other algorithms, quanta or sizes, within a stage, or of an algorithm whose replicates cannot be
@@ -74,7 +76,7 @@ def _equal(name: str, values: list) -> Any:
 
 
 def side_by_side(layout: Layout, values: list, records: list[Record]) -> np.ndarray:
-    """Along the axis of replicates; of slots, rows and what escaped and was lost each along theirs."""
+    """Join arrays along the axis of replicates; where they have slots, join rows, and escaped and lost power, apart."""
     if not layout.flat:
         return np.concatenate(values, axis=layout.axes.index("replicates"))
     shaped = [value.reshape(record.sizes.shape(layout.axes)) for value, record in zip(values, records, strict=True)]

@@ -1,8 +1,8 @@
-"""States of algorithms as typed records: what is needed to go on, and to read results.
+"""States of algorithms as typed records: what is needed to continue, and to read results.
 
-A record is a frozen dataclass. Each field says how its array lies (`array`) or what number it is (`number`), so that arrays of a
-file can be checked, and which rule joins it with those of other replicates (`merging`). Files and `Solution.state` hold the same
-arrays by name.
+A record is a frozen dataclass. Each field states the axes of its array (`array`) or the type of its number (`number`), so that
+arrays of a file can be checked, and the rule that joins it with those of other replicates (`merging`). Files and
+`Solution.state` hold the same arrays by name.
 """
 
 from abc import abstractmethod
@@ -18,14 +18,14 @@ KINDS = {int: "iu", float: "fiu", bool: "b", np.ndarray: "biuf"}  # of arrays th
 
 @dataclass(frozen=True)
 class Sizes:
-    """How many replicates, rows of a replicate (patches, then lights) and groups of bands there are."""
+    """The numbers of replicates, of rows of a replicate (patches, then lights) and of groups of bands."""
 
     replicates: int
     rows: int
     groups: int
 
     def shape(self, axes: tuple[str | int, ...]) -> tuple[int, ...]:
-        """Lengths of axes; -1 for "any". A slot is a row, or a place for what escaped or was lost (see `LineTracer`)."""
+        """Return the lengths of axes; -1 for "any". A slot is a row, or counts what escaped or was lost (see `LineTracer`)."""
         lengths = {
             "replicates": self.replicates,
             "rows": self.rows,
@@ -39,18 +39,18 @@ class Sizes:
 
 @dataclass(frozen=True)
 class Layout:
-    """How an array lies.
+    """The layout of an array.
 
     Attributes:
-        axes: their names, or lengths.
-        flat: the array has one axis, which runs through those.
+        axes: names or lengths of the axes.
+        flat: True where the array has one axis, which runs through all of ``axes``.
     """
 
     axes: tuple[str | int, ...]
     flat: bool = False
 
     def fits(self, value: np.ndarray, sizes: Sizes) -> bool:
-        """The array has this shape."""
+        """Return whether an array has this layout."""
         shape = sizes.shape(self.axes)
         if self.flat:
             known = abs(int(np.prod(shape)))
@@ -62,17 +62,17 @@ Rule = Callable[[Layout | None, list, list[Any]], Any]  # layout, values of all 
 
 
 def array(*axes: str | int, flat: bool = False, optional: bool = False, merged: Rule | None = None) -> Any:
-    """A field that holds an array. Without a rule, states are put side by side along the replicates."""
+    """Return a field that holds an array. Without a rule, states are joined along the replicates."""
     return field(**_default(optional), metadata={"layout": Layout(axes, flat), "merged": merged})
 
 
 def number(kind: type, *, optional: bool = False, merged: Rule | None = None) -> Any:
-    """A field that holds an int, a float or a bool. Without a rule, it is the same in all states that are merged."""
+    """Return a field that holds an int, a float or a bool. Without a rule, all merged states have the same value."""
     return field(**_default(optional), metadata={"kind": kind, "merged": merged})
 
 
 def part(kind: type["Record"], prefix: str = "", *, optional: bool = False) -> Any:
-    """A field that holds another record, whose arrays have a prefix to their names."""
+    """Return a field that holds another record, whose arrays have names with a prefix."""
     return field(**_default(optional), metadata={"record": kind, "prefix": prefix})
 
 
@@ -82,12 +82,12 @@ def _default(optional: bool) -> dict:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Record:
-    """Arrays and numbers that belong together; optional fields are None where they are not there."""
+    """Arrays and numbers that belong together; a missing optional field is None."""
 
     sizes: Sizes
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """All arrays by name, not copied; numbers are arrays without axes."""
+        """Return all arrays by name, not copied; numbers are arrays without axes."""
         found: dict[str, np.ndarray] = {}
         for one in fields(self)[1:]:
             value = getattr(self, one.name)
@@ -99,7 +99,7 @@ class Record:
 
     @classmethod
     def read(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> Self:
-        """From arrays that lack nothing. An optional field is read where it is wanted, or all of it is there."""
+        """Return the record from complete arrays. An optional field is read where it is wanted, or all of it is there."""
         values: dict[str, Any] = {"sizes": sizes}
         for one in fields(cls)[1:]:
             facts = one.metadata
@@ -114,13 +114,13 @@ class Record:
 
     @classmethod
     def lacking(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> str:
-        """What is not there, "other sizes" where arrays have other shapes, or "" where `read` finds all."""
+        """Return what is missing, "other sizes" where arrays have other shapes, or "" where `read` finds all."""
         missing = cls.missing(arrays, wanted, prefix)
         return ", ".join(missing) or ("" if cls.fits(arrays, sizes, wanted, prefix) else "other sizes")
 
     @classmethod
     def missing(cls, arrays: Arrays, wanted: Collection[str] = (), prefix: str = "") -> list[str]:
-        """Names of arrays that are needed and not there, in order."""
+        """Return the names of arrays that are needed and missing, in order."""
         found = []
         for one in fields(cls)[1:]:
             needed = one.default is not None or one.name in wanted
@@ -132,7 +132,7 @@ class Record:
 
     @classmethod
     def fits(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> bool:
-        """All arrays that are there have their shape, and hold numbers."""
+        """Return whether all arrays that are there have their shape, and hold numbers."""
         for one in fields(cls)[1:]:
             facts = one.metadata
             if not _taken(one, arrays, wanted, prefix):
@@ -157,11 +157,11 @@ def _taken(one: Any, arrays: Arrays, wanted: Collection[str], prefix: str) -> bo
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AbstractState(Record):
-    """What an algorithm needs to go on, and its tally to read results.
+    """What an algorithm needs to continue, and its tally to read results.
 
     Attributes:
-        quanta: N of the stage that was begun last.
-        alone: why no states of other replicates can be put together with it; "" where they can.
+        quanta: N of the stage that began last.
+        alone: the reason why no states of other replicates can be merged with it; "" where they can.
     """
 
     alone: ClassVar[str] = ""
@@ -171,4 +171,4 @@ class AbstractState(Record):
     @property
     @abstractmethod
     def unfinished(self) -> bool:
-        """The state was captured within a stage."""
+        """True where the state was captured within a stage."""

@@ -1,4 +1,4 @@
-"""Every algorithm: the name that `method` gives it, and the class that runs it."""
+"""The table of algorithms: the name that `method` gives each, and the class that runs it."""
 
 from importlib import import_module
 
@@ -23,14 +23,14 @@ ALGORITHMS = {
 }
 
 
-LIGHTS = ("firing",)  # those that fire all source rows
+LIGHTS = ("firing",)  # algorithms that fire all source rows
 
 
 def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: Seed | int, replicates: int) -> AbstractAlgorithm:
-    """The process that runs a method.
+    """Return the algorithm that runs a method.
 
     Raises:
-        MethodError: the method knows nothing of lights without area, and there are some.
+        MethodError: there are lights without area, and the method cannot take them.
     """
     if problem.lights is not None and method.machine not in LIGHTS:
         raise MethodError(f"{method} sends light from patches only, and there are lights without area; take --method random-walk")

@@ -5,9 +5,9 @@ def main(arguments: list[str] | None = None) -> int:
     """Run ``radiosity`` and return its exit status.
 
     0: done; 1: it could not be done, or `check` and `doctor` found something serious; 2: the input is wrong;
-    130: interrupted, with everything written that was there; 143 and 129: likewise by SIGTERM and SIGHUP.
+    130: interrupted, with all results so far written; 143 and 129: interrupted by SIGTERM and SIGHUP.
 
-    Without ``arguments`` it is the program itself: it takes those of the command line, and Ctrl-C is of no effect after it.
+    Without ``arguments`` it is the program itself: it takes those of the command line, and Ctrl-C has no effect after it.
     """
     import sys
 
@@ -18,7 +18,7 @@ def main(arguments: list[str] | None = None) -> int:
             from .app import run
 
             return run(sys.argv[1:] if arguments is None else list(arguments))
-    except KeyboardInterrupt:  # outside of what `run` looks after
+    except KeyboardInterrupt:  # raised outside of `run`
         print("radiosity: interrupted", file=sys.stderr)
         from .interrupts import status
 

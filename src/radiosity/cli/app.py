@@ -1,4 +1,4 @@
-"""The commands, and what an error, a warning or an interruption looks like to whoever typed one."""
+"""The commands, and how they show errors, warnings and interruptions."""
 
 import sys
 import warnings
@@ -65,7 +65,7 @@ def run(arguments: list[str]) -> int:
         say("interrupted", "stopped before the end; what was not written yet is lost")
         return interrupts.status()
     except BrokenPipeError:
-        silence(1)  # whoever read our output has gone; nothing more can be said there, not even by Python as it ends
+        silence(1)  # the reader of our output has gone: nothing more is written there, not even by Python when it ends
         return FAILED
     except ModuleNotFoundError as error:
         if debug or error.name is None or error.name.startswith("radiosity"):
@@ -86,7 +86,7 @@ def run(arguments: list[str]) -> int:
 
 @contextmanager
 def tidy_warnings(debug: bool):
-    """Our warnings as one line each, once; those of other packages only with ``--debug``."""
+    """Show our warnings as one line each, once; show those of other packages only with ``--debug``."""
     seen = set()
 
     def show(message, category, filename, lineno, file=None, line=None):

@@ -5,7 +5,7 @@ from .options import DeviceName, Flag
 
 COLORS = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 MOST_ROWS = 40
-SMALL, LARGE = 0.05, 300.0  # metres: scenes beyond are more often in another unit
+SMALL, LARGE = 0.05, 300.0  # metres: a scene outside this range is more often in another unit
 
 
 def check(
@@ -105,6 +105,6 @@ def _table(report):
 
 
 def _bands(values) -> str:
-    """One number where all bands are equal, else all of them."""
+    """Return one number where all bands are equal, else all of them."""
     texts = [f"{v:.3g}" for v in values]
     return texts[0] if len(set(texts)) == 1 else " / ".join(texts)

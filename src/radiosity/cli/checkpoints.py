@@ -1,4 +1,4 @@
-"""Where a run's state is kept while it goes on, and when that file goes away."""
+"""The checkpoint of a run: where it is written, and when it is removed."""
 
 import warnings
 from contextlib import suppress
@@ -6,14 +6,15 @@ from pathlib import Path
 
 from ..errors import OutputError, RadiosityWarning
 
-MINUTE = 60.0  # from which on a run is long, and between two checkpoints that nobody asked for
+MINUTE = 60.0  # seconds from which a run is long; also the time between two checkpoints that nobody asked for
 
 
 def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None):
     """The checkpoint that was named, or one beside the first output: ``box.glb`` -> ``box.checkpoint.npz``; or None.
 
     Raises:
-        OutputError: the one that was named cannot be written, or is an output too. MethodError: nothing can go on from it.
+        OutputError: the one that was named cannot be written, or is an output too.
+        MethodError: no run can continue from it.
     """
     from ..run.checkpoint import Checkpoint, resumable
 
@@ -41,7 +42,7 @@ def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None):
 
 
 def _point_at_earlier(path: Path, resume: Path | None, when: str) -> None:
-    """Warn of a file that is not gone on from, while there is time to keep it."""
+    """Warn that this run will replace an earlier checkpoint which it does not continue."""
     if path.exists() and (resume is None or _place(resume) != _place(path)):
         warnings.warn(
             f"{path}: the checkpoint of an earlier run, which --resume {path} goes on from; one of this run takes its place "
@@ -52,7 +53,7 @@ def _point_at_earlier(path: Path, resume: Path | None, when: str) -> None:
 
 
 def finish(keeper, solution, outputs, *, named: bool, resume: Path | None) -> str | None:
-    """All outputs are written: remove what is not needed any more, or return the file to go on from."""
+    """Remove the checkpoint that is no longer needed, or return the file to continue from; called when outputs are written."""
     if keeper is None:
         return None
     path, stopped = keeper.path, solution.status in ("interrupted", "not reached")

@@ -59,7 +59,7 @@ def _one_line_of_work() -> None:
     """Compile and run the smallest kernel there is: one line against one face.
 
     Raises:
-        DeviceError: it does not meet the face.
+        DeviceError: the line does not hit the face.
     """
     import numpy as np
 

@@ -1,6 +1,6 @@
-"""Ctrl-C at any moment ends the program with one line and status 130; SIGTERM and SIGHUP likewise, with status 143 and 129.
+"""Interruptions: Ctrl-C at any moment ends the program with one line and status 130, SIGTERM with 143 and SIGHUP with 129.
 
-An exception out of a signal handler that goes through a half-done import leaves libraries broken: some swallow it, some
+An exception from a signal handler that goes through a half-done import leaves libraries broken: some swallow it, some
 turn it into another error, and compiled ones may end the process. So an interruption waits until no import is under way.
 """
 
@@ -14,8 +14,8 @@ from types import CodeType
 
 from .streams import silence
 
-AGAIN = 0.02  # seconds until an interruption that fell into an import is tried again
-TOGETHER = 2.0  # seconds: shells and sessions that end send several of `ENDS`, which mean one
+AGAIN = 0.02  # seconds until an interruption during an import is tried again
+TOGETHER = 2.0  # seconds: shells and sessions that end send several of `ENDS`, which count as one
 ENDS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))  # asked to end, terminal gone
 
 
@@ -40,7 +40,7 @@ class _Ears:
         self.timer.start()
 
     def end(self, number, frame) -> None:
-        """Does what Ctrl-C does at this moment; where that is ignored, what it would do."""
+        """Do what Ctrl-C does at this moment, or what it would do where it is ignored."""
         if number != signal.SIGTERM:
             _speak_to_nobody()
         if time.monotonic() - self.heard < TOGETHER:
@@ -63,7 +63,7 @@ def status() -> int:
 
 
 def answer() -> None:
-    """An interruption was told by who caught it, and `kept` says no more."""
+    """Note that the code that caught an interruption reported it, so that `kept` does not raise it again."""
     _ears.raised = False
 
 
@@ -99,7 +99,7 @@ def heard(top: CodeType, *, last: bool):
 
 @contextmanager
 def kept():
-    """An interruption that was swallowed in the block, or turned into another error, ends it as KeyboardInterrupt after all."""
+    """End the block with KeyboardInterrupt where an interruption in it was swallowed or turned into another error."""
     try:
         yield
     except Exception:
@@ -111,8 +111,10 @@ def kept():
 
 
 def _speak_to_nobody() -> None:
-    """The terminal has gone, and with it programs at the end of pipes: what is written there would fail, and nothing after it be
-    done."""
+    """Send output nowhere: the terminal has gone, and with it programs at the end of pipes.
+
+    A write there would fail, and nothing after it would be done.
+    """
     for number in (1, 2):
         with suppress(OSError):
             if not stat.S_ISREG(os.fstat(number).st_mode):
@@ -120,7 +122,7 @@ def _speak_to_nobody() -> None:
 
 
 def _importing(frame, top: CodeType | None) -> bool:
-    """Is an import under way, in or below the function of code ``top``?"""
+    """Return whether an import is under way, in or below the function of code ``top``."""
     while frame is not None and frame.f_code is not top:
         if frame.f_code.co_filename.startswith("<frozen importlib"):
             return True

@@ -1,4 +1,4 @@
-"""Output files: refused before the run where they cannot be written, and none lost because of another."""
+"""Output files: they are refused before the run where they cannot be written, and one that fails does not stop the others."""
 
 import tempfile
 from collections.abc import Callable, Iterable
@@ -33,8 +33,9 @@ def check(paths) -> None:
 
 
 def write(solution, paths, *, exposure: float | None = None, checkpoint: Path | None = None, also: Tasks = ()) -> None:
-    """Do what is asked ``also`` and write each output, pictures last: they need most of what may fail, a back end and libraries.
-    Where one fails the others are written all the same; then its error is raised.
+    """Do the tasks of ``also`` and write each output, pictures last, which fail most often (a back end and libraries).
+
+    Where one fails the others are still written; then its error is raised.
 
     Raises:
         OutputError: at least one file could not be written. The solution has then been saved as NPZ, as ``checkpoint`` or in a
@@ -49,18 +50,18 @@ def write(solution, paths, *, exposure: float | None = None, checkpoint: Path | 
 
 
 def attempt(tasks: Tasks) -> dict[Any, Exception]:
-    """Do each task, whether or not those before it failed; the errors by the names of the tasks."""
+    """Do each task, whether or not those before it failed, and return the errors by the names of the tasks."""
     failures = {}
     for name, task in tasks:
         try:
             task()
-        except Exception as error:  # one must not take the others with it
+        except Exception as error:  # the other tasks are still done
             failures[name] = error
     return failures
 
 
 def told(failures: dict[Any, Exception]) -> list[str]:
-    """What went wrong, each once."""
+    """Return each error text once."""
     texts = [
         str(error) if isinstance(error, RadiosityError) else f"{name}: {type(error).__name__}: {error}"
         for name, error in failures.items()
@@ -74,7 +75,7 @@ def _export(solution, path, exposure: float | None) -> None:
 
 
 def _rescue(solution, checkpoint: Path | None) -> str:
-    """Save it where it can be, and say where."""
+    """Save the solution where it is possible, and say where."""
     if checkpoint is not None:
         with suppress(RadiosityError):
             solution.save(checkpoint)

@@ -47,7 +47,7 @@ def steps():
 
 
 def facts(state) -> str:
-    """``stage 3, 12.3M rays, 21.4M/s, error 1.2 %, 8 s left``"""
+    """Return a text such as ``stage 3, 12.3M rays, 21.4M/s, error 1.2 %, 8 s left``."""
     parts = [f"stage {state.stage + 1}", f"{short(state.rays)} rays", f"{short(state.rays_per_second)}/s"]
     if state.error is not None and isfinite(state.error):
         parts.append(f"error {100 * state.error:.2g} %")
@@ -57,7 +57,7 @@ def facts(state) -> str:
 
 
 def duration(seconds: float) -> str:
-    """``42 s``, ``3 min 05 s``, ``2 h 10 min``"""
+    """Return a text such as ``42 s``, ``3 min 05 s`` or ``2 h 10 min``."""
     whole = max(round(seconds), 0)
     if whole < 60:
         return f"{whole} s"

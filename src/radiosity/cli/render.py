@@ -15,7 +15,7 @@ from .streams import tell
 
 @dataclass(frozen=True)
 class Viewpoint:
-    """From where the scene is seen.
+    """The point from which the scene is seen.
 
     Attributes:
         camera: Number of the scene's camera, from 0. Default: the first, or one fitted to the scene.

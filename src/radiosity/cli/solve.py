@@ -98,7 +98,7 @@ def solve(
 
 
 def _patches(scene, cut: Cut, method, before):
-    """The scene, cut as asked; else as the run to go on from has it; else as it is."""
+    """Return the scene cut as asked, or else as in the run to continue, or else as it is."""
     import radiosity as rd
 
     from ..run.baseline_budget import cut_for

@@ -17,7 +17,7 @@ VALUES: dict[str, Any] = {"choice": str | None, "switch": bool | None, "flag": C
 
 @dataclass(frozen=True)
 class Budget:
-    """When to stop.
+    """The budget: when to stop.
 
     Attributes:
         rays: Number of lines in all, such as 10M (the default), 500k or 1e7. Baselines run until they are done; progressive and

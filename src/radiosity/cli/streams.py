@@ -1,4 +1,4 @@
-"""Lines to whoever may have gone: nothing is left undone because nobody can be told."""
+"""Lines on stdout and stderr: where nobody can read them any more, the work still goes on."""
 
 import errno
 import os
@@ -6,11 +6,14 @@ import sys
 
 from ..errors import printable
 
-GONE = (errno.EPIPE, errno.EIO)  # of a pipe's reader, of a terminal
+GONE = (errno.EPIPE, errno.EIO)  # errors of a pipe without a reader, and of a terminal that has gone
 
 
 def tell(text: str) -> None:
-    """Lines on stdout, at once; none any more where they cannot be written, with a warning unless their reader has gone."""
+    """Write lines to stdout at once.
+
+    Where they cannot be written, no more are written, and there is a warning unless their reader has gone.
+    """
     try:
         print(text, flush=True)
     except OSError as error:
@@ -20,7 +23,7 @@ def tell(text: str) -> None:
 
 
 def say(kind: str, message) -> None:
-    """One line on stderr, at once: ``radiosity: error: ...``; none any more where it cannot be written."""
+    """Write one line to stderr at once: ``radiosity: error: ...``; where it cannot be written, write no more."""
     try:
         print(f"radiosity: {kind}: {printable(' '.join(str(message).split()))}", file=sys.stderr, flush=True)
     except OSError:
@@ -28,7 +31,7 @@ def say(kind: str, message) -> None:
 
 
 def silence(number: int) -> None:
-    """What is written to a descriptor from now on, and what Python still holds of it, goes nowhere."""
+    """Send what is written to a descriptor from now on, and what Python still buffers for it, nowhere."""
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, number)
     os.close(nothing)

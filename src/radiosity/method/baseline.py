@@ -1,4 +1,4 @@
-"""What Monte Carlo radiosity is set against: methods that form the matrix F, row by row or in links, with axes of their own."""
+"""Baselines: methods that form the matrix F, row by row or in links, to compare with. They have axes of their own."""
 
 from dataclasses import asdict, dataclass, fields
 
@@ -7,7 +7,7 @@ from .option import documented
 from .options import BASELINE, choices
 from .schemes import SCHEMES
 
-OF_PAIR, OF_PATCH = 16, 4096  # samples by default
+OF_PAIR, OF_PATCH = 16, 4096  # default samples of a pair, and of a patch
 
 CHOICES = choices(BASELINE)
 USED = {scheme: tuple(name for name, option in BASELINE.items() if scheme in option.schemes) for scheme in SCHEMES}
@@ -53,7 +53,7 @@ class Baseline:
 
     @property
     def _given(self) -> list[str]:
-        """Names of what differs from the default."""
+        """The names of options that differ from the default."""
         return [field.name for field in fields(self) if getattr(self, field.name) != field.default]
 
     @property
@@ -63,27 +63,27 @@ class Baseline:
 
     @property
     def lines_of_pair(self) -> int:
-        """Of two patches or elements, to find how much of one the other sees."""
+        """The number of lines between two patches or elements, which find how much of one the other sees."""
         return self.samples or OF_PAIR
 
     @property
     def lines_of_patch(self) -> int:
-        """With factors by lines."""
+        """The number of lines of a patch, where factors come from lines."""
         return self.samples or OF_PATCH
 
     @property
     def needs_powers_of_two(self) -> bool:
-        """Patches must be the leaves of quadtrees (`radiosity.subdivide`)."""
+        """True where patches must be the leaves of quadtrees (`radiosity.subdivide`)."""
         return self.scheme == "hierarchical"
 
     @property
     def order(self) -> str:
-        """As a `Method` has one: the ladder of stages goes by it."""
+        """The order that the ladder of stages asks for, as of a `Method`."""
         return self.scheme
 
     @property
     def machine(self) -> str:
-        """The process that runs it, a name of `algorithms.table.ALGORITHMS`."""
+        """The algorithm that runs it, a name of `algorithms.table.ALGORITHMS`."""
         return self.scheme
 
     def __str__(self) -> str:

@@ -1,8 +1,8 @@
-"""Which choices go together, which process runs them, and why the others do not."""
+"""Combinations of choices: which algorithm runs them, and why others are refused."""
 
 from ..errors import MethodError
 
-# Which orders each kind of run takes; an order that no list names is refused
+# The orders that each kind of run takes; an order that no list names is refused
 FIRING_ORDERS = ("depth-first", "breadth-first", "staged", "well-distributed")
 WALK_ORDERS = ("depth-first", "breadth-first", "staged")
 ITERATIONS = ("incremental", "regular")
@@ -10,7 +10,7 @@ GLOBAL_ORDERS = ("multipath", "matrix", "regular")
 
 
 def machine(method) -> str:
-    """The process that runs a method.
+    """The algorithm that runs a method.
 
     Raises:
         MethodError: the combination makes no sense, with the reason.

@@ -1,4 +1,4 @@
-"""Where does a particle leave a patch it hit?"""
+"""The axis of the equation: the point from which a particle leaves a patch that it hit."""
 
 EQUATIONS = {
     "discrete": "from a fresh uniform point of the patch: the walk solves the equation of the patches",

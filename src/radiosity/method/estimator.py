@@ -1,4 +1,4 @@
-"""What is scored of a walk or a line?"""
+"""The choice of the estimator: what is scored of a walk or a line."""
 
 ESTIMATORS = {
     "collision": "every landing scores",

@@ -1,4 +1,4 @@
-"""What carries a particle?"""
+"""The axis of lines: the kind of line that carries a particle."""
 
 LINES = {
     "local": "lines from patches, cosine distributed about their normals",

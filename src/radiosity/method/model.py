@@ -30,7 +30,7 @@ class Method:
     lines: str = "local"
     order: str = "breadth-first"
     numbers: str = "halton"
-    scrambling: str | None = field(default=None, kw_only=True)  # None: none, once it is made
+    scrambling: str | None = field(default=None, kw_only=True)  # becomes "none" when it is made with None
     randomisation: str = "by-patch"
     estimator: str = "collision"
     absorption: str = "auto"
@@ -56,12 +56,12 @@ class Method:
 
     @property
     def needs_powers_of_two(self) -> bool:
-        """Patches of any cut will do."""
+        """False: patches of any cut will do."""
         return False
 
     @property
     def machine(self) -> str:
-        """The process that runs it, a name of `algorithms.table.ALGORITHMS`."""
+        """The algorithm that runs it, a name of `algorithms.table.ALGORITHMS`."""
         return machine(self)
 
     @property

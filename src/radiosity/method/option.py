@@ -1,4 +1,4 @@
-"""What an option of a method is: its name, what it takes and what it means, said once for every place that needs it."""
+"""Options of methods: the name, the values and the meaning of each, stated once for every place that needs them."""
 
 import inspect
 import textwrap
@@ -18,17 +18,17 @@ class Option:
     """One option of `Method` or `Baseline`, which have a field of its name. The default is that of the field.
 
     Attributes:
-        name: of the field; on the command line with hyphens.
+        name: the name of the field; on the command line with hyphens.
         about: what it means, as ``radiosity solve --help`` says it.
-        kind: what it takes. A "choice" takes a named value, a "switch" True or False, a "flag" likewise, but no option of the
+        kind: what it takes. A "choice" takes a named value, a "switch" True or False, a "flag" too, but no option of the
             command line turns it off; "whole" is a whole number, a "share" a number between 0 and 1.
-        values: of a choice, each with its meaning.
+        values: the values of a choice, each with its meaning.
         most: the largest whole number; the smallest is 1.
-        zero: the share is of all lines, and may be 0.
-        optional: it may be None.
-        schemes: of `Baseline`: those that make use of it.
-        tuning: it changes the speed alone, and is shown with what concerns the run.
-        details: more, for those who read the reference.
+        zero: whether the share may be 0; it is then a share of all lines.
+        optional: whether the value may be None.
+        schemes: schemes of `Baseline` that use the option.
+        tuning: whether it changes only the speed; it is then shown with the options of the run.
+        details: more text for the reference.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Option:
     details: str = ""
 
     def check(self, value) -> None:
-        """Refuse what the option does not take.
+        """Refuse a value that the option does not take.
 
         Raises:
             MethodError: the value, and what is taken.
@@ -62,7 +62,7 @@ class Option:
 
     @property
     def entry(self) -> str:
-        """Its line of a docstring."""
+        """The line about the option in a docstring."""
         return f"{self.name}: {' '.join(filter(None, (self.about, self.details)))}".replace("`", "``")
 
 
@@ -71,7 +71,7 @@ def _is(kind, value) -> bool:
 
 
 def table(*options: Option) -> dict[str, Option]:
-    """Options by their names."""
+    """Return the options by their names."""
     return {option.name: option for option in options}
 
 

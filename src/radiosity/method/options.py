@@ -27,7 +27,7 @@ METHOD = table(
     Option(
         "numbers",
         "Sequence of points that lines are made from; `radiosity methods numbers` lists the choices.",
-        values=dict.fromkeys(NUMBERS, ""),  # the docstrings of their modules say what they are
+        values=dict.fromkeys(NUMBERS, ""),  # their meanings are the docstrings of their modules
         details="Two are older names: generalized-faure is faure with scrambling linear, scrambled-halton is halton with "
         "scrambling permuted-digits.",
     ),
@@ -155,5 +155,5 @@ BASELINE = table(
 
 
 def choices(options: dict[str, Option]) -> dict[str, tuple[str, ...]]:
-    """The names of the values of each option that has some."""
+    """Return the names of the values of each option that has named values."""
     return {name: tuple(option.values) for name, option in options.items() if option.kind == "choice"}

@@ -1,4 +1,4 @@
-"""Which line is fired next?"""
+"""The axis of the order: which line is fired next."""
 
 ORDERS = {
     "depth-first": "each walk is followed to its end",

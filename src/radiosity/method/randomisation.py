@@ -1,4 +1,4 @@
-"""Do patches share the randomised points of a sequence?"""
+"""The choice of the randomisation: whether patches share the randomised points of a sequence."""
 
 RANDOMISATIONS = {
     "by-patch": "each patch moves the sequence by a shift of its own: means over surfaces of many patches are accurate",

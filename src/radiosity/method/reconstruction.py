@@ -1,4 +1,4 @@
-"""What becomes of hits: counts, or a fit?"""
+"""The choice of the reconstruction: hits become counts, or a fit."""
 
 RECONSTRUCTIONS = {
     "patches": "hits are counted on each patch",

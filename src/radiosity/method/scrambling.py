@@ -1,4 +1,4 @@
-"""What is changed in a sequence before it is randomised? Every replicate and patch has the same scrambling."""
+"""The choice of the scrambling: what is changed in a sequence before it is randomised, alike in all replicates and patches."""
 
 SCRAMBLINGS = {
     "none": "points as the sequence is defined",

@@ -1,4 +1,4 @@
-"""Checks of an NPZ file before its arrays take memory: its headers must agree with what it holds."""
+"""Checks of an NPZ file before its arrays take memory: its headers must agree with its contents."""
 
 import math
 import zipfile
@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import SceneError
 
-MOST_UNPACKED = 200  # times the file's bytes that compressed members may become; counters and zeros compress well
+MOST_UNPACKED = 200  # largest ratio of unpacked to packed bytes; counters and zeros compress well
 MOST_MEMBERS = 10_000
 
 
@@ -18,7 +18,7 @@ def check_sizes(opened: BinaryIO, path: Path) -> None:
 
     Raises:
         SceneError: a member is no plain array, announces more numbers than it holds, or unpacks to very much more than the file.
-        zipfile.BadZipFile, ValueError, EOFError, KeyError: damaged.
+        zipfile.BadZipFile, ValueError, EOFError, KeyError: the file is damaged.
     """
     size = opened.seek(0, 2)
     opened.seek(0)

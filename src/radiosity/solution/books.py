@@ -14,9 +14,9 @@ class Books:
 
     Attributes:
         emitted, absorbed, escaped, lost: whole numbers.
-        fired: power that left patches along lines, from the lines' side of the ledger.
-        reflected: power that patches owed for what arrived.
-        watts: of one unit, for the mean over replicates.
+        fired: power that left patches along lines, summed from the lines' side.
+        reflected: power that patches must send for the hits that they received.
+        watts: W or lm of one unit, for the mean over replicates.
     """
 
     emitted: int
@@ -36,7 +36,7 @@ class Books:
 
     @property
     def closes(self) -> bool:
-        """Whether both sides are equal."""
+        """True where both sides are equal."""
         return self.emitted + self.rounding == self.absorbed + self.escaped + self.lost
 
     def powers(self) -> dict:
@@ -54,7 +54,7 @@ def by_difference(emitted: float, absorbed: float, escaped: float, lost: float) 
 
 
 def exact_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
-    """Sum of (k, n) unsigned integers, and that of their products with (n,) uint32, without overflow."""
+    """Return the sum of (k, n) unsigned integers, and the sum of their products with (n,) uint32, without overflow."""
     total = weighted = 0
     for part in pieces(rows.shape[1]):
         low, high = exact_columns(rows[:, part])
@@ -64,10 +64,10 @@ def exact_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
 
 
 def signed_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
-    """The totals of `exact_totals`, of signed integers of 64 bits."""
+    """Return the totals of `exact_totals` for signed integers of 64 bits."""
     total = weighted = 0
     for part in pieces(rows.shape[1]):
-        columns = np.zeros((2, part.stop - part.start), np.int64)  # of low and of high halves
+        columns = np.zeros((2, part.stop - part.start), np.int64)  # sums of low and of high halves
         for row in rows[:, part]:
             columns += row & 0xFFFFFFFF, row >> 32
         for shift, column in zip((0, 32), columns, strict=True):
@@ -79,7 +79,7 @@ def signed_totals(rows: np.ndarray, weight: np.ndarray) -> tuple[int, int]:
 
 
 def exact_dot(long: np.ndarray, short: np.ndarray) -> int:
-    """Sum of uint64 times uint32 without rounding or overflow, by 16-bit limbs."""
+    """Return the sum of uint64 times uint32 without rounding or overflow, by 16-bit limbs."""
     long, short = np.asarray(long, np.uint64).ravel(), np.asarray(short, np.uint64).ravel()
     limb, total = np.uint64(0xFFFF), 0
     for i in range(4):
@@ -91,7 +91,7 @@ def exact_dot(long: np.ndarray, short: np.ndarray) -> int:
 
 
 def exact_sum(values: np.ndarray) -> int:
-    """Sum of unsigned integers of up to 64 bits without overflow."""
+    """Return the sum of unsigned integers of up to 64 bits without overflow."""
     values = np.asarray(values)
     if values.dtype.itemsize <= 4:
         return int(values.sum(dtype=np.uint64))
@@ -100,7 +100,7 @@ def exact_sum(values: np.ndarray) -> int:
 
 
 def exact_columns(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Sums of the columns of unsigned integers without overflow: of their low and of their high 32 bits, uint64 each."""
+    """Return the sums of columns of unsigned integers without overflow, of their low and of their high 32 bits, uint64 each."""
     low, high = np.zeros((2, rows.shape[1]), np.uint64)
     for row in rows:
         low += row & np.uint32(0xFFFFFFFF)

@@ -31,7 +31,7 @@ def brief(solution) -> str:
 
 
 def area_mean(solution):
-    """(n_bands,) mean irradiance over the scene, without sides that no line reached."""
+    """The mean irradiance over the scene, without sides that no line reached, (n_bands,)."""
     inside = ~solution.sides.left_out
     area = solution.patches.area[inside]
     return area @ solution.irradiance[inside] / area.sum()

@@ -1,4 +1,4 @@
-"""The table of patches: what .csv files and data frames hold."""
+"""The table of patches, which .csv files and data frames hold."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from .sides import sides_of
 
 
 def patch_columns(solution) -> dict[str, np.ndarray]:
-    """Columns by title, with the unit in brackets; each (n_patches,)."""
+    """Return the columns by title, with the unit in brackets; each is (n_patches,)."""
     patches = solution.patches
     bands, unit = [str(band) for band in solution.bands], solution.unit
     names = np.array(patches.scene.names, object)

@@ -1,4 +1,4 @@
-"""CSV files of like rows: UTF-8, comma separated, a header row; what is unknown is ``nan``."""
+"""CSV files of rows with the same keys: UTF-8, comma separated, a header row; unknown values are ``nan``."""
 
 import csv
 from collections.abc import Iterable
@@ -12,12 +12,12 @@ def write_rows(rows: list[dict], path, titles: Iterable[str] | None = None) -> N
     """Write a table, a line for each row.
 
     Args:
-        rows: one at least, all with the same keys.
-        path: of the file.
-        titles: of the columns; default: the keys.
+        rows: at least one row, all with the same keys.
+        path: the file to write.
+        titles: titles of the columns; default: the keys.
 
     Raises:
-        OutputError: it cannot be written.
+        OutputError: the file cannot be written.
     """
     with replacing(path) as temporary, open_text(temporary) as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -26,5 +26,5 @@ def write_rows(rows: list[dict], path, titles: Iterable[str] | None = None) -> N
 
 
 def open_text(path: Path) -> TextIO:
-    """A CSV file, open for writing."""
+    """Open a CSV file for writing."""
     return path.open("w", encoding="utf-8", errors="backslashreplace", newline="")

@@ -4,8 +4,8 @@ import numpy as np
 
 from ..pieces import pieces
 
-SURE = 0.95  # of runs are to reach the error that was asked for
-MANY = 1e5  # independent patches: more make no difference
+SURE = 0.95  # share of runs that must reach the error that was asked for
+MANY = 1e5  # number of independent patches above which more make no difference
 
 
 def mean_and_error(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -32,8 +32,8 @@ def _mean_and_error(values: np.ndarray) -> tuple[np.ndarray, np.ndarray | float]
 def margin(spread: np.ndarray, replicates: int) -> float:
     """The factor by which the true RMS error of many patches may exceed the stated one, with probability `SURE`.
 
-    Patches of a run share its numbers, so their errors go together: they are worth as many independent ones as
-    nu = (tr C)^2 / tr C^2, C the covariance of the patches' values. Then the true mean square over the stated one follows
+    Patches of a run share its numbers, so their errors are correlated. They count as nu = (tr C)^2 / tr C^2 independent
+    patches, where C is the covariance of the patches' values. Then the true mean square over the stated one follows
     F(nu, nu (R - 1)), which for a single patch is the square of Student's t. tr C and tr C^2 are estimated from the inner
     products of the replicates, without bias where values are normal.
 
@@ -53,8 +53,10 @@ def margin(spread: np.ndarray, replicates: int) -> float:
 
 
 def inner_products(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """(replicates, replicates) of the weighted deviations of (replicates, n) values from their mean, block by block of
-    columns."""
+    """The inner products of the weighted deviations of (replicates, n) values from their mean, (replicates, replicates).
+
+    They are summed block by block of columns.
+    """
     total = np.zeros((len(values), len(values)))
     for part in pieces(values.shape[1]):
         weighted = values[:, part].astype(np.float64) * weight[part]
@@ -66,10 +68,11 @@ def inner_products(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
 def relative_error(reflectance: np.ndarray, irradiance: np.ndarray, error: np.ndarray, area: np.ndarray) -> float:
     """Area-weighted RMS of the error of B - E over that of B - E, the largest of the bands.
 
-    That of the irradiance where nothing reflects. NaN where it is unknown, as where no line hit in a band that has an error.
+    Where nothing reflects, it is the relative error of the irradiance. It is NaN where it is unknown, for example where no line
+    hit in a band that has an error.
 
     Args:
-        reflectance, irradiance, error: (n_patches, n_bands), the last one of the irradiance.
+        reflectance, irradiance, error: (n_patches, n_bands); ``error`` is the error of the irradiance.
         area: (n_patches,).
     """
     for weight in (reflectance, np.broadcast_to(1.0, reflectance.shape)):

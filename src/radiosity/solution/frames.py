@@ -14,7 +14,7 @@ SIDES = np.array(["front", "back"])
 
 
 def html(solution) -> str:
-    """The five lines of `repr`, and a table of the surfaces that send out most power."""
+    """Return the five lines of `repr`, and a table of the surfaces that send out most power."""
     head = f"<pre>{markup.escape(brief(solution))}</pre>"
     if solution.quanta == 0:
         return head
@@ -33,7 +33,7 @@ def html(solution) -> str:
 
 
 def to_dataframe(solution):
-    """The data frame of `Solution.to_dataframe`."""
+    """Return the data frame of `Solution.to_dataframe`."""
     _require("pandas")
     import pandas
 
@@ -43,7 +43,7 @@ def to_dataframe(solution):
 
 
 def to_xarray(solution):
-    """The dataset of `Solution.to_xarray`."""
+    """Return the dataset of `Solution.to_xarray`."""
     _require("xarray")
     import xarray
 

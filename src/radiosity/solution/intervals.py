@@ -1,10 +1,10 @@
 """Intervals that hold the true value with a stated probability (contract 5).
 
-Replicates are independent, so (mean - truth) / standard error follows Student's distribution with one degree of freedom less than
-there are replicates, where enough lines landed for the mean of one replicate to be near normal. Where few did, their number is
-what is known: as that of Poisson's lines, or of clusters of lines where arrivals vary more than Poisson's (all patches share one
-sequence, so at few lines a patch they come in clusters), it bounds what the patch receives from above (F. Garwood, "Fiducial
-limits for the Poisson distribution", Biometrika 28, 1936).
+Replicates are independent. Where enough lines hit for the mean of one replicate to be near normal, (mean - truth) over standard
+error follows Student's distribution with one degree of freedom less than there are replicates. Where few lines hit, only their
+number is known. It bounds from above what the patch receives, as a count of a Poisson distribution (F. Garwood, "Fiducial limits
+for the Poisson distribution", Biometrika 28, 1936). Where hit counts vary more than those of Poisson, it counts clusters of
+lines: all patches share one sequence, so at few lines a patch hits come in clusters.
 """
 
 import numpy as np
@@ -12,13 +12,13 @@ import numpy as np
 from ..errors import MethodError
 from ..pieces import pieces
 
-FEW = 30  # arrivals, all replicates together: Student's intervals of patches with fewer are too narrow (docs/errors.md)
-ROUNDING = 1e-13  # relative, of sums over replicates
+FEW = 30  # hits, all replicates together: Student's intervals of patches with fewer are too narrow (docs/errors.md)
+ROUNDING = 1e-13  # relative rounding error of sums over replicates
 QUANTITIES = ("radiosity", "irradiance")
 
 
 def student(level: float, replicates: int) -> float:
-    """Half the width of a two-sided interval, in standard errors; NaN of a single replicate.
+    """Half the width of a two-sided interval, in standard errors; NaN for a single replicate.
 
     Raises:
         MethodError: a level outside (0, 1).
@@ -33,11 +33,12 @@ def student(level: float, replicates: int) -> float:
 
 
 def power_of_a_line(emission: np.ndarray, area: np.ndarray, lines: float) -> np.ndarray:
-    """(n_bands,) W or lm: the largest power of each of ``lines`` lines from the lights, in the mean of replicates.
+    """The largest power of each of ``lines`` lines from the lights, in the mean of replicates, (n_bands,) W or lm.
 
     Args:
-        emission: (n_patches, n_bands). area: (n_patches,) m².
-        lines: replicates together: their number times the quanta of each.
+        emission: (n_patches, n_bands).
+        area: (n_patches,) m².
+        lines: lines of all replicates together: their number times the quanta of each.
     """
     total, share = 0.0, np.zeros(emission.shape[1])
     for part in pieces(len(area)):
@@ -48,13 +49,15 @@ def power_of_a_line(emission: np.ndarray, area: np.ndarray, lines: float) -> np.
 
 
 def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, usual=None) -> np.ndarray:
-    """(n_patches, n_bands) W or lm: the power that a line brings to a patch, in the mean of replicates.
+    """The power that a line brings to a patch, in the mean of replicates, (n_patches, n_bands) W or lm.
 
     It is that of the patch's own lines, or the usual one where no line brought any.
 
     Args:
-        irradiance: (n_patches, n_bands). arrivals: (n_patches,), replicates together. area: (n_patches,) m².
-        usual: `usual_power` of the scene that the patches are some of. Default: they are all.
+        irradiance: (n_patches, n_bands).
+        arrivals: (n_patches,), replicates together.
+        area: (n_patches,) m².
+        usual: `usual_power` of the scene that the patches belong to. Default: the patches are the whole scene.
     """
     usual = usual_power(irradiance, arrivals, area) if usual is None else usual
     power, count = irradiance * area[:, None], arrivals[:, None]
@@ -63,10 +66,10 @@ def power_of_an_arrival(irradiance: np.ndarray, arrivals: np.ndarray, area: np.n
 
 
 def usual_power(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, line: np.ndarray | float = 0.0) -> np.ndarray:
-    """(n_bands,) W or lm: the power that a line brings to any patch.
+    """The power that a line brings to any patch, (n_bands,) W or lm.
 
-    At least ``line``, the power of a line, (n_bands,) or (n_patches, n_bands), which is known where no line hit. The result has
-    the larger shape of both.
+    It is at least ``line``, the power of a line, (n_bands,) or (n_patches, n_bands), which is known where no line hit. The result
+    has the larger shape of both.
     """
     total = np.zeros(irradiance.shape[1])
     for part in pieces(len(area)):
@@ -75,7 +78,7 @@ def usual_power(irradiance: np.ndarray, arrivals: np.ndarray, area: np.ndarray, 
 
 
 def cluster(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """(n_bands,) the number of lines that come together, 1 at least.
+    """The number of lines that come together, at least 1, (n_bands,).
 
     It is the variance of hits over their number, on patches that few lines hit.
     """
@@ -105,11 +108,11 @@ def irradiance_bounds(
     cluster: np.ndarray | float = 1.0,
     usual: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(n_patches, n_bands) each: a lower and an upper bound of the irradiance, each held with a probability of ``level``.
+    """A lower and an upper bound of the irradiance, each held with a probability of ``level``, (n_patches, n_bands) each.
 
     They follow from the distribution of hits alone. They are rough where there are many hits, and all that is known where there
-    are none. Lines that brought nothing do not count. Arguments are those of `power_of_an_arrival`; ``usual`` may have a row for
-    each patch.
+    are no hits. Lines that brought nothing do not count. Arguments are those of `power_of_an_arrival`; ``usual`` may have a row
+    for each patch.
     """
     power = power_of_an_arrival(irradiance, arrivals, area, usual) / area[:, None]
     low, high = count_bounds(np.where(irradiance > 0, arrivals[:, None], 0), level, cluster)
@@ -117,7 +120,7 @@ def irradiance_bounds(
 
 
 def by_luck(mean: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """Whether all replicates agree, up to rounding, or the powers of lines add up to nothing (the residue has signs)."""
+    """Return whether all replicates agree, up to rounding, or the powers of lines add up to zero (the residue has signs)."""
     return (error <= ROUNDING * np.abs(mean)) | ((mean == 0) & (error > 0))
 
 
@@ -129,7 +132,7 @@ def least_error(
     usual: np.ndarray | None = None,
     replicates: int = 1,
 ) -> np.ndarray:
-    """(n_patches, n_bands) standard error, with a least value where it is zero by chance. ``error`` is written over.
+    """The standard error, with a least value where it is zero by chance, (n_patches, n_bands). ``error`` is overwritten.
 
     It is zero by chance where all replicates agree, or where signed lines of the residue cancel. Where few lines hit, the least
     value is the error of a Poisson count, and that of one hit where no line hit or brought anything. Where many lines hit, it is
@@ -143,7 +146,7 @@ def least_error(
     usual = usual_power(irradiance, arrivals, area) if usual is None else usual
     usual = np.broadcast_to(usual, irradiance.shape)
     for part in pieces(len(area)):
-        none = (irradiance[part] == 0) & (arrivals[part, None] == 0)  # signed lines that cancel say no more than none
+        none = (irradiance[part] == 0) & (arrivals[part, None] == 0)  # signed lines that cancel tell no more than no line
         lucky = by_luck(irradiance[part], error[part]) | none & (error[part] * area[part, None] < usual[part])
         if not lucky.any():
             continue
@@ -158,7 +161,8 @@ def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.nd
     """The intervals of `Solution.interval`."""
     check(quantity)
     mean, error, area = solution.irradiance, solution.irradiance_standard_error, solution.patches.area
-    shown = np.where(error > 0, error, np.nan) if solution.by_baseline else error  # factors that agree say nothing of their error
+    # form factors that agree tell nothing about their error
+    shown = np.where(error > 0, error, np.nan) if solution.by_baseline else error
     half = student(level, solution.replicates) * shown
     low, high = np.maximum(mean - half, 0), mean + half
     few = solution.few[:, None] | (mean == 0)
@@ -174,10 +178,10 @@ def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.nd
 
 
 def power_of_none(solution) -> np.ndarray:
-    """(n_patches, n_bands) W or lm: the power that a line would have brought to patches that received nothing.
+    """The power that a line would have brought to patches that received nothing, (n_patches, n_bands) W or lm.
 
     Their standard error is made of it. Files of older versions have a zero there: then it is the power of a usual line, or of
-    one from the lights. Entries of other patches mean nothing.
+    a line from the lights. Entries of other patches mean nothing.
     """
     patches, mean = solution.patches, solution.irradiance
     one = solution.irradiance_standard_error * patches.area[:, None]
@@ -186,7 +190,7 @@ def power_of_none(solution) -> np.ndarray:
 
 
 def widened(low, high, few, least, most, signed=None) -> tuple[np.ndarray, np.ndarray]:
-    """Intervals that go to ``least`` and ``most`` where few lines hit; NaN stays.
+    """Return intervals that go to ``least`` and ``most`` where few lines hit; NaN stays.
 
     Where lines take power away as well (the mean is ``signed``), their number bounds the error of the mean on both sides.
     """

@@ -46,7 +46,7 @@ def load_solution(path) -> Solution:
         raise SceneError(f"{path}: cannot be read ({error.strerror or error})") from None
     except MemoryError:
         raise SceneError(f"{path}: too large for the memory of this machine") from None
-    except Exception as error:  # damage of any kind must not end the program with a foreign exception
+    except Exception as error:  # a damaged file of any kind must become a SceneError
         if isinstance(error, SceneError):
             raise
         text = " ".join(str(error).split())[:200]
@@ -54,9 +54,9 @@ def load_solution(path) -> Solution:
 
 
 def _text(value: np.ndarray) -> str:
-    """The text of an array that holds one.
+    """Return the text of an array that holds one.
 
-    Numpy takes any four bytes for a character. Those that Python does not know would fail much later.
+    Numpy takes any four bytes for a character. Bytes that are no character for Python would fail much later.
     """
     native = value.astype(value.dtype.newbyteorder("="))
     if value.dtype.kind != "U" or value.ndim or (np.frombuffer(native.tobytes(), np.uint32) > LAST_CHARACTER).any():

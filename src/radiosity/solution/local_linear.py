@@ -2,9 +2,9 @@
 D. P. Greenberg, "Global illumination using local linear density estimation", ACM Transactions on Graphics 16(3), 1997).
 
 About each point x of a flat region a plane is fitted to power over area, weighted by a kernel K: with t = x_q - x the place of
-landing q of power phi_q, E(x) = sum_q phi_q K(t) [1 0 0] M^-1 [1 t], M = integral of K(t) [1 t]^T [1 t] over the region. M is
-taken over the region as it is, up to its rim: that takes the bias at boundaries away, which a kernel alone has. Landings are
-binned to the region's cells first, which are smaller than the kernel: a sum over cells for each integral.
+hit q of power phi_q, E(x) = sum_q phi_q K(t) [1 0 0] M^-1 [1 t], M = integral of K(t) [1 t]^T [1 t] over the region. M is
+integrated over the region up to its rim: this removes the bias at boundaries, which a kernel alone has. Hits are first binned to
+the region's cells, which are smaller than the kernel, and each integral becomes a sum over cells.
 """
 
 from dataclasses import dataclass
@@ -14,11 +14,11 @@ import numpy as np
 
 from ..patches.model import Patches
 
-WIDTH = 0.5  # bandwidth over the root of a region's area, times landings^(1/6)
+WIDTH = 0.5  # bandwidth over the root of a region's area, times hits^(1/6)
 FLAT = 1e-4  # normals and offsets that agree to this, relative to the scene, are one plane
 CORNER = 4  # cells about a vertex
-BEYOND = 1.1  # how much farther than the last of them a kernel reaches
-SINGULAR = 1e-9  # of M's determinant, in units of the kernel's width: cells about the point lie on one line
+BEYOND = 1.1  # reach of a kernel over the distance of the last of these cells
+SINGULAR = 1e-9  # limit of M's determinant, in units of the kernel's width, below which cells about the point lie on one line
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,8 +26,8 @@ class Regions:
     """Flat regions: patches of one surface and one plane, facing one way.
 
     Attributes:
-        patches: all of them.
-        of: (n_patches,) int64, the region of each.
+        patches: all patches.
+        of: (n_patches,) int64, the region of each patch.
     """
 
     patches: Patches
@@ -35,7 +35,7 @@ class Regions:
 
     @staticmethod
     def find(patches: Patches) -> "Regions":
-        """The regions of patches, by their surfaces, normals and distances to the origin."""
+        """Return the regions of patches, by their surfaces, normals and distances to the origin."""
         low, high = patches.scene.bounds
         size = float((high - low).max()) or 1.0
         offset = np.einsum("ij,ij->i", patches.normal, patches.centroid - (low + high) / 2) / size
@@ -49,7 +49,7 @@ class Regions:
 
     @cached_property
     def area(self) -> np.ndarray:
-        """(count,) m²: the area of each region."""
+        """The area of each region, (count,) m²."""
         return np.bincount(self.of, self.patches.area, self.count)
 
     @cached_property
@@ -59,12 +59,15 @@ class Regions:
         return np.split(order, np.cumsum(np.bincount(self.of, minlength=self.count))[:-1])
 
     def bandwidth(self, arrivals: np.ndarray) -> np.ndarray:
-        """(count,) metres: the bandwidth of each region. It falls as hits^(-1/6): bias squared and variance fall alike."""
+        """The bandwidth of each region, (count,) metres.
+
+        It falls as hits^(-1/6): bias squared and variance fall alike.
+        """
         landed = np.maximum(np.bincount(self.of, arrivals, self.count), 1)
         return WIDTH * np.sqrt(self.area) * landed ** (-1 / 6)
 
     def plane(self, region: int, points: np.ndarray) -> np.ndarray:
-        """(m, 2) coordinates of points in a region's plane, metres."""
+        """The coordinates of points in a region's plane, (m, 2) metres."""
         normal = self.patches.normal[self.members[region][0]]
         first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
         first /= np.linalg.norm(first)
@@ -72,15 +75,17 @@ class Regions:
 
 
 def weights(regions: Regions, arrivals: np.ndarray, points: np.ndarray, of: np.ndarray, *, least: int = 1, planes: bool = True):
-    """(m, n_patches) sparse matrix W: W times power over area of the patches is the estimate at m points, each in the plane of
-    the region ``of`` it. Rows sum to one.
+    """The sparse matrix W, (m, n_patches): W times power over area of the patches is the estimate at m points.
+
+    Each point lies in the plane of its region. Rows sum to one.
 
     Args:
-        arrivals: (n_patches,) landings of the run, which set the bandwidth.
-        points: (m, 3) metres; of: (m,) region numbers.
-        least: cells that a kernel reaches at least: 1 about their centres, where a cell larger than the kernel stands alone;
-            at vertices `CORNER`, since a plane needs three.
-        planes: fitted; else the kernel's means, whose weights are not negative.
+        arrivals: (n_patches,) hits of the run, which set the bandwidth.
+        points: (m, 3) metres.
+        of: (m,) the number of each point's region.
+        least: the least number of cells that a kernel reaches: 1 about their centres, where a cell larger than the kernel stands
+            alone; at vertices `CORNER`, since a plane needs three.
+        planes: fit planes; else take the kernel's means, whose weights are not negative.
     """
     from scipy.sparse import csr_matrix
     from scipy.spatial import KDTree
@@ -128,7 +133,7 @@ def _fit(t: np.ndarray, area: np.ndarray, row: np.ndarray, m: int) -> np.ndarray
 
     s, u, v = total(kernel), total(kernel * t[:, 0]), total(kernel * t[:, 1])
     uu, uv, vv = total(kernel * t[:, 0] ** 2), total(kernel * t[:, 0] * t[:, 1]), total(kernel * t[:, 1] ** 2)
-    minors = uu * vv - uv * uv, uv * v - u * vv, u * uv - uu * v  # of M's first row
+    minors = uu * vv - uv * uv, uv * v - u * vv, u * uv - uu * v  # minors of M's first row
     determinant = s * minors[0] + u * minors[1] + v * minors[2]
     planar = determinant > SINGULAR * s**3
     scale = np.where(planar, 1 / np.where(planar, determinant, 1), 0)

@@ -1,7 +1,7 @@
 """Intervals of area means over surfaces and over the scene.
 
-Each replicate has its own mean over a set of patches, so what patches of a replicate have in common does not narrow the interval.
-Where few lines landed on a set, it goes to the bounds from their number, as intervals of patches do.
+Each replicate has its own mean over a set of patches, so errors that patches of a replicate have in common do not narrow the
+interval. Where few lines hit a set, the interval goes to the bounds from their number, as intervals of patches do.
 """
 
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ def of_scene(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndar
 
 
 def of_rows(solution, level: float, quantity: str) -> "Ends":
-    """Errors and intervals of the rows of tables (`Solution.sides`); ``quantity`` may be "absorbed", too."""
+    """The errors and intervals of the rows of tables (`Solution.sides`); ``quantity`` may also be "absorbed"."""
     sides, power = solution.sides, solution.surface_power
     if power is not None:
         power = power[:, :, sides.surface]
@@ -56,10 +56,10 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
     """Intervals of area means over sets of patches, NaN where unknown.
 
     Args:
-        quantity: one of `intervals.QUANTITIES`, or "absorbed": irradiance less what is reflected of it.
-        key: (n_patches,) int, the set of each patch, 0 to n - 1, or -1: of none.
-        n: how many sets there are.
-        power: (2, replicates, n, n_bands) W or lm that the sets receive, and of it reflect.
+        quantity: one of `intervals.QUANTITIES`, or "absorbed": irradiance less its reflected part.
+        key: (n_patches,) int, the set of each patch, 0 to n - 1, or -1 for patches in no set.
+        n: the number of sets.
+        power: (2, replicates, n, n_bands) W or lm that the sets receive, and the part that they reflect.
     """
     if quantity != "absorbed":
         check(quantity)
@@ -67,7 +67,7 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
     here, shape = key[some], (n, patches.emission.shape[1])
     its_area, reflectance = patches.area[some], patches.reflectance[some]
     area = np.bincount(here, its_area, n)
-    area = np.where(area > 0, area, np.nan)  # no patches, no mean
+    area = np.where(area > 0, area, np.nan)  # a set without patches has no mean
     if power is None:
         return Ends(*(np.full(shape, np.nan) for _ in range(3)))
     received, reflected = power / area[:, None]  # (replicates, n, n_bands)
@@ -75,7 +75,7 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
     mean, error = mean_and_error(values)
     half = student(level, solution.replicates)
     if solution.by_baseline:
-        error = np.where(error > 0, error, np.nan)  # factors that agree say nothing of their error
+        error = np.where(error > 0, error, np.nan)  # form factors that agree tell nothing about their error
         low, high = np.maximum(mean - half * error, 0), mean + half * error
     else:
         usual, share = _usual(solution, key, shape), np.ones(shape)
@@ -88,7 +88,7 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
         error = least_error(mean, error, arrivals, area, usual * share, solution.replicates)
         low, high = np.maximum(mean - half * error, 0), mean + half * error
         least, most = irradiance_bounds(got, arrivals, area, 0.5 + level / 2, bunches, usual)
-        least = least if quantity == "irradiance" else 0 * least  # where reflectances differ, lines may land on the darkest
+        least = least if quantity == "irradiance" else 0 * least  # where reflectances differ, lines may hit the darkest
         few = (arrivals < FEW)[:, None] | (got == 0)
         low, high = widened(low, high, few, least, most * share, mean if solution.signed else None)
     if quantity == "radiosity":
@@ -99,7 +99,7 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
 
 
 def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """(k, n_bands) W or lm: the power that a line brings to a set that no line reached.
+    """The power that a line brings to a set that no line reached, (k, n_bands) W or lm.
 
     It is the usual power, or the most that a line would have brought to its patches that received nothing.
     """
@@ -111,5 +111,5 @@ def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 
 def _cluster(solution) -> np.ndarray:
-    """(n_bands,) the `cluster` of patches, which are more numerous than sets."""
+    """The `cluster` of patches, which are more numerous than sets, (n_bands,)."""
     return cluster(solution.irradiance, solution.irradiance_standard_error, solution.arrivals, solution.patches.area)

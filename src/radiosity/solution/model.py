@@ -22,25 +22,25 @@ class Solution:
     Attributes:
         patches: the patches solved for.
         irradiance: (n_patches, n_bands) float64, W/m² or lm/m².
-        irradiance_standard_error: the same shape; NaN (unknown) without replicates. Of density estimation, with the size of its
-            bias: the root of their sum of squares.
-        arrivals: (n_patches,) int64, lines that landed, all replicates together. 0: no line reached it, so its value is unknown,
-            and the standard error is that of one arrival.
+        irradiance_standard_error: the same shape; NaN (unknown) without replicates. With density estimation it includes the size
+            of the bias: it is the root of the sum of both squares.
+        arrivals: (n_patches,) int64, the hit count of each patch, all replicates together. 0: no line reached it, so its value is
+            unknown, and the standard error is that of one hit.
         rays: lines traced in all.
         seconds: wall time.
-        quanta: N of each replicate; ``solve(..., quanta=N)`` replays the run bit for bit.
+        quanta: N of each replicate; ``solve(..., quanta=N)`` repeats the run bit for bit.
         replicates: number of randomised runs.
         escaped: (n_bands,) float64, power that left the scene, W or lm.
-        books: one dict a band: emitted, rounding, absorbed, escaped, lost (W or lm); and closes (bool): their sums agree
-            to the last unit as whole numbers, before they became powers.
+        books: the energy balance, one dict a band: emitted, rounding, absorbed, escaped, lost (W or lm); and closes (bool): their
+            sums agree to the last unit as whole numbers, before they became powers.
         status: "complete", "interrupted", "not reached" (the error asked for, within its limit or what counters hold) or a reason
             for the early end.
         provenance: scene hash, method, seed, versions.
-        state: integers of the run, to go on from.
-        surface_power: (2, replicates, n_surfaces, n_bands) float64, W or lm: what the patches of each surface receive, and of it
-            reflect, in each replicate. None in files of older versions.
-        side_power: (2, replicates, 2 n_surfaces, n_bands) float64, the same of front and back of each surface in turn. None where
-            no back radiates, and in files of older versions.
+        state: arrays from which a run continues.
+        surface_power: (2, replicates, n_surfaces, n_bands) float64, W or lm: what the patches of each surface receive, and what
+            they reflect, in each replicate. None in files of older versions.
+        side_power: (2, replicates, 2 n_surfaces, n_bands) float64, the same powers for front and back of each surface in turn.
+            None where no back radiates, and in files of older versions.
 
     Example:
         >>> solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), rays=10_000)
@@ -66,12 +66,12 @@ class Solution:
 
     @cached_property
     def radiosity(self) -> np.ndarray:
-        """(n_patches, n_bands) float64: emission plus reflectance times irradiance."""
+        """The radiosity, emission plus reflectance times irradiance, (n_patches, n_bands) float64."""
         return self.patches.emission + self.patches.reflectance * self.irradiance
 
     @cached_property
     def standard_error(self) -> np.ndarray:
-        """(n_patches, n_bands) float64: standard error of the radiosity; zero on black patches, NaN where unknown."""
+        """The standard error of the radiosity, (n_patches, n_bands) float64; zero on black patches, NaN where unknown."""
         error = self.patches.reflectance * self.irradiance_standard_error
         return np.where(self.patches.reflectance == 0, 0.0, error)
 
@@ -87,39 +87,39 @@ class Solution:
 
     @property
     def escaped(self) -> np.ndarray:
-        """(n_bands,) float64, W or lm: power that left the scene."""
+        """The power that left the scene, (n_bands,) float64, W or lm."""
         return np.array([book["escaped"] for book in self.books])
 
     @cached_property
     def few(self) -> np.ndarray:
-        """(n_patches,) bool: so few lines hit the patch (fewer than `intervals.FEW`) that its standard error says little.
+        """The patches that few lines hit, (n_patches,) bool: with fewer than `intervals.FEW` a standard error is unreliable.
 
-        `interval` goes up to a bound from their number. False where lines pass on both sides (`Back.OPEN`), and everywhere for
-        baselines, which do not count lines.
+        `interval` goes up to a bound from their number there. False where lines pass on both sides (`Back.OPEN`), and everywhere
+        for baselines, which do not count lines.
         """
         passed = self.patches.scene.back[self.patches.face] == Back.OPEN
         return (self.arrivals < intervals.FEW) & ~passed & (not self.by_baseline)
 
     @cached_property
     def sides(self) -> Sides:
-        """Which sides of two-sided surfaces light reached, and the rows of tables; see `solution.sides.Sides`."""
+        """The sides of two-sided surfaces that light reached, and the rows of tables; see `solution.sides.Sides`."""
         return sides_of(self)
 
     @property
     def signed(self) -> bool:
-        """Whether lines take power away as well as bring it: there was a control variate."""
+        """True where lines take power away as well as bring it: there was a control variate."""
         return bool(self.provenance.get("choices", {}).get("control_variate"))
 
     @property
     def by_baseline(self) -> bool:
-        """Whether it was solved by a method that forms the matrix."""
+        """True where a method that forms the matrix solved it."""
         return "scheme" in self.provenance.get("choices", {})
 
     def interval(self, level: float = 0.95, quantity: str = "radiosity") -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper ends, (n_patches, n_bands) each, of intervals that hold the true value with probability ``level``.
+        """The ends of intervals that hold the true value with probability ``level``, lower and upper, (n_patches, n_bands) each.
 
-        They are Student's intervals over replicates, in the solution's unit; where `few` lines hit they go up to a bound from
-        their number. NaN where unknown: without replicates.
+        They are Student's intervals over replicates, in the solution's unit. Where `few` lines hit they go up to a bound from
+        their number. They are NaN where unknown: without replicates.
 
         Args:
             quantity: "radiosity" or "irradiance".
@@ -130,22 +130,22 @@ class Solution:
         return intervals.of_patches(self, level, quantity)
 
     def surface_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
-        """Intervals of the area mean over each surface, (n_surfaces, n_bands) each; arguments are those of `interval`.
+        """The intervals of the area mean over each surface, (n_surfaces, n_bands) each; arguments are those of `interval`.
 
-        A side that no line reached, such as the outside of a room, has no part in it (`sides`).
+        A side that no line reached, such as the outside of a room, is left out (`sides`).
         """
         return means.of_surfaces(self, level, quantity)
 
     def scene_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
-        """Interval of the area mean over the whole scene, (n_bands,) each, without sides that no line reached."""
+        """The interval of the area mean over the whole scene, (n_bands,) each, without sides that no line reached."""
         return means.of_scene(self, level, quantity)
 
     @cached_property
     def error(self) -> float:
-        """Relative error of the scene; NaN without replicates.
+        """The relative error of the scene; NaN without replicates.
 
-        It is the area-weighted RMS of the standard error of B - E over that of B - E, the largest of the bands; that of the
-        irradiance where nothing reflects.
+        It is the area-weighted RMS of the standard error of B - E over that of B - E, the largest of the bands. Where nothing
+        reflects, it is the relative error of the irradiance.
         """
         return self._relative(slice(None))
 
@@ -157,16 +157,19 @@ class Solution:
 
     @property
     def history(self) -> np.ndarray:
-        """(k, 2) float64: steps of a baseline, and what was left after them. Empty for methods without such steps.
+        """The steps of a baseline, and what was left after them, (k, 2) float64. Empty for methods without such steps.
 
-        Full-matrix: iterations, and the largest residual over the largest radiosity. Progressive: shots, and unshot over emitted
-        power. Hierarchical: passes, and the largest change over the largest radiosity.
+        - full-matrix: iterations, and the largest residual over the largest radiosity
+        - progressive: shots, and unshot over emitted power
+        - hierarchical: passes, and the largest change over the largest radiosity
         """
         return np.asarray(self.state.get("history", np.zeros((0, 2))))
 
     def surface_table(self) -> list[dict]:
-        """A row for each surface, or for each side that light reached: area, means, errors, and the power balance in W or lm; see
-        `solution.table.surface_table`."""
+        """The table of surfaces: a row for each surface, or for each side that light reached.
+
+        It has area, means, errors, and the power balance in W or lm; see `solution.table.surface_table`.
+        """
         from .table import surface_table
 
         return surface_table(self)
@@ -176,13 +179,13 @@ class Solution:
         return brief(self)
 
     def _repr_html_(self) -> str:
-        """The same for notebooks, with the table of surfaces."""
+        """The solution in five lines as HTML for notebooks, with the table of surfaces."""
         from .frames import html
 
         return html(self)
 
     def to_dataframe(self):
-        """A pandas DataFrame with a row for each patch: the columns of a .csv file, units in their names.
+        """Return a pandas DataFrame with a row for each patch: the columns of a .csv file, with units in their names.
 
         Raises:
             OutputError: pandas is not installed.
@@ -192,8 +195,10 @@ class Solution:
         return to_dataframe(self)
 
     def to_xarray(self):
-        """An xarray Dataset over patch and band: radiosity, irradiance, their standard errors and 95 % intervals, reflectance and
-        emission, and over patch its surface, side, area, centroid, normal and arrivals; units are attributes.
+        """Return an xarray Dataset.
+
+        Over patch and band it has radiosity, irradiance, their standard errors and 95 % intervals, reflectance and emission. Over
+        patch it has surface, side, area, centroid, normal and arrivals. Units are attributes.
 
         Raises:
             OutputError: xarray is not installed.
@@ -203,7 +208,7 @@ class Solution:
         return to_xarray(self)
 
     def report(self) -> str:
-        """A summary in plain text."""
+        """Return a summary in plain text."""
         from .report import report
 
         return report(self)

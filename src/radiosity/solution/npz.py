@@ -1,4 +1,4 @@
-"""The keys of a solution file, an NPZ archive that stands alone: scene, results, provenance and the integers of the run.
+"""The keys of a solution file, an NPZ archive that stands alone: scene, results, provenance and the state of the run.
 
 An array of the scene has the key ``scene_NAME``, of a paint ``reflectance_paint_NAME``, of the state ``state_NAME``. The rest is
 one text of JSON, ``meta``.
@@ -18,5 +18,5 @@ SCENE_ARRAYS = (
 )
 PAINT_ARRAYS = ("image", "uv", "color")
 SOLUTION_ARRAYS = ("irradiance", "irradiance_standard_error", "arrivals")
-POWER_ARRAYS = ("surface_power", "side_power")  # which may be missing
+POWER_ARRAYS = ("surface_power", "side_power")  # arrays that may be missing
 SCALARS = ("rays", "seconds", "quanta", "replicates", "books", "status", "provenance")

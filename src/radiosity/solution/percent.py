@@ -6,10 +6,10 @@ UNKNOWN = "?"
 
 
 def percent(share: float, form: str = ".2%") -> str:
-    """``1.23%``, or ``?`` where it is unknown (NaN) or has no bound."""
+    """Return a text such as ``1.23%``, or ``?`` where the share is unknown (NaN) or has no bound."""
     return format(share, form) if math.isfinite(share) else UNKNOWN
 
 
 def number(value: float, form: str = ".4g") -> str:
-    """``1.234``, or ``?`` where it is unknown (NaN)."""
+    """Return a text such as ``1.234``, or ``?`` where the value is unknown (NaN)."""
     return UNKNOWN if math.isnan(value) else format(value, form)

@@ -10,7 +10,7 @@ from .model import Solution
 from .percent import UNKNOWN, percent
 
 MOST_ROWS = 24
-ORDER = 1.0  # of the change of patch means in the patch size, see docs/errors.md
+ORDER = 1.0  # order of the change of patch means in the patch size, see docs/errors.md
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +19,7 @@ class RefineCheck:
 
     Attributes:
         coarse: the solution asked for.
-        fine: that on patches cut into four.
+        fine: the solution on patches cut into four.
         parent: (n_fine,) the coarse patch of each fine one.
         fine_error: (n_patches, n_bands) standard error of the fine solution's mean radiosity over each coarse patch.
 
@@ -37,31 +37,31 @@ class RefineCheck:
 
     @cached_property
     def fine_mean(self) -> np.ndarray:
-        """(n_patches, n_bands) mean radiosity of the fine solution over each coarse patch."""
+        """The mean radiosity of the fine solution over each coarse patch, (n_patches, n_bands)."""
         return self._mean(self.fine.radiosity)
 
     @cached_property
     def change(self) -> np.ndarray:
-        """(n_patches, n_bands) the change of a patch's mean radiosity when all patches are cut into four, noise included."""
+        """The change of a patch's mean radiosity when all patches are cut into four, with noise, (n_patches, n_bands)."""
         return self.fine_mean - self.coarse.radiosity
 
     @cached_property
     def change_error(self) -> np.ndarray:
-        """(n_patches, n_bands) standard error of `change`, from the replicates of both runs."""
+        """The standard error of `change`, from the replicates of both runs, (n_patches, n_bands)."""
         return np.hypot(self.coarse.standard_error, self.fine_error)
 
     @cached_property
     def square_of_means(self) -> np.ndarray:
-        """(n_patches, n_bands) estimate of the squared discretisation error of a patch's mean.
+        """The estimated square of the discretisation error of a patch's mean, (n_patches, n_bands).
 
-        It is the square of the change without its noise, extrapolated to ever smaller patches. It may be negative where there is
-        little but noise.
+        It is the square of the change without its noise, extrapolated to ever smaller patches. It may be negative where noise is
+        larger than the change.
         """
         return (self.change**2 - self.change_error**2) / (1 - 2.0**-ORDER) ** 2
 
     @cached_property
     def square_within(self) -> np.ndarray:
-        """(n_patches, n_bands) estimate of the mean square of B(x) less its mean over the patch, which a constant leaves out.
+        """The estimated mean square of B(x) less its mean over the patch, which a constant leaves out, (n_patches, n_bands).
 
         The four children show three quarters of it, where B is linear.
         """
@@ -75,8 +75,10 @@ class RefineCheck:
         return np.stack(sums, axis=1) / self.coarse.patches.area[:, None]
 
     def table(self) -> list[dict]:
-        """A row for the whole scene and one for each surface; errors are RMS over the patches' area, relative to that of the
-        light reflected (of the radiosity, where nothing is), the largest of the bands.
+        """The table of errors: a row for the whole scene and one for each surface.
+
+        Errors are RMS over the patches' area, relative to the RMS of the light reflected (of the radiosity, where nothing is
+        reflected), the largest of the bands.
 
         Keys: surface, patches, sampling (standard error of the coarse solution), discretisation (of patch means), within (what
         constants leave out within patches), change (of the mean radiosity over the surface, signed, of the band that it is
@@ -84,7 +86,7 @@ class RefineCheck:
         """
         patches = self.coarse.patches
         names = ["the whole scene", *patches.scene.names]
-        inside = ~self.coarse.sides.left_out  # as tables of surfaces
+        inside = ~self.coarse.sides.left_out  # as in tables of surfaces
         rows = [inside, *(inside & (patches.surface == i) for i in range(len(patches.scene.names)))]
         return [{"surface": name, **self._row(here)} for name, here in zip(names, rows, strict=True) if here.any()]
 
@@ -92,7 +94,7 @@ class RefineCheck:
         patches, area = self.coarse.patches, self.coarse.patches.area[here]
         size = np.sqrt(area @ (self.coarse.radiosity - patches.emission)[here] ** 2)
         usual = np.sqrt(area @ self.coarse.radiosity[here] ** 2)
-        black = ~(patches.reflectance[here] > 0).any(axis=0)  # others reflect something, whose size no line tells
+        black = ~(patches.reflectance[here] > 0).any(axis=0)  # other patches reflect light of unknown size
         size = np.where(size > 0, size, np.where((usual > 0) & black, usual, np.nan))
 
         def relative(square: np.ndarray) -> float:
@@ -108,7 +110,7 @@ class RefineCheck:
         }
 
     def report(self) -> str:
-        """The table in plain text, the surfaces with the largest errors first."""
+        """Return the table in plain text, the surfaces with the largest errors first."""
         first, *rows = self.table()
         rows.sort(key=lambda row: -max(row["sampling"], row["discretisation"]))
         shown = [first, *rows[:MOST_ROWS]]
@@ -130,7 +132,7 @@ class RefineCheck:
         """Write the table as CSV.
 
         Raises:
-            OutputError: it cannot be written.
+            OutputError: the file cannot be written.
         """
         write_rows(self.table(), path)
 

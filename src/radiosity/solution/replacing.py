@@ -1,4 +1,4 @@
-"""Files of exporters, which are written beside their place and then take it."""
+"""Files of exporters: they are written under another name in the same folder, and then moved into place."""
 
 import os
 from contextlib import contextmanager, suppress
@@ -10,7 +10,7 @@ from .whole import reason
 
 @contextmanager
 def replacing(path):
-    """A path in the same folder to write to; the finished file then takes the place of ``path`` in one step.
+    """Give a path in the same folder to write to; the finished file then takes the place of ``path`` in one step.
 
     Raises:
         OutputError: the system refuses; nothing is left behind, and a file that was there stays as it was.

@@ -9,7 +9,7 @@ from .sides import BACK
 from .status import NOT_REACHED
 
 MOST_ROWS = 24
-WIDEST = 32  # letters of a surface's name
+WIDEST = 32  # most letters of a surface's name
 
 
 def report(solution) -> str:
@@ -101,7 +101,7 @@ def _surfaces(solution) -> list[str]:
 
 
 def _called(surface: str, side: str) -> str:
-    """A surface in a narrow column, and which side of it where both have a row."""
+    """Return a surface's name for a narrow column, and its side where both sides have a row."""
     tail = f" ({side})" if side else ""
     return printable(surface)[: WIDEST - len(tail)] + tail
 

@@ -15,8 +15,8 @@ def save(solution, path: Path, *, derived: bool = True) -> None:
 
     Args:
         solution: the `Solution` to write.
-        path: of the file.
-        derived: with what follows from the rest, for other readers of the file.
+        path: the file to write.
+        derived: write also arrays that follow from the others, for other programs that read the file.
 
     Raises:
         OutputError: the file cannot be written.

@@ -1,7 +1,7 @@
-"""Sides of surfaces: which of them light reached, and the rows that tables have of them.
+"""Sides of surfaces: which of them light reached, and their rows in tables.
 
 Faces of OBJ, PLY and STL files have two radiating sides. In a closed room one of them is the outside, which no line reaches: it
-is *dark*. A mean over both sides would be half of what the room receives, so dark sides have no part in means of surfaces.
+is *dark*. A mean over both sides would be half of what the room receives, so means of surfaces leave dark sides out.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from ..scene.reached import Lit, lit_sides
 from .intervals import FEW
 
 FRONT, BACK, LIT = "front", "back", "lit"  # lit: fronts of some faces and backs of others, where a surface is wound both ways
-ALL = "both"  # sides of a surface that no line reached
+ALL = "both"  # the sides of a surface that no line reached
 _NAMES = {Lit.FRONT: FRONT, Lit.BACK: BACK, Lit.MIXED: LIT}
 
 
@@ -24,12 +24,12 @@ class Sides:
 
     Attributes:
         dark: (n_patches,) bool, on a side of a face that no line reached, though lines reached its other side.
-        left_out: (n_patches,) bool, on the dark side of a surface, or of parts of it, which emits nothing: no row holds them.
+        left_out: (n_patches,) bool, in no row: on the dark side of a surface, or of parts of it, which emits nothing.
         surface: (n_rows,) int, index of the surface.
-        side: (n_rows,) of "front", "back", "lit", and "both" where no line reached the surface.
+        side: (n_rows,) "front", "back" or "lit", and "both" where no line reached the surface.
         row: (n_patches,) int, the row of each patch; -1 where it is left out.
-        dark_area: (n_rows,) m² that are left out: the other side, or of two rows what is dark on this side.
-        whole: (n_rows,) bool, all that the surface receives is in this row.
+        dark_area: (n_rows,) m² that are left out: the other side, or where there are two rows the dark part of this side.
+        whole: (n_rows,) bool, True where this row holds all that the surface receives.
     """
 
     dark: np.ndarray
@@ -42,12 +42,12 @@ class Sides:
 
 
 def sides_of(solution) -> Sides:
-    """The sides that lines reached (for methods that count none, the sides that received power)."""
+    """The sides that lines reached (for methods that count no lines, the sides that received power)."""
     patches = solution.patches
     scene, n = patches.scene, len(patches.scene.names)
     two, surface, place = scene.back == Back.RADIATES, scene.surface, (patches.face, patches.is_back.astype(int))
     received = (np.nan_to_num(solution.irradiance) > 0).any(axis=1)
-    # baselines count no lines, and say so by few, which holds nowhere: there what receives anything is reached for certain
+    # baselines count no lines, and their `few` is False everywhere: there every patch that receives power is reached for certain
     counts = np.where(solution.few | ~received, solution.arrivals, np.maximum(solution.arrivals, FEW))
     reached = np.zeros((scene.n_faces, 2))
     np.add.at(reached, place, counts)
@@ -65,7 +65,7 @@ def sides_of(solution) -> Sides:
     met = np.bincount(surface, reached.sum(axis=1), n) > 0
     double = (kind == Lit.BOTH) & (np.bincount(surface[two], minlength=n) > 0) & (met | shines)
     first = np.concatenate([[0], np.cumsum(np.where(double, 2, 1))])
-    row = first[patches.surface] + np.where(double[patches.surface], patches.is_back, 0)  # also of what is left out
+    row = first[patches.surface] + np.where(double[patches.surface], patches.is_back, 0)  # also for patches that are left out
     rows = np.repeat(np.arange(n), np.diff(first))
     is_second = np.arange(first[-1]) > first[rows]
     unmet = ~double & (kind == Lit.BOTH) & (np.bincount(surface[two], minlength=n) > 0)

@@ -9,7 +9,7 @@ from ..patches.model import Patches
 from .errors import mean_and_error
 from .local_linear import Regions, weights
 
-ALIKE = 0.5  # of a region's power: a fit that holds less than this of it is no fit
+ALIKE = 0.5  # share of a region's power that a fit must hold at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,15 +28,15 @@ class Smoother:
 
     @staticmethod
     def of(patches: Patches, arrivals: np.ndarray) -> "Smoother":
-        """The fits with the bandwidths that follow from (n_patches,) hits."""
+        """Return the fits with the bandwidths that follow from (n_patches,) hits."""
         regions = Regions.find(patches)
         fit, near = (weights(regions, arrivals, patches.centroid, regions.of, planes=planes) for planes in (True, False))
         return Smoother(regions, fit, near)
 
     def smooth(self, power: np.ndarray) -> np.ndarray:
-        """(replicates, n_patches) received power, fitted, and scaled so that each region keeps its own in each replicate.
+        """The received power, fitted, and scaled so that each region keeps its power in each replicate, (replicates, n_patches).
 
-        So sums over regions and surfaces have no bias. A region whose fit holds hardly any of its power is left as counted.
+        So sums over regions and surfaces have no bias. A region whose fit holds less than `ALIKE` of its power stays as counted.
         """
         area, of = self.regions.patches.area, self.regions.of
         result = []
@@ -49,11 +49,11 @@ class Smoother:
         return np.stack(result)
 
     def bias(self, power: np.ndarray, smoothed: np.ndarray) -> np.ndarray:
-        """(n_patches,) root mean square bias of the smoothed power about each patch; NaN for a single replicate.
+        """The root mean square bias of the smoothed power about each patch, (n_patches,); NaN for a single replicate.
 
         Counts have no bias, so the mean of smoothed less counted is the bias, and the square of that mean less its variance
-        estimates the squared bias without bias. A patch alone says little: its neighbours within the kernel, whose bias is of
-        one kind, are averaged.
+        estimates the squared bias without bias. The estimate of a single patch is noisy, so it is averaged over its neighbours
+        within the kernel, which have a similar bias.
         """
         area = self.regions.patches.area
         mean, error = mean_and_error((smoothed - power) / area)

@@ -1,3 +1,3 @@
-"""How a run ended: the statuses of a solution that more than one file asks for."""
+"""The statuses of a solution that more than one file asks for."""
 
-NOT_REACHED = "not reached"  # above the error that the run was to reach, or it could not be told
+NOT_REACHED = "not reached"  # the error is above the error target, or unknown

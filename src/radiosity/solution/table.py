@@ -9,15 +9,19 @@ def surface_table(solution) -> list[dict]:
     """The rows of the table, one for each surface.
 
     A surface of two sides has two rows, front and back, or only the side that light reached. Sides that no line reached, of the
-    surface or of parts of it, are in no row; ``dark`` tells their area.
+    surface or of parts of it, are in no row; ``dark`` is their area. Unknown values are NaN. The keys are:
 
-    Keys: surface, side (front, back, lit: fronts of some faces and backs of others, or both: no line met any), patches, area (m²
-    of this side), dark (m²); then for each band (suffix " [band]" where there are several): radiosity and irradiance (means),
-    emitted, received, reflected, absorbed, left (emitted + reflected: the power that leaves), net (left - received = emitted -
-    absorbed: above zero where the surface gives more than it gets), net error (standard error of net), net low and net high (ends
-    of its 95 % interval), all of these in W or lm; then interval (half the 95 % interval of the mean irradiance, relative to it,
-    the largest of the bands), error (relative, RMS over the patches), arrivals, few (patches with few arrivals) and unvisited
-    (patches), both without patches in the dark. What is unknown is NaN.
+    - surface
+    - side: front, back, lit (fronts of some faces and backs of others), or both (no line hit either)
+    - patches; area, m² of this side; dark, m²
+    - for each band (suffix " [band]" where there are several): radiosity and irradiance (means); and in W or lm: emitted,
+      received, reflected, absorbed, left (emitted + reflected: the power that leaves), net (left - received = emitted - absorbed:
+      above zero where the surface sends out more than it receives), net error (standard error of net), net low and net high (ends
+      of its 95 % interval)
+    - interval: half the 95 % interval of the mean irradiance, relative to it, the largest of the bands
+    - error: relative, RMS over the patches
+    - arrivals: hits
+    - few (patches with few hits) and unvisited (patches), both without dark patches
     """
     patches, sides = solution.patches, solution.sides
     scene, n, some = patches.scene, len(sides.surface), sides.row >= 0
@@ -49,7 +53,7 @@ def surface_table(solution) -> list[dict]:
     groups = np.split(np.flatnonzero(some)[np.argsort(row, kind="stable")], np.cumsum(count)[:-1])
     ends = of_rows(solution, 0.95, "irradiance")
     middle = np.stack([columns[f"irradiance{f' [{name}]' if len(scene.bands) > 1 else ''}"] for name in scene.bands], axis=1)
-    with np.errstate(over="ignore"):  # of what is next to nothing
+    with np.errstate(over="ignore"):  # quotients of values near zero
         wide = np.divide((ends.high - ends.low) / 2, middle, out=np.full(middle.shape, np.nan), where=middle > 0)
     columns["interval"] = np.array([row[~np.isnan(row)].max() if (~np.isnan(row)).any() else np.nan for row in wide])
     columns["error"] = np.array([solution._relative(rows) if len(rows) else np.nan for rows in groups])

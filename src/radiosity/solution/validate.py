@@ -1,6 +1,6 @@
 """The check of a solution file: its arrays must fit together in shapes, kinds, indices and ranges.
 
-A result is believed as it stands; that its numbers were measured cannot be seen from them.
+The values of results are not checked: whether they were measured cannot be seen from them.
 """
 
 import math
@@ -12,8 +12,8 @@ from ..scene.paint import Paint
 from .books import Books
 from .model import Solution
 
-LARGEST = 1e18  # metres, as `Scene.from_arrays` takes them
-MOST, MOST_OF_PAINTS = 1e60, 1e30  # of other quantities: squares of powers are finite
+LARGEST = 1e18  # largest coordinate in metres, as in `Scene.from_arrays`
+MOST, MOST_OF_PAINTS = 1e60, 1e30  # largest values of other quantities: squares of powers are finite
 
 
 def validate(solution: Solution) -> None:
@@ -34,7 +34,7 @@ def validate(solution: Solution) -> None:
     n_patches = len(solution.irradiance) if solution.irradiance.ndim else -1
     _that(count.sum() == n_patches, f"{n_patches} results for {count.sum():.0f} patches")
     _array("irradiance", solution.irradiance, "f", (n_patches, bands))
-    none_yet = solution.quanta == 0 and np.isnan(solution.irradiance).all()  # a run stopped within its first stage
+    none_yet = solution.quanta == 0 and np.isnan(solution.irradiance).all()  # the run was stopped within its first stage
     _that(none_yet or (np.abs(solution.irradiance) <= MOST).all(), "irradiance that is not finite")
     _array("errors", solution.irradiance_standard_error, "f", (n_patches, bands))
     error = solution.irradiance_standard_error

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, also after a power cut."""
+"""Whole files: a file appears complete or not at all, also after a power cut."""
 
 import os
 import re
@@ -7,15 +7,15 @@ from pathlib import Path
 
 from ..errors import OutputError
 
-LONGEST = 60  # letters of the file's name in that of its temporary one
+LONGEST = 60  # most letters of the file's name in the name of its temporary file
 
 
 @contextmanager
 def whole_file(path: Path):
-    """A binary file to write to, which takes the place of ``path`` once all of it is on the disk.
+    """Open a binary file to write to; it takes the place of ``path`` once all of it is on the disk.
 
-    Until then it is called ``.NAME.PID.part`` and lies in the same folder. One that a killed process left is removed by the
-    next that writes ``path``.
+    Until then its name is ``.NAME.PID.part`` in the same folder. A file that a killed process left is removed by the next
+    process that writes ``path``.
 
     Raises:
         OutputError: the system refuses; a file that was there stays as it was.
@@ -44,10 +44,10 @@ def whole_file(path: Path):
 
 
 def check_place(path: Path) -> None:
-    """Refuse a place where `whole_file` could not write. It leaves no trace, and removes what killed processes left.
+    """Refuse a place where `whole_file` could not write. It leaves no file behind, and removes what killed processes left.
 
     Raises:
-        OutputError: a folder of that name, or a folder that is read-only. One that is not there is made with the file.
+        OutputError: ``path`` is a folder, or its folder is read-only. A missing folder is no error: it is made with the file.
     """
     with refused(path):
         place = Path(os.path.realpath(path))
@@ -58,7 +58,7 @@ def check_place(path: Path) -> None:
 
 
 def standing(folder: Path) -> Path:
-    """The folder, or where it does not exist the first folder above it that does.
+    """Return the folder, or where it does not exist the first folder above it that exists.
 
     Raises:
         OutputError: a file stands in the way.
@@ -73,17 +73,17 @@ def standing(folder: Path) -> Path:
 
 
 def try_out(trial: Path) -> None:
-    """Make an empty file and remove it: only trying tells, on network drives and full disks too."""
+    """Make an empty file and remove it: this also finds network drives and full disks that refuse a write."""
     trial.open("xb").close()
     trial.unlink()
 
 
 @contextmanager
 def refused(path):
-    """A context in which errors of the system about ``path`` become an `OutputError`."""
+    """Turn errors of the system about ``path`` into an `OutputError`; a context."""
     try:
         yield
-    except OutputError:  # an OSError itself, which says all already
+    except OutputError:  # an OSError itself, with a complete message
         raise
     except (OSError, ValueError) as error:
         raise OutputError(f"{path}: cannot write there ({reason(error)}); choose another place") from None
@@ -95,8 +95,8 @@ def reason(error: Exception) -> str:
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove the temporary files of ``path`` that processes left which no longer run."""
-    if os.name != "posix":  # elsewhere asking for a process may end it
+    """Remove the temporary files of ``path`` whose processes no longer run."""
+    if os.name != "posix":  # on other systems a check for a process may end it
         return
     place = Path(os.path.realpath(path))
     pattern = re.compile(rf"\.{re.escape(place.name[:LONGEST])}\.(\d+)\.part")

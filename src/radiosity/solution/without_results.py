@@ -1,4 +1,4 @@
-"""Solutions of runs without a complete stage: they hold integers to go on from, and no results yet."""
+"""Solutions of runs without a complete stage: they hold a state from which the run continues, and no results yet."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from .model import Solution
 
 
 def without_results(patches: Patches, replicates: int, seconds: float, status: str, provenance: dict, state: dict) -> Solution:
-    """A solution of 0 quanta, whose results are unknown (NaN)."""
+    """Return a solution of 0 quanta, whose results are unknown (NaN)."""
     unknown = np.full((len(patches), len(patches.scene.bands)), np.nan)
     book = dict.fromkeys(("emitted", "rounding", "absorbed", "escaped", "lost"), np.nan) | {"closes": None}
     books = tuple(dict(book) for _ in patches.scene.bands)

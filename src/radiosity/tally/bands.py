@@ -12,18 +12,18 @@ from ..tracing.line_tracer import LineTracer
 
 
 class BandTally:
-    """Power of each group, in 64-bit fixed point, received by every patch and carried by its lines.
+    """Power of each group of bands, in 64-bit fixed point, received by every patch and carried by its lines.
 
-    A line carries, of each band, what its patch has not sent yet divided by the real number of lines owed for it, not by the
-    number fired. What is left so in the end is known, and sent on as `residue` tells. The groups of a patch lie side by side
-    in memory, so that a landing touches one place.
+    A line carries, of each band, what its patch has not sent yet, divided by the real number of lines that it must still fire,
+    not by the whole number that it fires. The power that this leaves on a patch is known, and `residue` sends it on. The groups
+    of a patch are next to each other in memory, so that a hit writes to one place.
 
     Attributes:
         received: UInt64, group g of slot s (see `LineTracer`) at s * n_groups + g.
-        sent: UInt64, what lines have carried away from patch numbers, likewise.
-        arrivals_before: UInt32, of patch numbers, as they were at the last sweep; None between stages.
+        sent: UInt64, what lines have carried away from patch number p, at p * n_groups + g.
+        arrivals_before: UInt32, hits of patch numbers at the last wavefront; None between stages.
         fired: UInt64, power that left replicate r along lines, at g * replicates + r.
-        weights: UInt32, of group g, what each line of the i-th patch of a sweep carries, at i * n_groups + g; None between
+        weights: UInt32, of group g, what each line of the i-th patch of a wavefront carries, at i * n_groups + g; None between
             stages.
     """
 
@@ -38,13 +38,15 @@ class BandTally:
         self.weights = self.arrivals_before = None
 
     def rest(self) -> None:
-        """Between stages: let go of what only sweeps use."""
+        """Free the arrays that only wavefronts use; called between stages."""
         self.weights = self.arrivals_before = None
 
     def weigh(self, counters, numbers, places, arrivals, counts) -> None:
-        """Before a sweep: what each line of the patches ``numbers`` carries, of each group, to ``places`` in ``weights``; in the
-        end what ``counts`` of them take away, and ``arrivals`` now. No expression may still wait to read the arrays that are
-        written here, or Dr.Jit copies them whole."""
+        """Write what each line of the patches ``numbers`` carries, of each group, to ``places`` in ``weights``.
+
+        It is called before a wavefront. It also adds what ``counts`` lines of each patch take away to ``sent``, and keeps the
+        ``arrivals`` of now. No expression may still wait to read the arrays that are written here, or Dr.Jit copies them whole.
+        """
         types = counters.types
         if self.weights is None:
             self.weights = dr.opaque(types.UInt32, 0, counters.total * self.n)
@@ -77,12 +79,12 @@ class BandTally:
             dr.scatter(self.weights, types.UInt32(dr.floor(carried + 0.5)), places * self.n + g)
 
     def carried(self, types, launch) -> list:
-        """In a kernel: the power of each group that a line of each lane carries."""
+        """Return the power of each group that the line of each lane carries; called in a kernel."""
         place = (launch.rank + launch.batch.start) * self.n
         return [types.UInt64(dr.gather(types.UInt32, self.weights, place + g)) for g in range(self.n)]
 
     def count_fired(self, counters, batch) -> None:
-        """After a batch: the power that left, summed from the lines' side."""
+        """Add the power that left along the lines of a batch, summed from the lines' side; called after the batch."""
         types, replicate = counters.types, counters.tracer.replicate(batch.numbers)
         place, fires = (dr.arange(types.UInt32, dr.width(batch.numbers)) + batch.start) * self.n, batch.counts > 0
         for g in range(self.n):

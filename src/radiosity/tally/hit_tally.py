@@ -1,7 +1,7 @@
-"""Where lines land: a count, and the power of bands where these differ, are added to the slot of a patch.
+"""The addition of hits: a count, and the power of bands where these differ, are added to the slot of a patch.
 
-Lines of many threads land in one slot. Either all additions are atomic, or each thread adds to copies of its own, which are
-summed in the end: that pays where many lines come to a slot, and takes memory for the copies.
+Lines of many threads hit one slot. Either all additions are atomic, or each thread adds to a copy of its own, and the copies are
+summed in the end. Copies are faster where many lines hit a slot, and take memory.
 """
 
 from abc import ABC, abstractmethod
@@ -9,30 +9,33 @@ from typing import Any
 
 import drjit as dr
 
-SHARED = 2  # more lines a counter than this: copies pay
-DENSE = 4  # and than this: nearly all patches are landed on, and flags are not worth while
-MOST = 6 << 20  # bytes of a copy: larger ones gain little
-WORDS = 4  # of a packet of counts and powers
+SHARED = 2  # lines a counter, above which copies are faster
+DENSE = 4  # lines a counter, above which nearly all patches are hit, and flags are of no use
+MOST = 6 << 20  # largest size of a copy, in bytes: larger ones gain little
+WORDS = 4  # words of a packet of counts and powers
 
 
 class AbstractHitTally(ABC):
-    """Of the lines of a sweep, which may take several launches."""
+    """Adds the hits of the lines of a wavefront, which may take several launches."""
 
     @abstractmethod
     def add(self, slot, powers: list, active) -> None:
-        """In a kernel: lines land in slots, with a power of each group of bands (none where there is one)."""
+        """Add a hit to each slot, with a power of each group of bands (no powers where there is one group).
+
+        Called in a kernel.
+        """
 
     @abstractmethod
     def arrays(self) -> list:
-        """What a launch evaluates."""
+        """The arrays that a launch evaluates."""
 
     @abstractmethod
     def settle(self) -> None:
-        """After the last launch: all is in the hit counts."""
+        """Add what is still apart to the hit counts; called after the last launch."""
 
 
 class Atomic(AbstractHitTally):
-    """Added to the hit counts at once. With ``flags`` it is remembered where lines landed."""
+    """Adds hits to the hit counts at once. With ``flags`` it marks the slots that lines hit."""
 
     def __init__(self, hits, flags: bool, mode: dr.ReduceMode = dr.ReduceMode.Direct):
         self.hits, self.flags, self.mode = hits, flags, mode
@@ -53,11 +56,11 @@ class Atomic(AbstractHitTally):
 
 
 class Copied(AbstractHitTally):
-    """Added to a copy of each thread, on a CPU.
+    """Adds hits to one copy for each thread of a CPU.
 
-    Dr.Jit adds packets of two or four words one lane after the other. Single words it compares with those of all other lanes
-    first, to add equal places once, which takes two to eight times as long. So a count goes with a second word that stays
-    zero, or with the powers of three groups of bands.
+    Dr.Jit adds packets of two or four words one lane after the other. It compares a single word with those of all other lanes
+    first, to add equal places once, which takes two to eight times as long. So a count is added together with a second word
+    that stays zero, or with the powers of three groups of bands.
     """
 
     def __init__(self, hits, flags: bool):
@@ -89,25 +92,25 @@ class Copied(AbstractHitTally):
 
 
 def counters(hits) -> list:
-    """What lines land in."""
+    """The arrays that hits are added to."""
     return [hits.arrivals, hits.touched, *([] if hits.bands is None else [hits.bands.received])]
 
 
 def groups_of(hits) -> int:
-    """Groups of bands whose power lines carry; none where there is one."""
+    """The number of groups of bands whose power lines carry; 0 where there is one group."""
     return 0 if hits.bands is None else hits.bands.n
 
 
 def packets(groups: int) -> int:
-    """Of a slot: of a count and the powers of so many groups."""
+    """The number of packets of a slot, for a count and the powers of ``groups`` groups."""
     return -(-(1 + groups) // WORDS)
 
 
 def hit_tally(hits, lines: int, flags: bool) -> AbstractHitTally:
-    """For a sweep of so many lines."""
+    """Return the faster hit tally for a wavefront of ``lines`` lines."""
     groups = groups_of(hits)
     each = 2 * 4 if groups == 0 else packets(groups) * WORDS * 8  # bytes
-    checked = dr.flag(dr.JitFlag.Debug)  # it takes packets in the second thread's copy for out of bounds, and leaves them out
+    checked = dr.flag(dr.JitFlag.Debug)  # debug mode takes packets in the second thread's copy for out of bounds, and skips them
     if hits.tracer.geometry.device.name != "cpu" or checked:
         return Atomic(hits, flags, dr.ReduceMode.Expand if lines > DENSE * hits.tracer.total else dr.ReduceMode.Direct)
     copies = lines > SHARED * hits.tracer.total and each * hits.tracer.total <= MOST

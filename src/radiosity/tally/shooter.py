@@ -1,9 +1,8 @@
-"""Patch i fires c_i lines that carry what they are told to: the primitive that iterations are made of.
+"""The shooter: patch i fires c_i lines that carry given weights. Iterations are made of it.
 
-The k-th line of a patch is a function of (seed, replicate, patch, k), counted over the whole run, as in contract 2; where there
-are several sequences, each counts its own lines and has points of its own, independent of the others'. What is
-received is summed in 64-bit fixed point, so no sum depends on an order or on threads. Numbers of patches and slots are those
-of `LineTracer`.
+The k-th line of a patch is a function of (seed, replicate, patch, k), and k counts over the whole run (contract 2). Where there
+are several sequences, each counts its own lines and has its own points, independent of the others. Received power is summed in
+64-bit fixed point, so no sum depends on an order or on threads. Numbers of patches and slots are those of `LineTracer`.
 """
 
 from collections.abc import Callable
@@ -22,14 +21,16 @@ from ..tracing.line_tracer import LineTracer
 from .hit_counts import HitCounts
 from .hit_tally import DENSE
 
-FEW = 1 << 13  # lines of a launch that shares its kernel with others of so few
+FEW = 1 << 13  # batches of at most this many lines share one kernel
 
 Pairs = Callable[[np.ndarray, np.ndarray], None]
 
 
 @dataclass(frozen=True)
 class Ends:
-    """What both ends of a line from i to j score: j ``carried_i`` / (``density_i`` + ``density_j``), and i the same of j.
+    """The score at both ends of a line from i to j: ``carried_i`` / (``density_i`` + ``density_j``) at j.
+
+    The score at i is ``carried_j`` over the same sum.
 
     Attributes:
         density: (slots,) Float, expected lines of each patch by its area, any unit; positive where it fires; 0 behind patches.
@@ -45,8 +46,9 @@ class Shooter:
 
     Attributes:
         tracer: lines of the patches, with the numbers of the sequence that is taken now.
-        hits: where lines landed. fired: UInt32 (total,), lines of each patch in that sequence.
-        received: (slots * n_groups,) Int64, of the last shot, group g of slot s at s * n_groups + g.
+        hits: the hit counts.
+        fired: UInt32 (total,), lines of each patch in that sequence.
+        received: (slots * n_groups,) Int64, power of the last shot, group g of slot s at s * n_groups + g.
     """
 
     def __init__(self, geometry: Geometry, method: Method, seed: Seed | int, replicates: int, n_groups: int, sequences: int = 1):
@@ -68,20 +70,20 @@ class Shooter:
         return len(self._fired)
 
     def take(self, sequence: int) -> None:
-        """Fire lines of this sequence from now on."""
+        """Use this sequence for the next lines."""
         self._fired[self.sequence] = self.fired
         self.fired, self.tracer = self._fired[sequence], self._tracers[sequence]
         self.sequence = sequence
 
     def shoot(self, counts, weights=None, ends: Ends | None = None, pairs: Pairs | None = None) -> int:
-        """Fire, and return how many lines that were.
+        """Fire lines, and return their number.
 
         Args:
-            counts: (total,) UInt32, lines of each patch number now.
-            weights: (total * n_groups,) Int32, what each of them brings to where it lands.
-            ends: what lines bring to both ends, in place of ``weights``.
-            pairs: called for every launch with patch numbers and the slots where their lines landed, (m,) uint32 each; they
-                may be looked at until it returns.
+            counts: (total,) UInt32, lines that each patch number fires now.
+            weights: (total * n_groups,) Int32, what each line of a patch number adds to the slot that it hits.
+            ends: what lines add at both ends, in place of ``weights``.
+            pairs: called for every launch with patch numbers and the slots that their lines hit, (m,) uint32 each; the
+                arrays are valid until it returns.
         """
         types, tracer = self.types, self.tracer
         if self.groups:
@@ -93,7 +95,7 @@ class Shooter:
         columns = dr.gather(types.UInt32, counts, rows), dr.gather(types.UInt32, self.fired, rows)
         largest = dr.max(columns[0] + columns[1])
         batch = Batch.of(types, rows, *columns, tracer.record)
-        # launches of few lines share one kernel, whatever their indices
+        # batches of few lines share one kernel, whatever their indices
         bits = tracer.numbers.bits_for(int(largest[0]))
         mode = dr.ReduceMode.Expand if batch.total > DENSE * self.total else dr.ReduceMode.Direct
         for launch in batch.launches(types):
@@ -127,8 +129,12 @@ class Shooter:
         dr.scatter_add(self.received, value, index, active=real, mode=mode)
 
     def read(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
-        """On the host: arrivals and fired, (replicates, n_patches) uint32; missed, (2, replicates); and where there are several
-        sequences, fired in each, (sequences, replicates, n_patches), of which ``fired`` is the sum."""
+        """Copy the counts to the host.
+
+        Returns:
+            Arrivals and fired, (replicates, n_patches) uint32; missed, (2, replicates); and where there are several sequences,
+            lines fired in each, (sequences, replicates, n_patches), else None. ``fired`` is the sum over sequences.
+        """
         arrivals, missed = self.hits.read()
         fired = frozen(self.fired).reshape(arrivals.shape)
         if len(self._fired) == 1:
@@ -138,7 +144,7 @@ class Shooter:
         return arrivals, apart.sum(axis=0, dtype=np.uint32), missed, apart
 
     def write(self, arrivals: np.ndarray, fired: np.ndarray, missed: np.ndarray, apart: np.ndarray | None) -> None:
-        """Put back what `read` gave."""
+        """Set the counts to what `read` returned."""
         self.hits.write(arrivals, missed)
         self._fired = [upload(self.types.UInt32, column) for column in (fired[None] if apart is None else apart)]
         self.fired = self._fired[self.sequence]

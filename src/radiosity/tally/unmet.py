@@ -1,9 +1,9 @@
-"""Patches that no line of a replicate measures: what they are taken to receive.
+"""Patches that no line of a replicate measures, and the irradiance that they are given.
 
-Where irradiance is a mean over the lines of a patch, a patch without lines has no mean. As zero it would reflect nothing, and the
-whole scene would come out too dark, with small error bars: half of the light was missing at 0.7 lines a patch. So it takes the
-mean over the lines of its side of its face, or, where these are none, over those of the scene. The whole of a value that is taken
-so counts as its bias (`AbstractMeanTally.bias`).
+Some methods find irradiance as a mean over the lines of a patch, and a patch without lines has no mean. With zero in its place it
+would reflect nothing, and the whole scene would come out too dark, with small error bars: half of the light was missing at 0.7
+lines a patch. So the patch takes the mean over the lines of its side of its face, or, where there are none, over those of the
+scene. The whole of such a value counts as its bias (`AbstractMeanTally.bias`).
 """
 
 import warnings
@@ -13,17 +13,18 @@ import numpy as np
 from ..errors import RadiosityWarning
 from ..patches.model import Patches
 
-TOLD = 0.01  # share of the area, from which on a warning tells of it; stated errors hold less, too
+TOLD = 0.01  # share of the area above which there is a warning; stated errors hold less often there, too
 
 
 def sides(patches: Patches) -> np.ndarray:
-    """(n_patches,) int64: a number for each side of each face."""
+    """The number of the side of the face that each patch lies on, (n_patches,) int64."""
     return 2 * patches.face.astype(np.int64) + patches.is_back
 
 
 def means(sums: np.ndarray, lines: np.ndarray, side: np.ndarray) -> np.ndarray:
-    """(..., n_patches) float64: sums over the lines of each patch, divided by their number; where it is zero, the mean of all
-    lines on the same side of the face, or else in the row.
+    """The sums over the lines of each patch, divided by the number of lines, (..., n_patches) float64.
+
+    Where that number is zero, the value is the mean of all lines on the same side of the face, or else in the row.
 
     Args:
         sums, lines: (..., n_patches), lines of each patch, whole or weighted.
@@ -46,7 +47,7 @@ def means(sums: np.ndarray, lines: np.ndarray, side: np.ndarray) -> np.ndarray:
 
 
 def bias(values: np.ndarray, lines: np.ndarray) -> np.ndarray:
-    """(n_patches,) of the mean over replicates: all of what patches without lines were given.
+    """The bias of the mean over replicates, (n_patches,): all of what patches without lines were given.
 
     Args:
         values, lines: (replicates, n_patches).
@@ -55,7 +56,7 @@ def bias(values: np.ndarray, lines: np.ndarray) -> np.ndarray:
 
 
 def warn(patches: Patches, lines: np.ndarray) -> None:
-    """Tell of patches that no line measured, where they are more than `TOLD` of the area.
+    """Warn of patches that no line measured, where they are more than `TOLD` of the area.
 
     Args:
         lines: (replicates, n_patches).

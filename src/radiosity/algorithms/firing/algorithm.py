@@ -1,4 +1,4 @@
-"""The firing engine as a process: discrete walks of local lines, in any order."""
+"""The firing engine as an algorithm: discrete walks of local lines, in any order."""
 
 from functools import cached_property
 
@@ -19,7 +19,10 @@ from .state import FiringState
 
 
 class Firing(AbstractAlgorithm[FiringState]):
-    """Integers that do not depend on order (contract 2), or powers of bands that travel with sweeps (contract 3)."""
+    """The firing engine.
+
+    Its state is integers that do not depend on the order (contract 2), or powers of bands that wavefronts carry (contract 3).
+    """
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
@@ -54,8 +57,10 @@ class Firing(AbstractAlgorithm[FiringState]):
 
 
 class Arrivals(AbstractTally[FiringState]):
-    """Arrivals, each a quantum, or the power of bands that they brought; and what the residue brings (contract 12), which is sent
-    on where results are read."""
+    """Reads hits, each a quantum, or the power of bands that they brought, and what the residue brings (contract 12).
+
+    The residue is sent on when results are read.
+    """
 
     settles = True
 
@@ -69,14 +74,14 @@ class Arrivals(AbstractTally[FiringState]):
         self._sent: Sent | None = None
 
     def begun(self, state: FiringState) -> Starts:
-        """Where lines begin that send the residue of a state on."""
+        """Return the lines that send the residue of a state on, where they begin."""
         if self._begun is None or self._state is not state:
-            self.forget()  # first, for the sake of memory
+            self.forget()  # first, to free memory
             self._state, self._begun = state, starts(self.counters, self.problem, state)
         return self._begun
 
     def sent(self, state: FiringState) -> Sent:
-        """What the residue of a state brings."""
+        """Return what the residue of a state brings."""
         begun = self.begun(state)
         if self._sent is None:
             self._sent = send(self.counters, self.problem, state, begun)
@@ -91,7 +96,7 @@ class Arrivals(AbstractTally[FiringState]):
     def about_lines(self, problem: Problem, state: FiringState) -> float:
         fired, begun = exact_sum(state.fired), self.begun(state)
         packets = self.counters.tracer.replicates * state.quanta
-        of_one = fired / max(packets - begun.net, packets / 2)  # what is fired lacks those of the residue
+        of_one = fired / max(packets - begun.net, packets / 2)  # the fired power lacks the packets of the residue
         return fired + LONGER * len(begun.line) * of_one
 
     def arrivals(self, problem: Problem, state: FiringState) -> np.ndarray:

@@ -1,6 +1,6 @@
-"""The firing engine's integers: hit and line counters of every source row and replicate, and the kernels that move them.
+"""The firing engine's integers: hit and fired counts of every source row and replicate, and the kernels that change them.
 
-Rows, their numbers and slots are those of `LineTracer`. What fires when is the business of an order (`orders`).
+Rows, their numbers and slots are those of `LineTracer`. An order (`orders`) decides which row fires when.
 """
 
 from collections.abc import Iterator
@@ -23,22 +23,23 @@ from ...tracing.geometry import Geometry
 from ...tracing.lanes import PIECE, Batch, Launch, Wavefront, boxes_for, sums
 from ...tracing.line_tracer import LineTracer
 
-MANY = 4  # at least one in so many patches was landed on: all are looked through
-FEW = 1 << 13  # lines whose landing places are sorted out on the host, sooner than all flags are looked through
-SHIFTS, MUCH = (3, 2, 1), 250_000  # 8, 4 or 2 lines of a lane, in sweeps of so many lines a thread after as many
+MANY = 4  # where at least one in 4 patches was hit, all are looked through
+FEW = 1 << 13  # up to this many lines, the host sorts the slots that they hit: that is faster than to look through all flags
+# 8, 4 or 2 lines of a lane, in wavefronts of 250 000 lines a thread, once as many lines have been fired
+SHIFTS, MUCH = (3, 2, 1), 250_000
 
 
 class FiringCounters:
-    """What rows owe and have fired, and where their lines landed.
+    """The hit, fired and target counts of all rows.
 
     Attributes:
         tracer: lines of the rows.
         problem: its ``rows`` and the scalar problem ``source``.
-        hits: where lines landed.
-        fired: UInt32 (total,), lines that each row has fired.
+        hits: the hit counts.
+        fired: UInt32 (total,), the fired count of each row.
         phase: UInt32 (total,), the rounding offset of each row.
-        quanta: N of the stage that was begun last.
-        owes: some row may owe a line still.
+        quanta: N of the stage that began last.
+        has_due: True where some row may still have to fire a line.
     """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
@@ -56,7 +57,7 @@ class FiringCounters:
         self.landed = None
         self.quanta = 0
         self.everywhere, self.has_due = True, False
-        self.swept = 0  # lines of the sweeps so far
+        self.swept = 0  # lines of the wavefronts so far
 
     def set_quanta(self, quanta: int) -> None:
         """Begin a stage: N for each replicate; it may only grow."""
@@ -67,26 +68,28 @@ class FiringCounters:
         self.quanta, self.everywhere, self.has_due = quanta, True, True
 
     def counters(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Arrivals and fired lines, (replicates, n) uint32, and escaped and lost lines, (2, replicates)."""
+        """Return hit and fired counts, (replicates, n) uint32, and escaped and lost lines, (2, replicates)."""
         arrivals, missed = self.hits.read()
         return arrivals, frozen(self.fired).reshape(arrivals.shape), missed
 
     @property
     def lines(self) -> int:
-        """Fired so far."""
+        """The number of lines fired so far."""
         return sums(self.types, self.fired)[0]
 
-    # ---- what is owed ----------------------------------------------------------------------------------------------
+    # ---- lines that are due ----------------------------------------------------------------------------------------
 
     def candidates(self):
-        """Numbers of the patches that may owe a line, those a line landed on since the last call; None for all: in a new stage,
-        or where lines landed on many."""
+        """Return the numbers of the patches that may have to fire a line: those that lines hit since the last call.
+
+        It is None for all patches: in a new stage, or where lines hit many of them.
+        """
         types, numbers = self.types, None
         if self.landed is not None:
             numbers = np.unique(self.landed)
             numbers = upload(types.UInt32, _not_alone(numbers[numbers < self.total], self.total))
         elif not self.everywhere:
-            touched = dr.reshape(types.Bool, self.hits.touched, self.total, shrink=True)  # as they lie: no copy
+            touched = dr.reshape(types.Bool, self.hits.touched, self.total, shrink=True)  # no copy
             if MANY * sums(types, dr.select(touched, types.UInt32(1), types.UInt32(0)))[0] < self.total:
                 numbers = dr.compress(touched)
         if self.landed is None:
@@ -95,7 +98,7 @@ class FiringCounters:
         return numbers
 
     def target_counts(self, numbers, arrivals):
-        """UInt32: lines that each of the patch numbers (None: all of them) owes in all after so many arrivals."""
+        """Return the target counts of patch numbers (None: of all patches) after ``arrivals`` hits, UInt32."""
         u32, wide = self.types.UInt32, self.types.UInt64
         if numbers is None and self.tracer.replicates == 1:
             rho, whole, fraction = self.rho, self.whole, self.fraction
@@ -107,7 +110,7 @@ class FiringCounters:
         return whole + u32(low >> 32)
 
     def is_due_after(self, number, before, active):
-        """In a kernel: one arrival after ``before`` others raises by a line what a patch owes."""
+        """Return whether one hit after ``before`` others raises the target count of a patch by one; called in a kernel."""
         u32, wide = self.types.UInt32, self.types.UInt64
         patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
         rho = wide(dr.gather(u32, self.rho, patch, active))
@@ -116,14 +119,16 @@ class FiringCounters:
         return ((low + rho) >> 32) > (low >> 32)
 
     def _read(self, column, numbers):
-        """A column's values of patch numbers, or of all. These are read as they lie: in a third of the time that it takes to
-        gather them, where they are not in the cache."""
+        """Return a column's values of patch numbers, or of all patches.
+
+        All values are taken without a gather, in a third of the time where they are not in the cache.
+        """
         if numbers is not None:
             return dr.gather(self.types.UInt32, column, numbers)
         return column if dr.width(column) == self.total else dr.reshape(self.types.UInt32, column, self.total, shrink=True)
 
     def due(self) -> tuple[Wavefront | None, int]:
-        """What is owed now, and the largest line number among it."""
+        """Return the lines that are due now, and the largest line number among them."""
         numbers = self.candidates()
         wavefront, largest = self._sweep(numbers, 0, self.total if numbers is None else dr.width(numbers))
         self.has_due = wavefront is not None
@@ -132,16 +137,18 @@ class FiringCounters:
         return wavefront, largest
 
     def look_everywhere(self) -> None:
-        """Ask all rows what they owe next time."""
+        """Look through all rows at the next call of `due`."""
         self.everywhere, self.landed = True, None
 
     def due_between(self, low: int, high: int) -> tuple[Wavefront | None, int]:
-        """As `due`, of the patch numbers from ``low`` to below ``high`` alone; in grey scenes only."""
+        """Return the result of `due` for the patch numbers from ``low`` to below ``high``; in grey scenes only."""
         return self._sweep(None, low, high - low)
 
     def _sweep(self, numbers, low: int, size: int) -> tuple[Wavefront | None, int]:
-        """Of patch numbers, or of so many from ``low`` on. Bands go through all of them in pieces, for the sake of memory, and
-        keep arrivals in place of counts."""
+        """Return the wavefront of patch numbers (None: of ``size`` patches from ``low`` on), and its largest line number.
+
+        With bands, all patches are taken in pieces, to save memory, and hit counts are kept in place of counts of lines.
+        """
         u32, counts = self.types.UInt32, None
         total, largest = dr.opaque(self.types.UInt64, 0, 2), dr.opaque(u32, 0, 2)
         step = PIECE if numbers is None and self.bands is not None else max(size, 1)
@@ -160,7 +167,7 @@ class FiringCounters:
         return (Wavefront(numbers, low, size, lines, counts if keep else None), int(largest[0])) if lines else (None, 0)
 
     def _count(self, numbers, arrivals, total, largest):
-        """In a kernel: what patch numbers owe now; its sum, and the largest line number."""
+        """Return how many lines patch numbers must fire now, and update their sum and the largest line number; in a kernel."""
         types, target_counts = self.types, self.target_counts(numbers, arrivals)
         counts, none = target_counts - self._read(self.fired, numbers), dr.zeros(types.UInt32, dr.width(arrivals))
         dr.scatter_add(total, types.UInt64(counts), none, mode=dr.ReduceMode.Expand)
@@ -170,7 +177,7 @@ class FiringCounters:
     # ---- firing ----------------------------------------------------------------------------------------------------
 
     def fire(self, wavefront: Wavefront, largest: int) -> None:
-        """Trace all lines of a sweep and count where they land."""
+        """Trace all lines of a wavefront and count their hits."""
         types = self.types
         bits = self.tracer.numbers.bits_for(largest)
         few, everywhere = wavefront.total <= FEW, wavefront.total > DENSE * self.total
@@ -190,23 +197,29 @@ class FiringCounters:
         self.everywhere, self.landed = everywhere, np.concatenate(landed) if few else None
 
     def batches(self, wavefront: Wavefront, shifts: tuple[int, ...] = ()) -> Iterator[Batch]:
-        """Of a sweep, of 2^shift lines a lane."""
+        """Yield the batches of a wavefront, with 2^shift lines a lane."""
         return wavefront.batches(self.types, self._target_counts_before, self.fired, self.tracer.record, shifts)
 
     def _target_counts_before(self, numbers):
-        """Lines that patch numbers owed in all when the sweep was fixed, where it keeps no counts: bands know."""
+        """Return the target counts of patch numbers when the wavefront was fixed, from the hit counts that bands keep.
+
+        It is for wavefronts that keep no counts.
+        """
         assert self.bands is not None
         return self.target_counts(numbers, dr.gather(self.types.UInt32, self.bands.arrivals_before, numbers))
 
     def _shifts(self, wavefront: Wavefront) -> tuple[int, ...]:
-        """Lines of a lane: what those of a patch have in common is found once for all of them. It takes a kernel more to compile,
-        which short runs do without; many threads, and a GPU more so, want more lanes than that would leave."""
+        """Return the binary logarithms of the lines of a lane; () for one line a lane.
+
+        What the lines of a patch have in common is then found once for all of them. It needs one more kernel, which takes time to
+        compile, so short runs do not use it. It leaves fewer lanes, so many threads, and a GPU even more, do not use it.
+        """
         cpu = self.tracer.geometry.device.name == "cpu"
         many = cpu and not self.coherent and min(wavefront.total, self.swept) >= MUCH * dr.thread_count()
         return SHIFTS if many else ()
 
     def _fire(self, launch: Launch, bits: int, boxes, few: bool, tally: AbstractHitTally):
-        """One launch. Of few lines, the slots they land in."""
+        """Trace the lines of one launch. Return the slots that they hit where there are few lines."""
         types, tracer = self.types, self.tracer
         number, first, record = launch.read(types, boxes)
         replicate = tracer.replicate_or_none(number)
@@ -237,7 +250,7 @@ class FiringCounters:
 
 
 def _not_alone(numbers: np.ndarray, total: int) -> np.ndarray:
-    """A single patch gets company that owes nothing: arrays of one entry would compile kernels of their own."""
+    """Append another patch to a single one: arrays of one entry would compile kernels of their own."""
     if len(numbers) == 1 and total > 1:
         return np.append(numbers, (numbers[0] + 1) % total).astype(np.uint32)
     return numbers

@@ -1,15 +1,15 @@
-"""What whole lines leave unsent (contract 12), and where the lines begin that send it on.
+"""The residue: what whole lines leave unsent (contract 12), and where the lines begin that send it on.
 
-When a stage ends, patch i owes x_i = E_i A_i / delta + rho_i h_i and has fired s_i = floor(x_i + phase_i) lines. The residue
-r_i = x_i - s_i is known exactly, and h_j - sum_i s_i F_ij has mean zero; so what is missing of the mean of h is the answer D to
-the means of the residues: D = F^T r + F^T rho D. Where no light comes back to its patch these are zero, since phases are uniform.
-In a narrow gap they are not, and most of the light is missing at few lines. Bands have residues of their own: what a patch owes
-of each less what its lines have carried.
+When a stage ends, patch i should have sent x_i = E_i A_i / delta + rho_i h_i packets, and has fired s_i = floor(x_i + phase_i)
+lines. The residue r_i = x_i - s_i is known exactly, and h_j - sum_i s_i F_ij has mean zero. So the part D that the mean of h
+lacks follows from the means of the residues: D = F^T r + F^T rho D. Where no light comes back to its patch these means are zero,
+since phases are uniform. In a narrow gap they are not, and most of the light is missing at few lines. Each band has its own
+residue: what a patch should have sent of it, less what its lines have carried.
 
-Residues are summed over groups of consecutive patches, in which most of their noise cancels, and become whole lines by systematic
-rounding along the patches: all that is left unsent of a replicate is less than a line. A line carries 1 or -1 of the band that a
-group lacks most of (or has too much of), and its share of the others. It begins on a patch of the group in proportion to what
-these owe, up to one line: as the means of their residues grow, too.
+Residues are summed over groups of consecutive patches, in which most of their noise cancels. They become whole lines by
+systematic rounding along the patches: less than a line of a replicate is left unsent. A line carries 1 or -1 of the band that a
+group lacks most of (or has too much of), and its share of the others. It begins on a patch of the group, in proportion to what
+the patch should have sent, up to one line: the mean of its residue grows in the same way.
 """
 
 import math
@@ -26,8 +26,8 @@ from ...problem.quanta import Source
 from ...sampling.streams import Purpose, Seed, stream
 from .state import FiringState
 
-SHARE = 0.025  # of a replicate's quanta: the lines that noise makes are to be no more
-MOST = 512  # patches of a group
+SHARE = 0.025  # largest share of a replicate's quanta that lines caused by noise should make
+MOST = 512  # most patches of a group
 TYPICAL = math.sqrt(1 / (3 * math.pi))  # mean size of a normal variable of the variance 1/6, which residues have
 ONE = np.uint64(1 << 32)
 
@@ -37,9 +37,9 @@ class Starts:
     """Lines that send the residue on.
 
     Attributes:
-        replicate, patch: (m,) int64, where they begin, replicate by replicate.
-        line: (m,) uint32, which of its replicate, from 0 on.
-        power: (m, n_groups) int64, what they carry, `QUANTUM` to a quantum: that, or less that, of one of the groups.
+        replicate, patch: (m,) int64, where they begin, ordered by replicate.
+        line: (m,) uint32, the number of the line in its replicate, from 0 on.
+        power: (m, n_groups) int64, what they carry, in units of a quantum / `QUANTUM`: plus or minus `QUANTUM` of one group.
     """
 
     replicate: np.ndarray
@@ -49,7 +49,7 @@ class Starts:
 
     @staticmethod
     def of(problem: Problem, state: FiringState, phase: np.ndarray, seed: Seed | int) -> "Starts":
-        """From a process's state after a stage.
+        """Return the lines for an algorithm's state after a stage.
 
         Args:
             phase: (replicates, n_patches) uint32.
@@ -64,19 +64,19 @@ class Starts:
 
     @property
     def net(self) -> int:
-        """How many carry more than nothing, less those that carry less."""
+        """The number of lines that carry positive power, less the number that carry negative power."""
         return int(np.sign(self.power.max(axis=1) + self.power.min(axis=1)).sum())
 
 
 @dataclass(frozen=True, eq=False)
 class Residue:
-    """Of all patches after a stage.
+    """The residue of all patches after a stage.
 
     Attributes:
-        problem: what is solved.
+        problem: the problem to solve.
         quanta: N.
         emitted: (n_patches,) uint64, E_i A_i / delta times 2^32.
-        state: of the process.
+        state: the state of the algorithm.
         phase: (replicates, n_patches) uint32.
     """
 
@@ -88,14 +88,16 @@ class Residue:
 
     @staticmethod
     def of(problem: Problem, state: FiringState, phase: np.ndarray) -> "Residue":
-        """After a process's state."""
+        """Return the residue of an algorithm's state."""
         quanta = state.quanta
         whole, fraction = problem.source.emitted(quanta)
         return Residue(problem, quanta, (whole.astype(np.uint64) << np.uint64(32)) | fraction, state, phase)
 
     def read(self, replicate: int, part: slice) -> tuple[np.ndarray, np.ndarray]:
-        """What some patches owe of the scalar problem, (k,) uint64, and what is left of each group, (k, n_groups) int64; both in
-        2^-32 of a quantum."""
+        """Return what some patches should have sent, and what is left, both in 2^-32 of a quantum.
+
+        The first is of the scalar problem, (k,) uint64, the second of each group, (k, n_groups) int64.
+        """
         arrivals, phase = self.state.arrivals[replicate, part], self.phase[replicate, part]
         target_counts = self.problem.source.rho[part].astype(np.uint64) * arrivals + self.emitted[part]
         bands = self.state.bands
@@ -112,8 +114,8 @@ class Groups:
     """Consecutive rows whose residues are summed.
 
     Attributes:
-        n: rows in all.
-        begins: (k,) int64, the first row of each, increasing; None where each row is alone.
+        n: the number of rows.
+        begins: (k,) int64, the first row of each group, increasing; None where each row is a group.
     """
 
     n: int
@@ -121,8 +123,11 @@ class Groups:
 
     @staticmethod
     def of(patches: Patches, quanta: int, n_lights: int = 0) -> "Groups":
-        """At N quanta. None reaches over the end of a face, or else of a surface, where these are no more than groups. Lights
-        are alone."""
+        """Return the groups at N quanta.
+
+        No group goes beyond the end of a face where there are no more faces than groups, or else of a surface where there are no
+        more surfaces than groups. Each light is a group of its own.
+        """
         n, size = len(patches), group_size(len(patches), quanta)
         if size == 1:
             return Groups(n + n_lights, None)
@@ -137,7 +142,7 @@ class Groups:
         return Groups(n + n_lights, np.append(begins, n + np.arange(n_lights)))
 
     def parts(self) -> Iterator[tuple[slice, np.ndarray]]:
-        """Whole groups, some `PIECE` patches at a time, and where groups begin in them."""
+        """Yield parts of whole groups, about `PIECE` patches each, and where groups begin in them."""
         if self.begins is None:
             yield from ((part, np.arange(part.stop - part.start)) for part in pieces(self.n))
             return
@@ -149,13 +154,13 @@ class Groups:
 
 
 def group_size(n_patches: int, quanta: int) -> int:
-    """Patches whose residues are summed before they become lines: so many that these stay few."""
+    """The number of patches whose residues are summed before they become lines, large enough that there are few lines."""
     alone = TYPICAL * n_patches / (SHARE * quanta)
     return min(math.ceil(alone**2), MOST)
 
 
 def _lines(residue: Residue, replicate: int, groups: Groups, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Patches where a replicate's lines begin, and what they carry."""
+    """Return the patches where a replicate's lines begin, and what the lines carry."""
     total, found = int(random.integers(0, 1 << 32)), []
     for part, begins in groups.parts():
         target_counts, left = residue.read(replicate, part)
@@ -171,7 +176,7 @@ def _lines(residue: Residue, replicate: int, groups: Groups, random: np.random.G
 
 
 def _within(target_counts: np.ndarray, begins: np.ndarray, group: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """A patch of each line's group."""
+    """Draw a patch of each line's group."""
     weight = np.concatenate([[0], np.cumsum(np.minimum(target_counts, ONE), dtype=np.uint64)])
     low, high = weight[begins[group]], weight[np.append(begins[1:], len(target_counts))[group]]
     at = low + (random.random(len(group)) * (high - low)).astype(np.uint64)

@@ -1,7 +1,7 @@
-"""The lines that send the residue on, and the walks that they begin (see `residue`), outside the counters of hits and lines.
+"""The lines that send the residue on, and the walks that they begin (see `residue`), outside the hit and fired counts.
 
-A line of weight 1 goes on from where it lands with its weight times the reflectance, and where that falls below `LEAST`, with
-this weight or not at all: absorption by chance alone would add noise to what the scene receives where it reflects nearly all.
+A line of weight 1 goes on from its hit with its weight times the reflectance. Where that falls below `LEAST`, it goes on with
+this weight or ends. Absorption by chance alone would add noise to what the scene receives where it reflects nearly all.
 """
 
 from dataclasses import dataclass
@@ -23,18 +23,18 @@ from .residue import Starts
 from .state import FiringState
 
 LEAST = QUANTUM // 2  # 2^30
-LONGER = 1.6  # times as many lines as chance alone would take, 1.5 to 1.7 where reflectances are 0.5 to 1
+LONGER = 1.6  # ratio to the lines that chance alone would take, 1.5 to 1.7 where reflectances are 0.5 to 1
 
 
 @dataclass(frozen=True, eq=False)
 class Sent:
-    """What residues bring to what landed, which may be less than nothing, in 64-bit fixed point: `QUANTUM` to a quantum.
+    """The power that residues add to the received power, in 64-bit fixed point, `QUANTUM` to a quantum. It may be negative.
 
     Attributes:
-        received: (replicates, n_patches, n_groups) int64, both together.
-        missed: (2, replicates, n_groups) int64, escaped and lost, of the residue alone.
-        fired: n_groups whole numbers, what of the residue left patches along lines, of all replicates.
-        lines: of the residue, of all replicates.
+        received: (replicates, n_patches, n_groups) int64, received power with that of the residue.
+        missed: (2, replicates, n_groups) int64, escaped and lost power of the residue alone.
+        fired: n_groups whole numbers, power of the residue that left patches along lines, of all replicates.
+        lines: lines of the residue, of all replicates.
     """
 
     received: np.ndarray
@@ -44,7 +44,7 @@ class Sent:
 
 
 def starts(counters: FiringCounters, problem: Problem, state: FiringState) -> Starts:
-    """Where lines begin after the state's stage."""
+    """Return the lines of the residue after the state's stage."""
     tracer = counters.tracer
     return Starts.of(problem, state, frozen(counters.phase).reshape(tracer.replicates, tracer.n), tracer.seed)
 
@@ -53,16 +53,16 @@ def send(counters: FiringCounters, problem: Problem, state: FiringState, begun: 
     """Send the residues of a complete stage on.
 
     Args:
-        counters: of the run; its counters are left alone.
-        problem: what is solved.
-        state: of the stage.
+        counters: the counters of the run, which do not change.
+        problem: the problem to solve.
+        state: the state of the stage.
         begun: its `starts`.
     """
     tracer, n_groups = counters.tracer, begun.power.shape[1]
     tally = dr.zeros(counters.types.Int64, tracer.slots * n_groups)
     dr.eval(tally)
     fired, lines = _walk(counters, begun, tally) if len(begun.line) else ([0] * n_groups, 0)
-    flat = frozen(tally).reshape(-1, n_groups)  # nobody else holds it: hits are added where it lies, which takes no memory
+    flat = frozen(tally).reshape(-1, n_groups)  # there is no other reference: hits are added in place, without a copy
     received = flat[: tracer.total].reshape(tracer.replicates, tracer.n, n_groups)
     for replicate, row in enumerate(received):
         for part in pieces(tracer.n):
@@ -74,7 +74,10 @@ def send(counters: FiringCounters, problem: Problem, state: FiringState, begun: 
 
 
 def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], int]:
-    """One lane a line, which its walk follows to the end, in one kernel. What was fired of each group, and how many lines."""
+    """Follow the walk of each line to its end, one lane a line, in one kernel.
+
+    Returns the power that was fired, of each group, and the number of lines.
+    """
     types, tracer, (m, n_groups) = counters.types, counters.tracer, begun.power.shape
     width = max(m, 2)  # arrays of one entry would compile a kernel of their own
 
@@ -111,7 +114,7 @@ def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], in
 
 
 def _reflected(counters: FiringCounters, powers: list, patch, here, left, after) -> list:
-    """In a kernel: the powers of lines that go on with the weight ``after`` where ``left`` is left of it."""
+    """Return the powers of lines that go on with the weight ``after`` where ``left`` is left of it; called in a kernel."""
     types, bands = counters.types, counters.bands
     if bands is None:
         return [dr.select(powers[0] < 0, -types.Int64(after), types.Int64(after))]
@@ -122,7 +125,7 @@ def _reflected(counters: FiringCounters, powers: list, patch, here, left, after)
 
 
 def _numbers(types, words, line, turn, replicate):
-    """In a kernel: four numbers of the ``turn``-th line of a walk, and a word that decides whether it goes on."""
+    """Return four numbers of the ``turn``-th line of a walk, and a word that decides whether it goes on; in a kernel."""
     first, second = (list(dr.gather(types.Array4u, words, replicate * 2 + half)) for half in (0, 1))
     points = [types.Float(word >> 8) * 2.0**-24 for word in philox([line, turn, *first[2:]], first[:2])]
     return points, philox([line, turn, *second[2:]], second[:2])[0]

@@ -1,4 +1,4 @@
-"""The integers of a run between two sweeps: all that is needed to go on, on this or a like machine (contract 6)."""
+"""The integers of a run between two wavefronts: all that is needed to continue, on this or a similar machine (contract 6)."""
 
 from dataclasses import dataclass
 
@@ -15,9 +15,9 @@ class BandState(Record):
     """Powers of bands, where they differ, uint64 in fixed point (`BandTally`).
 
     Attributes:
-        received, sent: (replicates, n_rows, groups).
-        received_missed: (2, replicates, groups), escaped and lost.
-        fired_power: (groups, replicates), what left along lines.
+        received, sent: (replicates, n_rows, groups), received and sent power.
+        received_missed: (2, replicates, groups), escaped and lost power.
+        fired_power: (groups, replicates), power that left along lines.
         within: True within a stage.
     """
 
@@ -30,7 +30,7 @@ class BandState(Record):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FiringState(AbstractState):
-    """Counters on the host.
+    """The counters on the host.
 
     Attributes:
         arrivals, fired: (replicates, n_rows) uint32, hit and fired counts.
@@ -45,12 +45,12 @@ class FiringState(AbstractState):
 
     @property
     def unfinished(self) -> bool:
-        """Of bands alone: a stage of integers may be gone on from anywhere."""
+        """True within a stage with bands. A stage of integers can continue from anywhere."""
         return self.bands is not None and bool(self.bands.within)
 
 
 def capture(counters: FiringCounters) -> FiringState:
-    """Counters as they are now."""
+    """Return the counters as they are now."""
     arrivals, fired, missed = counters.counters()
     tracer, bands = counters.tracer, counters.bands
     sizes = Sizes(tracer.replicates, tracer.n, 1 if bands is None else bands.n)
@@ -69,7 +69,7 @@ def capture(counters: FiringCounters) -> FiringState:
 
 
 def read(arrays: Arrays, sizes: Sizes) -> FiringState:
-    """See `AbstractAlgorithm.read`."""
+    """Return the state from arrays; see `AbstractAlgorithm.read`."""
     wanted = ("bands",) if sizes.groups > 1 else ()
     lacking = FiringState.lacking(arrays, sizes, wanted)
     if lacking:
@@ -78,7 +78,7 @@ def read(arrays: Arrays, sizes: Sizes) -> FiringState:
 
 
 def restore(counters: FiringCounters, state: FiringState) -> None:
-    """Put counters back, at the state's number of quanta."""
+    """Set the counters to those of a state, at its number of quanta."""
     types, bands = counters.types, counters.bands
     counters.hits.write(state.arrivals, state.missed)
     counters.fired = upload(types.UInt32, state.fired)

@@ -18,7 +18,7 @@ __all__ = ["BASELINES", "PRESETS", "Citation", "Preset", "resolve"]
 
 
 def resolve(method: "str | Method | Baseline" = "random-walk", **choices) -> "Method | Baseline":
-    """A preset's method, or one given as such, with the choices that are not None put in its place.
+    """Return a preset's method, or the given one, with the choices that are not None put into it.
 
     Raises:
         MethodError: unknown name, unknown value, a choice that it does not have, or a senseless combination.
@@ -41,10 +41,10 @@ def resolve(method: "str | Method | Baseline" = "random-walk", **choices) -> "Me
         if unused:
             raise MethodError(f"{', '.join(unused)}: not a choice of {scheme}, which has {', '.join(USED[scheme])}")
     if isinstance(method, Method) and any(given.get(c, getattr(method, c)) != getattr(method, c) for c in ("order", "lines")):
-        given = {"warm_up": False} | given  # belongs to what was replaced
+        given = {"warm_up": False} | given  # it belongs to the order that was replaced
     if "numbers" in given and isinstance(method, Method):
-        given = {"scrambling": None} | given  # likewise
+        given = {"scrambling": None} | given  # it belongs to the numbers that were replaced
     if isinstance(method, Baseline) and given.get("factors", method.factors) != method.factors:
-        belonging = ("samples", "resolution", "rotated")  # to the factors that were replaced
+        belonging = ("samples", "resolution", "rotated")  # they belong to the factors that were replaced
         given = {field.name: field.default for field in fields(method) if field.name in belonging} | given
     return replace(method, **given)

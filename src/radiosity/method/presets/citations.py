@@ -8,7 +8,7 @@ class Citation:
     """One publication.
 
     Attributes:
-        key, kind: of its BibTeX entry.
+        key, kind: key and kind of its BibTeX entry.
         fields: name and value of each field, author, title and year among them.
     """
 
@@ -18,12 +18,12 @@ class Citation:
 
     @property
     def bibtex(self) -> str:
-        """The entry."""
+        """The BibTeX entry."""
         return f"@{self.kind}{{{self.key},\n" + "".join(f"  {name} = {{{value}}},\n" for name, value in self.fields) + "}"
 
     @property
     def text(self) -> str:
-        """One line for people."""
+        """The citation as one line of text."""
         fields = dict(self.fields)
         where = fields.get("journal") or fields.get("booktitle") or fields.get("school") or ""
         numbers = ", ".join(

@@ -15,13 +15,13 @@ Chosen = TypeVar("Chosen", Method, Baseline)
 
 @dataclass(frozen=True)
 class Preset(Generic[Chosen]):
-    """A named algorithm: a `Method` or a `Baseline`, and what a user should know of it.
+    """A named algorithm: a `Method` or a `Baseline`, and what a user should know about it.
 
     Attributes:
         method: the choices.
         about: what it is, in a few sentences.
         when: when to take it.
-        key: of its citation.
+        key: the key of its citation.
         own: names of the options that concern it in particular, besides the four axes.
     """
 
@@ -33,7 +33,7 @@ class Preset(Generic[Chosen]):
 
     @property
     def parameters(self) -> tuple[tuple[str, str], ...]:
-        """Options that are its own, each with its meaning, and with the values that go with the other choices of the method."""
+        """The options that concern it, each with its meaning and the values that go with the other choices of the method."""
         return tuple((name, self._meaning((METHOD | BASELINE)[name])) for name in self.own)
 
     def _meaning(self, option: Option) -> str:

@@ -17,6 +17,6 @@ __all__ = ["FIRED", "AbstractOrder", "fire_all"]
 
 
 def fire_all(name: str, counters: FiringCounters, swept: Swept) -> None:
-    """Fire every line owed in the order called ``name``."""
+    """Fire every line that is due, in the order ``name``."""
     module, order = FIRED[name].split(":")
     getattr(import_module(f".{module}", __package__), order)().run(counters, swept)

@@ -1,4 +1,4 @@
-"""What an order of the firing engine is."""
+"""The interface of orders of the firing engine."""
 
 from abc import ABC, abstractmethod
 
@@ -7,13 +7,16 @@ from ..counters import FiringCounters
 
 
 class AbstractOrder(ABC):
-    """Fires until no row owes a line. Orders differ in which line is fired when; the counters end as the same integers.
+    """Fires lines until none is due. Orders differ in which line is fired when; the counters end as the same integers.
 
-    An order asks `FiringCounters` what is due (`due`, `due_between`), and has it fired (`fire`), or follows single lines itself,
-    claiming each by an atomic counter as `depth_first.walk` does.
+    An order asks `FiringCounters` which lines are due (`due`, `due_between`), and fires them (`fire`), or follows single lines
+    itself and claims each by an atomic counter, as `depth_first.walk` does.
     """
 
     @abstractmethod
     def run(self, counters: FiringCounters, swept: Swept) -> None:
-        """Fire every line owed. ``swept(lines)`` is called where the counters are whole, with the lines traced since; what it
-        raises ends the work, and another call goes on."""
+        """Fire every line that is due.
+
+        ``swept(lines)`` is called where the counters are whole, with the number of lines traced since the last call. An exception
+        of it ends the work, and another call of `run` continues.
+        """

@@ -1,15 +1,15 @@
-"""Breadth-first: sweep after sweep, every row fires all it owes (Shirley 1991)."""
+"""Breadth-first order: in each wavefront, every row fires all lines that are due (Shirley 1991)."""
 
 from ...base import Swept
 from ..counters import FiringCounters
 from .base import AbstractOrder
 from .depth_first import walk_all
 
-TAIL = 1 << 13  # fewer lines than this are followed to their ends at once: the counters are the same
+TAIL = 1 << 13  # wavefronts of fewer lines are followed depth-first until they are absorbed: the counters are the same
 
 
 class BreadthFirst(AbstractOrder):
-    """Sweeps until no row owes a line."""
+    """Fires wavefronts until no line is due."""
 
     def run(self, counters: FiringCounters, swept: Swept) -> None:
         while True:
@@ -21,4 +21,4 @@ class BreadthFirst(AbstractOrder):
                 return
             counters.fire(wavefront, largest)
             swept(wavefront.total)
-            del wavefront  # and the memory it holds
+            del wavefront  # frees its memory

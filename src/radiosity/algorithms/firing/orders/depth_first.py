@@ -1,7 +1,7 @@
-"""Depth-first: a lane follows its particle from patch to patch until it is absorbed (Sbert 1997).
+"""Depth-first order: a lane follows its particle from patch to patch until it is absorbed (Sbert 1997).
 
-The arrival that raises what a patch owes fires the patch's next line. Which lane that is depends on the race, but every
-arrival and every line number is claimed once, by an atomic counter, so the counters end as in any other order.
+The hit that raises the target count of a patch fires the patch's next line. Which lane this is depends on timing, but every
+hit and every line number is claimed once, by an atomic counter, so the counters end as in any other order.
 """
 
 from typing import Any
@@ -16,7 +16,7 @@ from .base import AbstractOrder
 
 
 class DepthFirst(AbstractOrder):
-    """Follows all walks to their ends."""
+    """Follows all walks until they are absorbed."""
 
     def run(self, counters: FiringCounters, swept: Swept) -> None:
         wavefront, _ = counters.due()
@@ -25,8 +25,8 @@ class DepthFirst(AbstractOrder):
 
 
 def walk_all(counters: FiringCounters, wavefront: Wavefront, swept: Swept) -> None:
-    """From the lines of a sweep, a launch at a time."""
-    for batch in list(counters.batches(wavefront)):  # made before walks fire lines of patches that are still to come
+    """Follow walks from the lines of a wavefront, one launch at a time."""
+    for batch in list(counters.batches(wavefront)):  # made before walks fire lines of patches of later batches
         for launch in batch.launches(counters.types):
             before = counters.lines
             walk(counters, launch)
@@ -34,7 +34,7 @@ def walk_all(counters: FiringCounters, wavefront: Wavefront, swept: Swept) -> No
 
 
 def walk(counters: FiringCounters, launch: Launch) -> None:
-    """One lane for each line owed at the start."""
+    """Follow the walks of a launch, with one lane for each line that is due at the start."""
     types, tracer = counters.types, counters.tracer
     number, _, _ = launch.read(types)
 

@@ -1,8 +1,7 @@
-"""Row after row, in the order of their numbers: each fires what it lacks to its share of power (WDRS, Neumann, Neumann and
-Bekaert 1997).
+"""Well-distributed order: rows fire one after the other, by their numbers (WDRS, Neumann, Neumann and Bekaert 1997).
 
-A block of rows fires at a time; light that lands ahead leaves in the same pass, light that lands behind in the next.
-The set of lines is the same as in any other order.
+Each row fires the lines that it lacks for its share of power. A block of rows fires at a time. Light that hits a later block
+leaves in the same pass, light that hits an earlier one in the next pass. The set of lines is the same as in any other order.
 """
 
 from ...base import Swept
@@ -14,7 +13,7 @@ BLOCKS = 8
 
 
 class WellDistributed(AbstractOrder):
-    """Passes over the blocks until no row owes a line."""
+    """Passes over the blocks until no line is due."""
 
     def run(self, counters: FiringCounters, swept: Swept) -> None:
         if counters.bands is not None or counters.total < BLOCKS:
@@ -22,11 +21,11 @@ class WellDistributed(AbstractOrder):
             return
         while self._passed(counters, swept) >= TAIL:
             pass
-        counters.look_everywhere()  # blocks kept no account of where lines landed
-        BreadthFirst().run(counters, swept)  # the last few, and none where none are left
+        counters.look_everywhere()  # blocks do not note which patches lines hit
+        BreadthFirst().run(counters, swept)  # the last few lines, if any are left
 
     def _passed(self, counters: FiringCounters, swept: Swept) -> int:
-        """Lines of a pass."""
+        """Fire the lines of a pass, and return their number."""
         fired = 0
         for block in range(BLOCKS):
             wavefront, largest = counters.due_between(counters.total * block // BLOCKS, counters.total * (block + 1) // BLOCKS)
