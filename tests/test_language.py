@@ -11,7 +11,7 @@ import radiosity
 
 ROOT = Path(radiosity.__file__).parent
 
-COMING = {"algorithms", "scene"}  # folders whose docstrings are still being rewritten
+COMING = {"scene"}  # folders whose docstrings are still being rewritten
 
 # A docstring that begins with one of these words is a fragment: it names neither the thing nor what it does.
 FRAGMENTS = (
