@@ -42,7 +42,7 @@ def cameras_of(value, source) -> tuple[Camera, ...]:
 
 
 def indices(faces, source) -> np.ndarray:
-    """(n_faces, 4) int64: corners of faces, -1 in the last column of triangles."""
+    """Return the corners of faces, (n_faces, 4) int64, -1 in the last column of triangles."""
     raw = whole(faces, "faces", "vertex numbers", source)
     if raw.size == 0:
         return np.zeros((0, 4), np.int64)
@@ -66,7 +66,7 @@ def check_indices(faces, n_vertices, source) -> None:
 
 
 def per_face(value, n, what, source) -> np.ndarray:
-    """(n, 1) or (n, n_bands) float64: a value of each face."""
+    """Return a value of each face, (n, 1) or (n, n_bands) float64."""
     value = array(value, np.float64, what, source)
     if value.ndim == 0:
         return np.full((n, 1), value)
@@ -78,14 +78,14 @@ def per_face(value, n, what, source) -> np.ndarray:
 
 
 def widen(value, n_bands, source) -> np.ndarray:
-    """(n, n_bands) float64: values of faces in all bands, from one or all of them."""
+    """Return values of faces in all bands, from one or all of them, (n, n_bands) float64."""
     if value.shape[1] not in (1, n_bands):
         raise SceneError(f"{source}: values have {value.shape[1]} and {n_bands} bands; give all the same number, or one")
     return np.broadcast_to(value, (len(value), n_bands)).copy()
 
 
 def surfaces_of(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]:
-    """(n,) int32 the surface of each face, and the names of all surfaces."""
+    """Return the surface of each face, (n,) int32, and the names of all surfaces."""
     index = np.zeros(n, np.int64) if surface is None else whole(surface, "surface", "surface numbers", source)
     if index.shape != (n,):
         raise SceneError(f"{source}: surface has shape {index.shape}; expected ({n},)")
@@ -104,7 +104,7 @@ def surfaces_of(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]
 
 
 def backs_of(back, two_sided, n, source) -> np.ndarray:
-    """(n,) uint8: the `Back` of each face."""
+    """Return the `Back` of each face, (n,) uint8."""
     if back is None:
         sides = array(two_sided, np.float64, "two_sided", source)
         if sides.shape not in ((), (n,)) or not np.isin(sides, (0, 1)).all():

@@ -44,7 +44,7 @@ def straightened(part: Part) -> Part:
 
 
 def is_linear(corners: np.ndarray) -> np.ndarray:
-    """(m,) bool: whether values at the four corners of parallelograms, (4, m, k), are those of a linear function."""
+    """Return whether values at the four corners of parallelograms, (4, m, k), are those of a linear function, (m,) bool."""
     one, two, three, four = corners
     extent = np.ptp(corners, axis=0).max(axis=1, initial=0)
     largest = np.abs(corners).max(axis=(0, 2), initial=0)

@@ -35,13 +35,16 @@ class Contacts:
         return Contacts(*(getattr(self, field.name)[rows] for field in fields(Contacts)))
 
     def doubled(self, scene: Scene) -> np.ndarray:
-        """(m,) bool: both faces lie in one plane and radiate to the same side, so that lines meet only one of them."""
+        """True where both faces lie in one plane and radiate to the same side, so that lines hit only one of them, (m,) bool."""
         radiates = scene.back == Back.RADIATES
         hides = scene.back != Back.OPEN
         return self.coplanar & (self.same_way | radiates[self.one] | radiates[self.two]) & hides[self.one] & hides[self.two]
 
     def unseen(self, scene: Scene) -> np.ndarray:
-        """(m,) bool: one face radiates towards the other, which is apart from it, but nearer than the place where lines begin."""
+        """True where lines from one face begin beyond the other, (m,) bool.
+
+        The face radiates towards the other, which is apart from it, but nearer than the points where lines begin.
+        """
         back, turned = scene.back, np.where(self.same_way, -1, 1)
         sides = []
         for face, other, height in ((self.one, self.two, self.gap), (self.two, self.one, turned * self.gap)):

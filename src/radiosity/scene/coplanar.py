@@ -34,7 +34,7 @@ def contacts(scene: Scene) -> Contacts:
 
 
 def copied(scene: Scene) -> np.ndarray:
-    """(n_faces,) int64: the first face with the same corners in the same order; the face itself where there is no other."""
+    """Return the first face with the same corners in the same order, or else the face itself, (n_faces,) int64."""
     rows = _corners(scene).reshape(scene.n_faces, 12)
     _, first, number = np.unique(numbered(rows), return_index=True, return_inverse=True)
     first = first[number.ravel()]
@@ -42,7 +42,7 @@ def copied(scene: Scene) -> np.ndarray:
 
 
 def _corners(scene: Scene) -> np.ndarray:
-    """(n_faces, 4, 3) metres about the centre; triangles repeat the third."""
+    """Return the corners about the centre, (n_faces, 4, 3) metres; triangles repeat the third."""
     return scene.vertices[np.where(scene.faces < 0, scene.faces[:, 2:3], scene.faces)] - scene.centre
 
 
@@ -122,7 +122,7 @@ def _measured(scene: Scene, corners: np.ndarray, least: np.ndarray, small: np.nd
 
 
 def _height(corners: np.ndarray, along: np.ndarray, face: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """(m, k) distances from points, along a direction, to the planes of faces."""
+    """Return the distances from points, along a direction, to the planes of faces, (m, k)."""
     origin, second, third, fourth = corners[face].transpose(1, 0, 2)
     last = np.where((third == fourth).all(axis=1)[:, None], third, fourth)
     normal = np.cross(second - origin, last - origin)

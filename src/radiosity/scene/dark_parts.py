@@ -13,11 +13,11 @@ EXPECTED = 12  # lines that a side would have got, were it as dim as the dimmer 
 
 
 def dark_parts(scene: Scene, reached: np.ndarray, kind: np.ndarray) -> np.ndarray:
-    """(n_faces, 2) bool: dark fronts and backs of two-sided faces on surfaces of `Lit.BOTH`.
+    """Return the dark fronts and backs of two-sided faces on surfaces of `Lit.BOTH`, (n_faces, 2) bool.
 
     Args:
-        reached: (n_faces, 2) lines that met fronts and backs.
-        kind: (n_surfaces,) of `Lit`.
+        reached: (n_faces, 2) lines that hit fronts and backs.
+        kind: (n_surfaces,) the `Lit` of each surface.
     """
     dark = np.zeros((scene.n_faces, 2), bool)
     open_question = (scene.back == Back.RADIATES) & (kind[scene.surface] == Lit.BOTH)
@@ -40,7 +40,7 @@ def dark_parts(scene: Scene, reached: np.ndarray, kind: np.ndarray) -> np.ndarra
 
 
 def _parts(scene: Scene, faces: np.ndarray) -> np.ndarray:
-    """(k,) int, a number for each set of faces of one surface that hang together by their corners."""
+    """Return the number of each face's set, (k,) int; a set is faces of one surface that are connected by corners."""
     corners = weld(scene)[faces]
     keys = np.where(corners >= 0, scene.surface[faces, None] * (corners.max() + 1) + corners, -1)
     keys = np.where(keys < 0, keys[:, :1], keys)

@@ -39,7 +39,7 @@ def leave_out(scene):
 
 
 def without_area(scene) -> np.ndarray:
-    """(n_faces,) bool: faces of a `Scene` that count as faces without area.
+    """Return which faces of a `Scene` count as faces without area, (n_faces,) bool.
 
     Their height over their longest edge is below the resolution where they lie, or their area is below what lines can tell apart
     beside the size of the scene.

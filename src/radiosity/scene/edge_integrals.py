@@ -11,10 +11,10 @@ GAUSS = (0.5 - 0.5 / np.sqrt(3), 0.5 + 0.5 / np.sqrt(3))  # exact for the cubics
 
 
 def crossings(tables: Tables, start: np.ndarray, edge: np.ndarray) -> np.ndarray:
-    """(m,) float64: the number of lines between cells that each edge must be cut at, along axes that repeat.
+    """Return the number of lines between cells that each edge must be cut at, along axes that repeat, (m,) float64.
 
     Args:
-        start, edge: (m, 2) texel coordinates of where edges begin, and the vectors along them.
+        start, edge: (m, 2) texel coordinates of the starts of edges, and the vectors along them.
     """
     x, y, dx, dy = _own(tables, start, edge)
     down, flat = _along_axes(dx, dy)
@@ -23,7 +23,7 @@ def crossings(tables: Tables, start: np.ndarray, edge: np.ndarray) -> np.ndarray
 
 
 def along_edges(tables: Tables, start: np.ndarray, edge: np.ndarray) -> np.ndarray:
-    """(n_bands, m) float64: the integral along each edge, in square texels."""
+    """Return the integral along each edge, in square texels, (n_bands, m) float64."""
     x, y, dx, dy = _own(tables, start, edge)
     down, flat = _along_axes(dx, dy)
     result = np.zeros((len(tables.mean), len(x)))
@@ -58,13 +58,13 @@ def _own(tables: Tables, start: np.ndarray, edge: np.ndarray):
 
 
 def _along_axes(dx: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) bool each: edges along y that are long, and edges along x."""
+    """Return which edges along y are long, and which edges are along x, (m,) bool each."""
     wide, high = np.abs(dx), np.abs(dy)
     return (wide < STRAIGHT) & (high > LONG), (high == 0) | ((high < STRAIGHT) & (wide > LONG))
 
 
 def _cut(tables: Tables, x, y, dx, dy, lines) -> np.ndarray:
-    """(n_bands, m) integrals along edges that are cut at these lines."""
+    """Return the integrals along edges that are cut at these lines, (n_bands, m)."""
     count = len(x)
     keys = [np.arange(count, dtype=np.float64)]  # the edge's number, and how far along it a segment begins
     for (first, number), start, by in zip(lines, (x, y), (dx, dy), strict=True):

@@ -9,14 +9,16 @@ AROUND = 4  # faces at an edge that are looked at
 
 
 def flat_pieces(corners: np.ndarray, normal: np.ndarray, tilt: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """(n_faces,) int: the piece of each face; a face that is joined to none has a number of its own.
+    """Return the piece of each face, (n_faces,) int; a face that is joined to none has a number of its own.
 
     Two faces are joined by an edge which both have, in opposite directions, if their fronts look the same way and no other face
     fits there.
 
     Args:
-        corners: (n_faces, 4, 3), triangles repeat the third. normal: (n_faces, 3). tilt: (n_faces,) radians.
-        faces: (m,) int, those that are looked at.
+        corners: (n_faces, 4, 3), triangles repeat the third.
+        normal: (n_faces, 3).
+        tilt: (n_faces,) radians.
+        faces: (m,) int, the faces to look at.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -48,7 +50,7 @@ def flat_pieces(corners: np.ndarray, normal: np.ndarray, tilt: np.ndarray, faces
 
 
 def numbered(rows: np.ndarray) -> np.ndarray:
-    """(n,) int: equal numbers for equal rows of float64, by a hash of 64 bits."""
+    """Return equal numbers for equal rows of float64, by a hash of 64 bits, (n,) int."""
     words = np.ascontiguousarray(rows + 0.0).view(np.uint64)  # no negative zeros
     key = np.zeros(len(rows), np.uint64)
     for column in words.T:

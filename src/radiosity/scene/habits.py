@@ -58,7 +58,7 @@ def warn(text: str) -> None:
 
 
 def _peak(part: Part) -> np.ndarray:
-    """(n_bands,) the highest factor of the paint in each band."""
+    """Return the highest factor of the paint in each band, (n_bands,)."""
     peak = np.ones(1)
     if part.color is not None and len(part.color):
         peak = peak * part.color.max(axis=0)
@@ -90,7 +90,7 @@ def _lower(part: Part, limit: float) -> Part:
 
 
 def _has_white_face(part: Part) -> bool:
-    """Whether some face has no image and the colour 1 at all corners."""
+    """Return whether some face has no image and the colour 1 at all corners."""
     if part.texture is not None or part.color is None:
         return False
     faces, white = np.asarray(part.faces), (np.asarray(part.color, np.float32) == 1).all(axis=1)

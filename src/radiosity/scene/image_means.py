@@ -28,11 +28,11 @@ class ImageMeans:
         self._known: dict[int, Tables] = {}
 
     def over(self, origin: np.ndarray, first: np.ndarray, second: np.ndarray, *, triangles: bool) -> np.ndarray:
-        """(m, n_bands) float64: means over footprints.
+        """Return means over footprints, (m, n_bands) float64.
 
         Args:
             origin, first, second: (m, 2) a corner and the two edges from it, in texture coordinates.
-            triangles: they are halves of parallelograms.
+            triangles: True where footprints are halves of parallelograms.
         """
         height, width = self.image.shape[:2]
         origin = np.column_stack([origin[:, 0] * width, (1 - origin[:, 1]) * height])

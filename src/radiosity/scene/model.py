@@ -142,7 +142,7 @@ class Scene:
 
     @cached_property
     def is_quad(self) -> np.ndarray:
-        """(n_faces,) bool: parallelogram rather than triangle."""
+        """True where a face is a parallelogram, not a triangle, (n_faces,) bool."""
         return self.faces[:, 3] >= 0
 
     @cached_property
@@ -154,27 +154,27 @@ class Scene:
 
     @cached_property
     def area(self) -> np.ndarray:
-        """(n_faces,) m²: area of one side."""
+        """The area of one side of each face, (n_faces,) m²."""
         _, first, second = self.frames
         return np.linalg.norm(np.cross(first, second), axis=1) * np.where(self.is_quad, 1.0, 0.5)
 
     @cached_property
     def normal(self) -> np.ndarray:
-        """(n_faces, 3) unit normal of the front."""
+        """The unit normal of each front, (n_faces, 3)."""
         _, first, second = self.frames
         return unit_normals(first, second)
 
     @cached_property
     def bounds(self) -> np.ndarray:
-        """(2, 3) lowest and highest coordinates, metres."""
+        """The lowest and highest coordinates, (2, 3) metres."""
         used = self.vertices[np.unique(self.faces[self.faces >= 0])]
         return np.stack([used.min(axis=0), used.max(axis=0)])
 
     @cached_property
     def centre(self) -> np.ndarray:
-        """(3,) float64 metres: the origin of coordinates in single precision, see `scene.precision`.
+        """The origin of coordinates in single precision, (3,) float64 metres; see `scene.precision`.
 
-        The middle of the box where the scene has no area.
+        It is the middle of the box where the scene has no area.
         """
         if not self.area.sum() > 0:
             return self.bounds.mean(axis=0)
@@ -188,7 +188,7 @@ class Scene:
 
     @cached_property
     def plane_reach(self) -> np.ndarray:
-        """(n_faces,) metres: the size of the numbers that place each face's plane, see `scene.precision.plane_reach`."""
+        """The size of the numbers that place each face's plane, (n_faces,) metres; see `scene.precision.plane_reach`."""
         corners = self.vertices[np.where(self.faces < 0, self.faces[:, :1], self.faces)] - self.centre
         return plane_reach(self.normal, corners)
 
@@ -244,6 +244,6 @@ class Scene:
 
 
 def unit_normals(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n, 3) unit normals of faces with these edges, (n, 3) each."""
+    """Return unit normals, (n, 3), of faces with these edges, (n, 3) each."""
     cross = np.cross(first, second)
     return cross / np.linalg.norm(cross, axis=1, keepdims=True)

@@ -86,7 +86,7 @@ def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray,
 
 
 def _each(conditions, count: int) -> np.ndarray:
-    """Whether all conditions of a row hold; column by column, which is faster than along short rows."""
+    """Return whether all conditions of a row hold; column by column, which is faster than along short rows."""
     result = np.ones(count, bool)
     for condition in conditions:
         result &= condition

@@ -4,10 +4,13 @@ import numpy as np
 
 
 def overlapping(one: np.ndarray, two: np.ndarray, least: np.ndarray) -> np.ndarray:
-    """(m,) bool: along every direction across an edge of either the two share more than a length (separating axes).
+    """Return whether two faces share more than a length along every direction across an edge of either, (m,) bool.
+
+    It is the test of separating axes.
 
     Args:
-        one, two: (m, 4, 2) corners in order; triangles repeat one. least: (m,) length.
+        one, two: (m, 4, 2) corners in order; triangles repeat one.
+        least: (m,) that length.
     """
     rows = np.arange(len(one))
     for polygons in (0, 1):

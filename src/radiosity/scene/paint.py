@@ -36,7 +36,7 @@ class Paint:
 
     @cached_property
     def painted(self) -> np.ndarray:
-        """(n_faces,) bool, faces with an image or colours; the base value of others stays as it is."""
+        """True where a face has an image or colours, (n_faces,) bool; the base value of others stays as it is."""
         return (self.image >= 0) | (self.color != 1).any(axis=(1, 2))
 
     def factor(self, face: np.ndarray, u: np.ndarray, v: np.ndarray, is_quad: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ TIE = 1e-9  # of the area: where so little decides, the lower of two medians is 
 
 
 def median_centre(centroid: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """(3,) float64 metres: the area-weighted median of the faces' centroids, axis by axis.
+    """Return the area-weighted median of the faces' centroids, axis by axis, (3,) float64 metres.
 
     Args:
         centroid: (n_faces, 3) metres.
@@ -27,22 +27,23 @@ def median_centre(centroid: np.ndarray, area: np.ndarray) -> np.ndarray:
 
 
 def plane_reach(normal: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(m,) float64: the size of the numbers that place a face's plane: its shift by their rounding, over an ulp of one.
+    """Return the size of the numbers that place a face's plane, (m,) float64: its shift by their rounding, over an ulp of one.
 
-    Of a face that stands across an axis it is the distance along that axis, however far the face reaches.
+    For a face that stands across an axis it is the distance along that axis, however far the face reaches.
 
     Args:
-        normal: (m, 3). corners: (m, k, 3) about the centre.
+        normal: (m, 3).
+        corners: (m, k, 3) about the centre.
     """
     return np.einsum("mi,mi->m", np.abs(normal), np.abs(corners).max(axis=1))
 
 
 def ulp(points: np.ndarray, centre: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """(m,) float64 metres: an ulp of single precision at points of faces, of the largest number that places a point or its plane.
+    """Return an ulp of single precision of the largest number that places a point or its face's plane, (m,) float64 metres.
 
     Args:
         points: (m, 3) metres.
-        centre: (3,) metres, the scene's.
+        centre: (3,) metres, the centre of the scene.
         reach: (m,) metres, the `plane_reach` of the face of each point.
     """
     return EPSILON * np.maximum(np.abs(points - centre).max(axis=1), reach)

@@ -4,7 +4,7 @@ import numpy as np
 
 
 def mean_below(corners: np.ndarray, limit: float) -> np.ndarray:
-    """(m, n) means over triangles of linear functions that are cut off at ``limit``; values at the corners are (m, 3, n)."""
+    """Return means over triangles of linear functions cut off at ``limit``, (m, n); values at the corners are (m, 3, n)."""
     low, middle, high = np.moveaxis(np.sort(corners, axis=1), 1, 0)
     mean = corners.mean(axis=1)
 

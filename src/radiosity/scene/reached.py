@@ -20,11 +20,11 @@ class Lit(IntEnum):
 
 
 def lit_sides(scene: Scene, reached: np.ndarray, least: int) -> np.ndarray:
-    """(n_surfaces,) the `Lit` of each surface.
+    """Return the `Lit` of each surface, (n_surfaces,).
 
     Args:
-        reached: (n_faces, 2) lines that met fronts and backs.
-        least: lines on one side of a surface, from which on the other one is dark where it has none.
+        reached: (n_faces, 2) lines that hit fronts and backs.
+        least: from this number of lines on one side of a surface, the other side is dark where it has none.
     """
     two, n = scene.back == Back.RADIATES, len(scene.names)
     surface, here = scene.surface[two], reached[two]

@@ -6,7 +6,7 @@ from .model import Scene
 
 
 def quad(origin, first, second) -> np.ndarray:
-    """(4, 3) corners; the front is on the side of first x second."""
+    """Return the corners of a parallelogram, (4, 3); the front is on the side of first x second."""
     o, a, b = (np.asarray(x, np.float64) for x in (origin, first, second))
     return np.array([o, o + a, o + a + b, o + b])
 

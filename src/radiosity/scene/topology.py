@@ -25,7 +25,7 @@ class OpenEdges:
 
 
 def weld(scene: Scene) -> np.ndarray:
-    """(n_faces, 4) int64: the welded vertex of each corner, -1 where a face has no fourth."""
+    """Return the welded vertex of each corner, (n_faces, 4) int64, -1 where a face has no fourth."""
     used = np.unique(scene.faces[scene.faces >= 0])
     places = scene.vertices[used] - scene.bounds[0]
     # a median, so that an object far away welds no room together; of a flat scene's middle the whole

@@ -1,11 +1,11 @@
-"""Spans that exchange power one after the other: the sequential heart of multipath.
+"""Spans that exchange power one after the other: the sequential part of multipath.
 
-A span between i and j takes what both have not sent yet, and what they emit at each of their ends, from each to the other,
-which keeps what it reflects for its next span. The order of spans is part of the method, so a lane follows all spans of a
-replicate; lanes run side by side.
+A span between i and j carries from each to the other what it has not sent yet, and what it emits at each span end. The receiver
+keeps what it reflects for its next span. The order of spans is part of the method, so a lane follows all spans of a replicate;
+lanes run in parallel.
 
-Dr.Jit lets a loop's body touch an array that it also changes only once, by an atomic exchange. So a span takes three steps, at i,
-at j and at i again: each hands in what the step before took out, and takes out what lies there.
+Dr.Jit lets a loop's body access an array that it also changes only once, by an atomic exchange. So a span takes three steps, at
+i, at j and at i again: each step puts in what the step before took out, and takes out what is there.
 """
 
 from dataclasses import dataclass
@@ -27,11 +27,11 @@ class Exchange:
 
     Attributes:
         types: Dr.Jit's array types.
-        one_ways: some spans are seen from one end only.
+        one_ways: True where some spans are seen from one end only.
         rho: UInt32 (n_patches,), reflectance times 2^32.
         source: UInt64 (replicates * n_patches), what a patch emits along each span.
-        unshot: UInt64, likewise: what it has reflected since its last span.
-        landed: UInt64, likewise: all that arrived.
+        unshot: UInt64, the same size: what it has reflected since its last span.
+        landed: UInt64, the same size: all that arrived.
     """
 
     types: Any
@@ -45,11 +45,11 @@ class Exchange:
         """Go through the spans of each replicate.
 
         Args:
-            one, other: UInt32, ends as in `Pairs`, the spans of a replicate side by side, one replicate after the other.
-            lengths: (replicates,) spans of each.
+            one, other: UInt32, ends as in `Pairs`, first all spans of one replicate, then those of the next.
+            lengths: (replicates,) the number of spans of each.
 
         Returns:
-            (4, replicates) uint64: power that left, was reflected, escaped and was lost (LEDGER).
+            Power that left, was reflected, escaped and was lost (LEDGER), (4, replicates) uint64.
         """
         types = self.types
         UInt32, UInt64 = types.UInt32, types.UInt64
@@ -75,7 +75,7 @@ class Exchange:
             reflected = reflected + kept
             dr.scatter_add(self.landed, brought, row + at, active=patch)
             left = kept
-            if self.one_ways:  # what j has not sent yet stays: taken out in one step, put back with the new in the next
+            if self.one_ways:  # j keeps what it has not sent yet: one step takes it out, the next puts it back with the new
                 left = dr.select(single, dr.select(step == 1, 0, carried), left)
             taken = dr.scatter_exch(self.unshot, left, row + at, active=patch)
             sent = dr.select(patch, taken + dr.gather(UInt64, self.source, row + at, patch), 0)
@@ -103,5 +103,5 @@ class Exchange:
 
 
 def times(power, rho):
-    """Power (below 2^63) times a 32-bit fraction, rounded down, without overflow."""
+    """Return power (below 2^63) times a 32-bit fraction, rounded down, without overflow."""
     return (power >> 32) * rho + (((power & 0xFFFFFFFF) * rho) >> 32)

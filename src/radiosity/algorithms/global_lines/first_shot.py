@@ -1,6 +1,6 @@
-"""A first shot: the lights' own power goes out by local lines, so that global lines only carry what has been reflected.
+"""A first shot: local lines send the lights' own power, so that global lines only carry what has been reflected.
 
-Global lines find small lights rarely. With a first shot they start from the power that it left everywhere (Sbert, Pueyo,
+Global lines hit small lights rarely. With a first shot they start from the power that it left everywhere (Sbert, Pueyo,
 Neumann, Purgathofer 1996).
 """
 
@@ -37,7 +37,7 @@ class FirstShot:
         self.counters = FiringCounters(geometry, black, local, Seed.of(seed).moved(APART), replicates)
 
     def fire(self, lines: int, swept: Swept) -> None:
-        """Send each replicate's lights' power in so many lines, those fired before included."""
+        """Send the power of the lights of each replicate in ``lines`` lines, including those fired before."""
         if lines != self.counters.quanta:
             self.counters.set_quanta(lines)
         fire_all("breadth-first", self.counters, swept)
@@ -55,17 +55,17 @@ def whole(shot: FiringState | None) -> bool:
 
 
 def fired(shot: FiringState | None) -> int:
-    """Lines of all replicates; 0 where there was no shot."""
+    """Return the lines of all replicates; 0 where there was no first shot."""
     return 0 if shot is None else int(shot.fired.sum(dtype=np.uint64))
 
 
 def arrivals(shot: FiringState | None) -> np.ndarray | int:
-    """(n_patches,) int64 landings, or 0."""
+    """Return the hit counts, (n_patches,) int64, or 0 where there was no first shot."""
     return 0 if shot is None else shot.arrivals.sum(axis=0, dtype=np.int64)
 
 
 def landed(problem: Problem, shot: FiringState, group: int) -> tuple[np.ndarray, np.ndarray]:
-    """Power of a group, W or lm: (replicates, n_patches) that landed, and (2, replicates) escaped and lost."""
+    """Return the power of a group that hit, (replicates, n_patches), and that escaped and was lost, (2, replicates), W or lm."""
     unit = problem.source.power / shot.quanta
     if shot.bands is not None:
         unit /= QUANTUM
@@ -74,5 +74,5 @@ def landed(problem: Problem, shot: FiringState, group: int) -> tuple[np.ndarray,
 
 
 def lines_for(share: float, spans_lines: float) -> int:
-    """Local lines of a replicate that are this share of all, where the others are ``spans_lines``."""
+    """Return how many local lines of a replicate are this share of all lines, where the others are ``spans_lines``."""
     return max(1, round(spans_lines * share / (1 - share)))

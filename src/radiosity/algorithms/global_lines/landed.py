@@ -1,4 +1,4 @@
-"""How the state of a `Multipath` is read."""
+"""The tally of `Multipath`."""
 
 import numpy as np
 
@@ -12,15 +12,17 @@ HIGHEST = 34  # bits of the largest power that a span can carry
 
 
 def unit(problem: Problem, ends_per_line: np.ndarray, group: int) -> float:
-    """W or lm: of powers in fixed point. A span carries 2^HIGHEST of them at most: what the brightest patch emits at each end,
-    over one less the largest reflectance."""
+    """Return the unit of powers in fixed point, W or lm.
+
+    A span carries at most 2^HIGHEST of them: what the brightest patch emits at each end, over one less the largest reflectance.
+    """
     groups = problem.groups
     brightest = float((groups.emission[:, group] * problem.patches.area / ends_per_line).max())
     return max(brightest, np.finfo(float).tiny) / (1 - float(groups.reflectance[:, group].max())) / 2.0**HIGHEST
 
 
 class Landed(AbstractTally[MultipathState]):
-    """Power that landed along spans, after a first shot where there was one."""
+    """Reads power that arrived along spans, and by a first shot where there was one."""
 
     def lines(self, problem: Problem, state: MultipathState) -> int:
         return int(state.ends.sum()) + first_shot.fired(state.shot)
@@ -35,7 +37,7 @@ class Landed(AbstractTally[MultipathState]):
         return state.landed[group] * watts + first_shot.landed(problem, state.shot, group)[0], 1.0
 
     def line(self, problem: Problem, state: MultipathState, group: int) -> np.ndarray | float:
-        """What the brightest light sends along a span."""
+        """Return the power that the brightest light sends along a span."""
         emitted = problem.groups.emission[:, group] * problem.patches.area / state.ends_per_line
         return float(emitted.max()) / max(state.lines_done, 1)
 

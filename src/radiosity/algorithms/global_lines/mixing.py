@@ -1,9 +1,9 @@
-"""In which order multipath takes spans: blocks of lines one after the other, the spans of a block in an order drawn anew.
+"""The order in which multipath takes spans: blocks of lines one after the other, the spans of a block in a random order.
 
-Multipath reads a path out of spans that follow each other on a patch. That is right if a span is independent of the spans before
-it. Neighbours in a low discrepancy sequence are not, they are made to differ; nor are spans of one line, or one that counts
-twice. The set of spans in a block stays what it is. What is left is that no span comes twice in a block, which is felt the less
-the longer blocks are.
+In multipath, spans that follow each other on a patch form a path. That is right if a span is independent of the spans before
+it. Neighbours in a low discrepancy sequence are not independent: they are made to differ. Nor are spans of one line, or a span
+that counts twice. The set of spans in a block does not change. One dependence is left: no span comes twice in a block. Its effect
+is smaller in longer blocks.
 """
 
 from dataclasses import dataclass
@@ -13,28 +13,30 @@ import numpy as np
 from ...sampling.streams import Purpose, stream
 from ...tracing.global_lines.spans import Pairs, Spans
 
-VISITS = 256  # of a mean patch within a block, where that is not too long
-LEAST, MOST = 1 << 10, 1 << 18  # lines of a block
+VISITS = 256  # span ends of a mean patch within a block, where the block is not too long for it
+LEAST, MOST = 1 << 10, 1 << 18  # least and most lines of a block
 
 
 @dataclass(frozen=True, eq=False)
 class Mixed:
-    """Spans of the replicates' lines in the mixed order."""
+    """The spans of the replicates' lines in the mixed order."""
 
     spans: Spans
 
     @property
     def block(self) -> int:
-        """Lines of a block, a power of two."""
+        """The number of lines of a block, a power of two."""
         wanted = VISITS / float(self.spans.ends_per_line.mean())
         return int(np.clip(2.0 ** np.ceil(np.log2(wanted)), LEAST, MOST))
 
     def draw(self, replicate: int, first: int, count: int) -> Pairs:
-        """As `Spans.draw`, of the lines ``first`` to below ``first + count`` in the mixed order. Its lines are not those of the
-        sequence: a block's spans are spread over as many lines as the block has."""
+        """Draw spans as `Spans.draw` does, of the lines ``first`` to below ``first + count`` in the mixed order.
+
+        These lines are not those of the sequence: a block's spans are spread over as many lines as the block has.
+        """
         block, parts = self.block, []
         blocks = range(first // block, (first + count - 1) // block + 1)
-        drawn = self.spans.draw(replicate, blocks.start * block, len(blocks) * block)  # all at once: launches have their cost
+        drawn = self.spans.draw(replicate, blocks.start * block, len(blocks) * block)  # all at once: each launch costs time
         cuts = np.searchsorted(drawn.line, np.arange(len(blocks) + 1) * block)
         for number, begin, end in zip(blocks, cuts[:-1], cuts[1:], strict=True):
             own = np.uint32((number - blocks.start) * block)
@@ -46,7 +48,7 @@ class Mixed:
         return Pairs(line, one, other, self.spans.ends_per_line)
 
     def _order(self, replicate: int, number: int, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """From the lines of a block's spans: the spans in their new order, and the lines that they belong to then."""
+        """Return the spans of a block in their new order, and the lines that they then belong to."""
         seed = stream(self.spans.seed, replicate, Purpose.MIXING, number)
         generator = np.random.Generator(np.random.Philox(seed))
         spread = np.arange(len(line), dtype=np.uint64) * np.uint64(self.block) // np.uint64(max(len(line), 1))

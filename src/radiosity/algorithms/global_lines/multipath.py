@@ -23,14 +23,16 @@ from .landed import HIGHEST, Landed, unit
 from .mixing import Mixed
 from .state import MultipathState
 
-FULLEST = 63  # bits of a sum
-WARM_UP, MOST_WARM_UP = 4, 64  # ends of a mean patch, the first times 1 / (1 - mean reflectance)
+FULLEST = 63  # most bits of a sum
+WARM_UP, MOST_WARM_UP = 4, 64  # span ends of a mean patch, the first times 1 / (1 - mean reflectance)
 BATCH = 1 << 21  # spans of all replicates between two looks at the clock
 
 
 class Multipath(AbstractAlgorithm[MultipathState]):
-    """N is the number of global lines of a replicate (of spans, where they are drawn one by one). All lines, as they are counted,
-    are proportional to it: each line has a fixed expected number of ends, and a first shot has its share of all.
+    """Global multipath. N is the number of global lines of a replicate (of spans, where they are drawn one by one).
+
+    The number of all lines is proportional to N: each line has a fixed expected number of ends, and a first shot has its share of
+    all.
 
     Without a first shot the state after N lines depends on N alone. With one, the first shot is made finer at each stage, from
     N/2 to N for example, and the global lines of that stage start from what it has left by then: an average, weighted by
@@ -87,22 +89,22 @@ class Multipath(AbstractAlgorithm[MultipathState]):
 
     @property
     def _batch(self) -> int:
-        """Lines of a replicate between two looks at the clock: whole blocks."""
+        """The number of lines of a replicate between two looks at the clock: whole blocks."""
         spans_a_line = max(float(self.spans.ends_per_line.sum()) / 2, 1e-3)
         return max(1, round(BATCH / spans_a_line / self.replicates / self.mixed.block)) * self.mixed.block
 
     def _begin(self) -> None:
-        """Put the power on the patches that waits there in the long run: what they reflect of a uniform irradiance that
-        balances what is emitted, and then what the first lines make of that.
+        """Put power on the patches, as much as they hold in the long run.
 
-        From nothing, the power that waits would be missing from all sums: that is about 1 / (1 - rho) of the ends that a patch
+        It is first what they reflect of a uniform irradiance that balances what is emitted, and then what the first lines make of
+        it. Without it, the power that patches hold would be missing from all sums: about 1 / (1 - rho) of the ends that a patch
         has had, three standard errors in the labyrinth of reflectance 0.9.
         """
         types, groups, area = self.geometry.device.types, self.problem.groups, self.geometry.patches.area
         for g, exchange in enumerate(self.exchanges):
             rho = groups.reflectance[:, g]
             source = frozen(exchange.source).reshape(self.replicates, self.n).astype(float)
-            # one by one: what is summed together differs in its last bits with the number of replicates
+            # one by one: a sum over all would differ in its last bits with the number of replicates
             mean = np.array([row @ area for row in source]) / float((1 - rho) @ area)
             exchange.unshot = upload(types.UInt64, np.floor(mean[:, None] * rho).astype(np.uint64))
         visits = WARM_UP / (1 - float(np.average(groups.reflectance.max(axis=1), weights=area)))
@@ -115,7 +117,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
             ledger.update({name: [0] * self.replicates for name in LEDGER})
 
     def _shoot(self, quanta: int, swept: Swept) -> None:
-        """Refine the first shot, and let patches emit what it lets them reflect."""
+        """Refine the first shot, and let patches emit what they reflect of it."""
         shot = self.shot
         assert shot is not None
         shot.fire(first_shot.lines_for(self.method.first_shot, quanta * float(self.spans.ends_per_line.sum())), swept)
@@ -126,7 +128,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
             exchange.source = upload(self.geometry.device.types.UInt64, source)
 
     def _carry(self, count: int) -> int:
-        """The next lines of each replicate: how many ends they have, all together."""
+        """Carry power along the next lines of each replicate, and return the number of their ends."""
         drawn = [self.mixed.draw(replicate, self.done, count) for replicate in range(self.replicates)]
         UInt32 = self.geometry.device.types.UInt32
         both = [np.concatenate([getattr(pairs, end) for pairs in drawn]) for end in ("one", "other")]
@@ -136,7 +138,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
                 row += np.bincount(end[end < ONE_WAY], minlength=self.n)
         lengths = np.array([len(pairs.one) for pairs in drawn])
         if lengths.any():
-            one, other = (upload(UInt32, np.append(end, end[-1:])) for end in both)  # never of one entry
+            one, other = (upload(UInt32, np.append(end, end[-1:])) for end in both)  # never one entry
             for exchange, ledger in zip(self.exchanges, self.ledger, strict=True):
                 for name, sums in zip(LEDGER, exchange.run(one, other, lengths, self.n), strict=True):
                     ledger[name] = [old + int(new) for old, new in zip(ledger[name], sums, strict=True)]
@@ -144,7 +146,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
         return int(self.ends.sum()) - before
 
     def _fixed(self, power: np.ndarray, group: int) -> np.ndarray:
-        """From the power of patches, W or lm, (..., n_patches), to what they emit at each span end, in units."""
+        """Return what patches emit at each span end, in units, from their power, (..., n_patches) W or lm."""
         return np.round(power / self.spans.ends_per_line / unit(self.problem, self.spans.ends_per_line, group)).astype(np.uint64)
 
     def capture(self) -> MultipathState:
@@ -188,7 +190,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
 
 
 def dr_zeros(types, width: int):
-    """Zeros to be scattered into: `dr.zeros` would be a literal."""
+    """Return zeros to scatter into: `dr.zeros` would be a literal."""
     import drjit as dr
 
     return dr.opaque(types.UInt64, 0, width)

@@ -1,4 +1,4 @@
-"""How the state of a `Pooling` is read."""
+"""The tally of `Pooling`."""
 
 import numpy as np
 
@@ -9,16 +9,16 @@ from ..base import AbstractMeanTally
 from . import first_shot
 from .state import PoolingState
 
-UNIT = 2.0**-34  # of a group's largest emission: what radiosity is rounded to, so that its sums are whole numbers
+UNIT = 2.0**-34  # share of a group's largest emission that radiosity is rounded to, so that its sums are whole numbers
 
 
 def units(problem: Problem) -> np.ndarray:
-    """(n_groups,) W/m²: what radiosity is counted in."""
+    """Return the unit of radiosity of each group, (n_groups,) W/m²."""
     return problem.groups.emission.max(axis=0) * UNIT
 
 
 class Pooled(AbstractMeanTally[PoolingState]):
-    """Means over span ends, after a first shot where there was one."""
+    """Reads means over span ends, and a first shot where there was one."""
 
     def lines(self, problem: Problem, state: PoolingState) -> int:
         return int(state.ends.sum()) + first_shot.fired(state.shot)
@@ -33,7 +33,7 @@ class Pooled(AbstractMeanTally[PoolingState]):
         return power, 1.0
 
     def _pooled(self, problem: Problem, state: PoolingState, group: int) -> np.ndarray:
-        """(replicates, n_patches) W or lm, without what a first shot brought."""
+        """Return the power without that of a first shot, (replicates, n_patches) W or lm."""
         received, ends = _pooled(problem, state.received[group], state), self.measured(problem, state)
         return means(received, ends, sides(problem.patches)) * (problem.patches.area * units(problem)[group])
 
@@ -44,12 +44,15 @@ class Pooled(AbstractMeanTally[PoolingState]):
         return _pooled(problem, state.ends, state)
 
     def line(self, problem: Problem, state: PoolingState, group: int) -> np.ndarray | float:
-        """Of a patch's ends one sees the brightest light."""
+        """Return the power that one of a patch's ends brings where it sees the brightest light."""
         ends = self.measured(problem, state)
         return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(ends.mean(axis=0), 1)
 
     def books(self, problem: Problem, state: PoolingState, group: int) -> dict:
-        """Escaped or lost is, of what a patch sends, the share of its ends that see nothing, or an absorbing back."""
+        """Return the energy balance.
+
+        Of what a patch sends, the share of its ends that see nothing escaped, and the share that see an absorbing back was lost.
+        """
         power, _ = self.irradiance(problem, state, group)
         rho, replicates = problem.groups.reflectance[:, group], len(power)
         emission = problem.groups.emission[:, group] * problem.patches.area
@@ -65,5 +68,5 @@ class Pooled(AbstractMeanTally[PoolingState]):
 
 
 def _pooled(problem: Problem, values: np.ndarray, state: PoolingState) -> np.ndarray:
-    """(replicates, n_patches): sums of the halves of each replicate."""
+    """Return the sums over the halves of each replicate, (replicates, n_patches)."""
     return values.reshape(state.replicates, -1, len(problem.patches)).sum(axis=1)

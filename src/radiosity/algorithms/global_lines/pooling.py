@@ -1,7 +1,7 @@
 """Stochastic iteration on global lines (after L. Neumann, "Monte Carlo radiosity", Computing 55, 1995).
 
-In an iteration every span end gathers the radiosity that its partner has at that time. What a patch receives is the mean over its
-ends; not of one iteration alone, in which small patches may have none, but pooled over iterations. `docs/global-lines.md` says
+In an iteration every span end gathers the radiosity that the other end has at that time. What a patch receives is the mean over
+its ends. The mean is pooled over iterations, since small patches may have no end in one iteration. `docs/global-lines.md` says
 why the result is consistent.
 """
 
@@ -19,33 +19,35 @@ from .first_shot import FirstShot
 from .pooled import Pooled, units
 from .state import HALVES, PoolingState, lines_of_half
 
-ENDS = 2  # of a mean patch in an iteration, at least
-LEAST = 1 << 8  # lines of an iteration
-MEMORY, BUNDLES = 16, 64  # iterations, or bundles, that the radiosity which lines carry remembers at least
-SHARE = 8  # and one in so many of all iterations so far
+ENDS = 2  # least span ends of a mean patch in an iteration
+LEAST = 1 << 8  # least lines of an iteration
+MEMORY, BUNDLES = 16, 64  # least iterations, or bundles, that count for the radiosity which lines carry
+SHARE = 8  # or an eighth of all iterations so far, where that is more
 BATCH = 1 << 20  # spans of all replicates between two looks at the clock
-WARM = 1 << 21  # lines of all halves together in the warm-up, at most, but one iteration at least
-SWEEPS, SETTLED = 200, 1e-4  # of the warm-up: at most, or until all change together is this share of 1 - rho
+WARM = 1 << 21  # most lines of all halves together in the warm-up, but at least one iteration
+SWEEPS, SETTLED = 200, 1e-4  # most steps of the warm-up; it ends earlier where the whole change is this share of 1 - rho
 ARRAYS = ("carried", "recent", "recent_ends", "fresh", "fresh_ends", "received", "ends", "escaped", "lost")
 
 
 class Pooling(AbstractAlgorithm[PoolingState]):
-    """N is the number of global lines of a replicate (of spans, where they are drawn one by one). An iteration is one bundle;
-    or, of other lines, a power of two, such that a mean patch has ENDS ends or more.
+    """Stochastic iteration. N is the number of global lines of a replicate (of spans, where they are drawn one by one).
+
+    An iteration is one bundle; with other lines it is a power of two of lines, such that a mean patch has ENDS ends or more.
 
     A replicate has two halves with numbers of their own, N / 2 lines each, and each carries what the other has found. So what
     is carried does not depend on the lines that carry it. In one sequence it would: a low discrepancy sequence avoids
-    what it had before, and the irradiance of a small light came out too small by eight standard errors.
+    its earlier points, and the irradiance of a small light came out too small by eight standard errors.
 
-    Arrays, halves of replicates side by side, (n_groups, halves * n_patches) or (halves * n_patches):
+    Arrays hold one half of a replicate after the other, (n_groups, halves * n_patches) or (halves * n_patches):
         carried: radiosity that lines carry, whole numbers of the group's `units`: all of it, or what is reflected where there
             was a first shot.
-        recent, recent_ends: radiosity of partners, and ends, in the last iterations, each counting less than the next.
-        fresh, fresh_ends: int64, of the iteration that is not complete.
-        received, ends: int64, of all iterations, alike: the result. Whole numbers do not depend on where a stage ended.
+        recent, recent_ends: radiosity of other ends, and ends, in the last iterations; later iterations have more weight.
+        fresh, fresh_ends: int64, radiosity and ends of the iteration that is not complete.
+        received, ends: int64, radiosity and ends of all iterations with equal weight: the result. Whole numbers do not depend
+            on where a stage ended.
         escaped, lost: ends that see nothing, or an absorbing back.
 
-    Without a first shot the state after N lines depends on N alone; with one, see `Multipath`.
+    Without a first shot the state after N lines depends on N alone; with a first shot, see `Multipath`.
     """
 
     def __init__(self, *arguments):
@@ -68,14 +70,14 @@ class Pooling(AbstractAlgorithm[PoolingState]):
 
     @property
     def iteration(self) -> int:
-        """Lines of an iteration."""
+        """The number of lines of an iteration."""
         if self.method.lines == "bundles":
             return self.spans.bundle
         return max(LEAST, 1 << int(np.ceil(np.log2(ENDS / float(self.spans.ends_per_line.mean())))))
 
     @property
     def memory(self) -> int:
-        """Iterations that count for what lines carry, at least."""
+        """The least number of iterations that count for what lines carry."""
         return BUNDLES if self.method.lines == "bundles" else MEMORY
 
     @property
@@ -102,23 +104,25 @@ class Pooling(AbstractAlgorithm[PoolingState]):
 
     @property
     def source(self) -> np.ndarray:
-        """(n_groups, halves * n_patches): radiosity before any reflection along global lines, in `units`."""
+        """The radiosity before any reflection along global lines, in `units`, (n_groups, halves * n_patches)."""
         return (self.emission if self.direct is None else self.rho * self.direct) / self.units[:, None]
 
     def _warm_up(self) -> None:
-        """Solve for what the first lines of each half see. Begun at nothing, the iteration would take 1 / (1 - reflectance) times
-        its memory to forget that."""
+        """Solve for what the first lines of each half see.
+
+        Without it the iteration would begin at zero, and need 1 / (1 - reflectance) times its memory to forget that.
+        """
         ends = Ends.of(self._drawn(0, min(self.memory, max(1, WARM // self.halves // self.iteration)) * self.iteration), self.n)
         self.recent_ends = ends.number(self.recent_ends.size).astype(float)
         area = np.tile(self.geometry.patches.area, self.halves)
-        # of each group: the total power that a radiosity in proportion to reflectance would still have to send and absorb
+        # for each group: the total power that a radiosity in proportion to reflectance would still have to send and absorb
         balance = ((self.rho - self.rho * self._mean(ends.received(self.rho))) @ area)[:, None]
         settled = SETTLED * (1 - np.average(self.rho, axis=1, weights=area))
         self.carried = self.source.copy()
         for _ in range(SWEEPS):
             self.recent = ends.received(self.carried)
             change = self.source + self.rho * self._mean(self.recent) - self.carried
-            # and as much of it as makes the power balance, at once: what is left to the sweeps is how it is spread
+            # add at once as much of it as balances the power: the steps then only find how it is distributed
             change += self.rho * ((change @ area)[:, None] / np.maximum(balance, 1e-300))
             self.carried = self.carried + change
             if (np.abs(change) @ area <= settled * (self.carried @ area)).all():
@@ -126,16 +130,19 @@ class Pooling(AbstractAlgorithm[PoolingState]):
         self.carried = np.round(self.carried)
 
     def _mean(self, received: np.ndarray) -> np.ndarray:
-        """(n_groups, halves * n_patches): of sums over the recent ends; patches without any take what their face has."""
+        """Return means over the recent ends from sums, (n_groups, halves * n_patches).
+
+        Patches without ends take the mean of their face.
+        """
         shape = (self.n_groups, self.halves, self.n)
         return means(received.reshape(shape), self.recent_ends.reshape(shape[1:]), self.sides).reshape(received.shape)
 
     def _drawn(self, first: int, count: int) -> list[Pairs]:
-        """Spans of each half of each replicate."""
+        """Draw the spans of each half of each replicate."""
         return [self.spans.draw(half, first, count) for half in range(self.halves)]
 
     def _gather(self, count: int) -> int:
-        """The next lines of each half: how many ends they have, all together."""
+        """Gather along the next lines of each half, and return the number of their ends."""
         drawn, step, ends_before, at = self._drawn(self.done, count), self.iteration, int(self.ends.sum()), 0
         for half, pairs in enumerate(drawn):
             here = slice(half * self.n, (half + 1) * self.n)
@@ -145,11 +152,11 @@ class Pooling(AbstractAlgorithm[PoolingState]):
         while at < count:
             length = min(step - (self.done + at) % step, count - at)
             batch = Ends.of([of_lines(pairs, at, at + length) for pairs in drawn], self.n)
-            # what a half carries is what the other has found
+            # a half carries what the other half has found
             ends, received = batch.number(self.ends.size), batch.received(self._exchanged(self.carried)).astype(np.int64)
             self.ends += ends
             self.received += received
-            # what is not a whole iteration yet waits for the rest of it
+            # an incomplete iteration is kept until the rest of it is traced
             self.fresh += received
             self.fresh_ends += ends
             at += length
@@ -165,7 +172,7 @@ class Pooling(AbstractAlgorithm[PoolingState]):
         return int(self.ends.sum()) - ends_before
 
     def _exchanged(self, values: np.ndarray) -> np.ndarray:
-        """The halves of each replicate in each other's place."""
+        """Return values with the two halves of each replicate exchanged."""
         return values.reshape(self.n_groups, self.replicates, HALVES, self.n)[:, :, ::-1].reshape(values.shape)
 
     def capture(self) -> PoolingState:

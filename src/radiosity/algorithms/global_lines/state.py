@@ -9,17 +9,17 @@ from ..firing.state import FiringState
 from ..merge_rules import alike
 from ..state import AbstractState, array, number, part
 
-HALVES = 2  # of a replicate of `Pooling`: each carries what the other has found
+HALVES = 2  # halves of a replicate of `Pooling`: each carries what the other has found
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MultipathState(AbstractState):
-    """Power on its way and landed.
+    """Power that patches have not sent yet, and power that arrived.
 
     Attributes:
         lines_done: global lines of each replicate so far.
         ends: (replicates, n_patches) int64, span ends on each patch.
-        ends_per_line: (n_patches,) float64, how many are expected for each line.
+        ends_per_line: (n_patches,) float64, the expected number of ends for each line.
         ledger: (groups, 4, replicates, 2) uint64, sums of `exchange.LEDGER`, upper and lower 32 bits.
         unshot, landed: (groups, replicates, n_patches) uint64, in fixed point.
         shot: the lines of the first shot, where there is one.
@@ -40,11 +40,11 @@ class MultipathState(AbstractState):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PoolingState(AbstractState):
-    """Sums of iterations, halves of replicates side by side; see `Pooling`.
+    """Sums of iterations, one half of a replicate after the other; see `Pooling`.
 
     Attributes:
         lines_done: global lines of each half so far.
-        replicates: independent runs.
+        replicates: the number of independent runs.
         shot: the lines of the first shot, where there is one.
     """
 
@@ -69,5 +69,5 @@ class PoolingState(AbstractState):
 
 
 def lines_of_half(quanta: int) -> int:
-    """Lines of each half of a replicate."""
+    """Return the number of lines of each half of a replicate."""
     return -(-quanta // HALVES)

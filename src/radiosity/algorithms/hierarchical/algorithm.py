@@ -1,4 +1,4 @@
-"""Hierarchical radiosity as a process: a round of refinement is a quantum."""
+"""Hierarchical radiosity as an algorithm: a round of refinement is a quantum."""
 
 import numpy as np
 
@@ -17,7 +17,10 @@ from .state import HierarchicalState
 
 
 class Hierarchical(AbstractAlgorithm[HierarchicalState]):
-    """N rounds, or as many as there are; each begins where the last one ended, so N alone tells the result."""
+    """Hierarchical radiosity. N is the number of rounds, at most all of them.
+
+    Each round begins where the last one ended, so the result depends on N alone.
+    """
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
@@ -51,7 +54,7 @@ class Hierarchical(AbstractAlgorithm[HierarchicalState]):
         self.wanted = self.rounds.complete
 
     def capture(self) -> HierarchicalState:
-        """Powers of groups of bands: each is that of its leading band."""
+        """Return the state. The power of each group of bands is that of its leading band."""
         groups, patches, rounds = self.problem.groups, self.problem.patches, self.rounds
         leader = [int(np.flatnonzero((groups.index == g) & (groups.scale == 1))[0]) for g in range(groups.n_groups)]
         power = patches.area[:, None] * (patches.emission + patches.reflectance * rounds.irradiance)
@@ -69,7 +72,7 @@ class Hierarchical(AbstractAlgorithm[HierarchicalState]):
         return HierarchicalState(sizes=self.sizes, solved=solved, **numbers)
 
     def _seen(self) -> np.ndarray:
-        """(n_patches,) how many links bring light to each."""
+        """The number of links that bring light to each patch, (n_patches,)."""
         links, levels = self.rounds.links, self.rounds.levels
         count = np.bincount(links.receiver[links.factor > 0], minlength=len(levels.area)).astype(float)
         return levels.push(count[:, None])[:, 0].astype(np.int64)

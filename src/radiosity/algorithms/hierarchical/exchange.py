@@ -10,11 +10,11 @@ from .links import Links
 
 
 class Exchange:
-    """Irradiance of patches from radiosity of patches, over links.
+    """Finds the irradiance of patches from the radiosity of patches, over links.
 
     Args:
-        levels: of all elements.
-        links: sorted.
+        levels: the values of all elements.
+        links: the links, sorted.
     """
 
     def __init__(self, levels: Levels, links: Links):
@@ -25,18 +25,19 @@ class Exchange:
         self.factors = csr_array((links.factor, links.source, starts), shape=(len(levels.area),) * 2)
 
     def gather(self, radiosity: np.ndarray) -> np.ndarray:
-        """(n_patches, n_bands) to (n_patches, n_bands)."""
+        """Return the irradiance from the radiosity, (n_patches, n_bands) each."""
         return self.levels.push(self.factors @ self.levels.pull(radiosity))
 
     def solve(
         self, emission: np.ndarray, reflectance: np.ndarray, begin: np.ndarray, tolerance: float, told: Callable[[int], None]
     ) -> np.ndarray:
-        """(n_patches, n_bands) irradiance H, where B = E + rho H and H comes from B: Jacobi iterations, each of which leaves at
-        most rho_max of an error where factors sum to at most one.
+        """Return the irradiance H, where B = E + rho H and H comes from B, (n_patches, n_bands).
+
+        It takes Jacobi iterations. Each leaves at most rho_max of an error where factors sum to at most one.
 
         Args:
             begin: an irradiance to begin with.
-            tolerance: of radiosity, relative to the largest one of its band.
+            tolerance: tolerance of radiosity, relative to the largest one of its band.
         """
         received, bound = begin, float(reflectance.max(initial=0.0))
         steps = 2 + (math.ceil(math.log(tolerance * (1 - bound) / 10) / math.log(bound)) if bound > 0 else 0)

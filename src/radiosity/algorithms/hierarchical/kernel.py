@@ -1,8 +1,9 @@
 """Form factors of pairs of elements without obstacles, and how much they vary over the receiver.
 
-Of near pairs the factor is exact (`factors.exchange`): a lamp a centimetre below a ceiling is seen by little of a patch, which
-no few points would find. Of others that from a point to a polygon is exact (`factors.from_points`), so quadrature is needed over
-one element only. The smaller one is taken, over which the factor varies less, and A_r F_rs = A_s F_sr does the rest.
+The factor of near pairs is exact (`factors.exchange`): a lamp a centimetre below a ceiling is seen by a small part of a patch,
+which a few points would miss. For other pairs, the factor from a point to a polygon is exact (`factors.from_points`), so
+quadrature is needed over one element only. The smaller element is taken, over which the factor varies less, and the other
+direction follows from A_r F_rs = A_s F_sr.
 """
 
 from dataclasses import dataclass
@@ -13,9 +14,9 @@ from ...factors.polygons import exchange, from_points
 from ...patches import Hierarchy, elements
 from .quadrature import extremes, gauss
 
-POINTS = 2  # each way
-GAP = 3.0  # times the smaller element's radius: pairs nearer than that are near
-PLANE = 1e-9  # of a scene's size: points nearer to a plane are in it
+POINTS = 2  # quadrature points along each direction
+GAP = 3.0  # pairs closer than 3 radii of the smaller element are near
+PLANE = 1e-9  # share of a scene's size: points closer to a plane are in it
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,16 +45,16 @@ class Shapes:
         return Shapes(element, corners, elements.normal(hierarchy, element), centroid, elements.area(hierarchy, element), radius)
 
     def take(self, rows: np.ndarray) -> "Shapes":
-        """Some of them (indices or mask)."""
+        """Return some of the shapes (indices or mask)."""
         return Shapes(*(value[rows] for value in vars(self).values()))
 
     def in_front(self, other: "Shapes", tolerance: float) -> np.ndarray:
-        """(m, 4) bool: corners of another element, in front of this one's plane."""
+        """Return which corners of another element lie in front of this one's plane, (m, 4) bool."""
         return np.einsum("mki,mi->mk", other.corners - self.centroid[:, None], self.normal) > tolerance
 
 
 def facing(hierarchy: Hierarchy, one: Shapes, other: Shapes) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) bool each: some part of each lies in front of the other's plane; and all of each does."""
+    """Return whether some part of each lies in front of the other's plane, and whether all of each does, (m,) bool each."""
     low, high = hierarchy.patches.scene.bounds
     tolerance = PLANE * float((high - low).max())
     corners = np.stack([one.in_front(other, tolerance), other.in_front(one, tolerance)])
@@ -61,7 +62,7 @@ def facing(hierarchy: Hierarchy, one: Shapes, other: Shapes) -> tuple[np.ndarray
 
 
 def unoccluded(hierarchy: Hierarchy, receiver: Shapes, source: Shapes) -> np.ndarray:
-    """(m,) float64 F_rs, the share of what leaves the receiver that arrives at the source, without obstacles."""
+    """Return F_rs, the share of what leaves the receiver that arrives at the source, without obstacles, (m,) float64."""
     swap = source.area < receiver.area * (1 - 1e-9)
     gap = np.linalg.norm(receiver.centroid - source.centroid, axis=1) - np.maximum(receiver.radius, source.radius)
     near = gap < GAP * np.minimum(receiver.radius, source.radius)
@@ -77,7 +78,7 @@ def unoccluded(hierarchy: Hierarchy, receiver: Shapes, source: Shapes) -> np.nda
 
 
 def samples(hierarchy: Hierarchy, receiver: Shapes, source: Shapes) -> np.ndarray:
-    """(m, 5) float64: the factor from the receiver's corners and middle to the source."""
+    """Return the factor from the receiver's corners and middle to the source, (m, 5) float64."""
     return _at(hierarchy, receiver, source, *extremes())
 
 
@@ -90,7 +91,7 @@ def _mean(hierarchy: Hierarchy, here: Shapes, there: Shapes, order: int) -> np.n
 
 
 def _at(hierarchy: Hierarchy, here: Shapes, there: Shapes, square: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """(m, q) factors from points of elements to other elements."""
+    """Return the factors from points of elements to other elements, (m, q)."""
     points = elements.points(hierarchy, here.element, square, half)
     count = points.shape[1]
     values = from_points(points.reshape(-1, 3), np.repeat(here.normal, count, axis=0), np.repeat(there.corners, count, axis=0))

@@ -11,10 +11,10 @@ from ...patches import Hierarchy, elements
 
 @dataclass(frozen=True, eq=False)
 class Levels:
-    """What is asked of every element again and again, as arrays over all elements.
+    """Facts of elements that are needed often, as arrays over all elements.
 
     Attributes:
-        hierarchy: whose elements they are.
+        hierarchy: the hierarchy of the elements.
     """
 
     hierarchy: Hierarchy
@@ -25,22 +25,22 @@ class Levels:
 
     @cached_property
     def parent(self) -> np.ndarray:
-        """(n_elements,) int64, -1 for roots."""
+        """The parent of each element, (n_elements,) int64, -1 for roots."""
         return self.hierarchy.parent(self._every)
 
     @cached_property
     def area(self) -> np.ndarray:
-        """(n_elements,) float64, m²."""
+        """The area of each element, (n_elements,) float64, m²."""
         return elements.area(self.hierarchy, self._every)
 
     @cached_property
     def is_leaf(self) -> np.ndarray:
-        """(n_elements,) bool."""
+        """True where an element is a patch, (n_elements,) bool."""
         return self.hierarchy.is_leaf(self._every)
 
     @cached_property
     def leaf(self) -> np.ndarray:
-        """(n_patches,) int64, the element that each patch is."""
+        """The element that each patch is, (n_patches,) int64."""
         return self.hierarchy.leaf(np.arange(len(self.hierarchy.patches)))
 
     @cached_property
@@ -52,10 +52,10 @@ class Levels:
         return tuple(order[begin:end] for begin, end in pairwise(ends))
 
     def push(self, values: np.ndarray) -> np.ndarray:
-        """(n_patches, n_bands): what reaches each patch by its element and by all that hold it.
+        """Return what reaches each patch by its element and by all elements that hold it, (n_patches, n_bands).
 
         Args:
-            values: (n_elements, n_bands) per area, as irradiance is: of an element alone.
+            values: (n_elements, n_bands) values per area, such as irradiance, of each element alone.
         """
         total = values.copy()
         for element in self.below:
@@ -63,7 +63,7 @@ class Levels:
         return total[self.leaf]
 
     def pull(self, values: np.ndarray) -> np.ndarray:
-        """(n_elements, n_bands): means over elements of a value per area.
+        """Return means over elements of a value per area, (n_elements, n_bands).
 
         Args:
             values: (n_patches, n_bands).
@@ -80,7 +80,7 @@ class Levels:
             band += np.bincount(parent, weights=band[element], minlength=len(band))
 
     def extremes(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest of patches' values within each element, (n_elements, n_bands) each."""
+        """Return the lowest and highest of patches' values within each element, (n_elements, n_bands) each."""
         low, high = np.full((len(self.area), values.shape[1]), np.inf), np.full((len(self.area), values.shape[1]), -np.inf)
         low[self.leaf] = high[self.leaf] = values
         for element in reversed(self.below):

@@ -13,7 +13,7 @@ class Links:
         receiver, source: (m,) int64, elements.
         factor: (m,) float64, F_rs with obstacles: the share of what leaves the receiver that arrives at the source, so that the
             receiver's irradiance is factor times the source's radiosity.
-        spread: (m,) float64, of the factor, by which the refinement judges the link (see `oracle`).
+        spread: (m,) float64, how much the factor varies, by which the refinement judges the link (see `oracle`).
     """
 
     receiver: np.ndarray
@@ -29,12 +29,12 @@ class Links:
         return len(self.receiver)
 
     def take(self, rows: np.ndarray) -> "Links":
-        """Some of them (indices, mask or slice)."""
+        """Return some of the links (indices, mask or slice)."""
         return Links(*(value[rows] for value in vars(self).values()))
 
     @staticmethod
     def joined(parts: list["Links"]) -> "Links":
-        """All of them, by receiver and source: sums over links then have one order, however they were found."""
+        """Return all links of several parts, sorted by receiver and source: sums over links then have one order."""
         columns = [np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])]
         order = np.lexsort((columns[1], columns[0]))
         return Links(*(column[order] for column in columns))

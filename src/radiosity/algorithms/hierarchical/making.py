@@ -1,4 +1,4 @@
-"""From pairs of elements to links: form factor, visible share, and by how much they may be wrong."""
+"""Links made from pairs of elements: form factor, visible share, and by how much they may be wrong."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,15 +19,15 @@ Told = Callable[[int], None]
 
 @dataclass(eq=False)
 class Maker:
-    """Makes links, and counts what that takes.
+    """Makes links, and counts rays and pairs.
 
     Attributes:
         geometry: the scene on a device, or None where no rays are asked for.
         hierarchy: the elements.
-        parameters: rays and what they are for.
+        parameters: the parameters, such as the number of rays.
         told: called after each batch with the rays traced for it; it may raise.
-        rays: traced so far.
-        pairs: looked at so far.
+        rays: rays traced so far.
+        pairs: pairs looked at so far.
     """
 
     geometry: Geometry | None
@@ -38,7 +38,7 @@ class Maker:
     pairs: int = 0
 
     def make(self, receiver: np.ndarray, source: np.ndarray) -> Links:
-        """Links of those pairs that face each other at all, in the order given."""
+        """Return links for the pairs that face each other, in the order given."""
         parts = [self._batch(receiver[at : at + BATCH], source[at : at + BATCH]) for at in range(0, len(receiver), BATCH)] or [
             Links.none()
         ]
@@ -60,7 +60,7 @@ class Maker:
         return Links(one.element, other.element, factor * share, spread)
 
     def _visible(self, receiver: Shapes, source: Shapes) -> tuple[np.ndarray, int]:
-        """Visible shares, from the source's side since light goes that way, and the rays that they took."""
+        """Return visible shares, with rays from the source as light goes, and the number of rays."""
         count = len(receiver.element)
         if self.geometry is None or count == 0:
             return np.ones(count), 0
@@ -69,8 +69,10 @@ class Maker:
         return visible_share(self.geometry, one, other, rays, self.parameters.seed), count * rays
 
     def _spread(self, one: Shapes, other: Shapes, factor: np.ndarray, share: np.ndarray, whole: np.ndarray) -> np.ndarray:
-        """The largest difference of a point's factor from the link's. Where obstacles hide a part, points may see all or
-        nothing."""
+        """Return the largest difference of a point's factor from the link's.
+
+        Where obstacles hide a part, points may see all or nothing.
+        """
         values = samples(self.hierarchy, one, other)
         high, low = values.max(axis=1), values.min(axis=1)
         high = np.where(whole, high, np.maximum(high, _disc(one, other)))
@@ -80,12 +82,14 @@ class Maker:
 
 
 def _seen(value: np.ndarray, share: np.ndarray, rays: int) -> np.ndarray:
-    """A bound where no ray came through: some share may be visible still, by Laplace's rule one in rays + 2."""
+    """Return a bound where no ray came through: some share may still be visible, by Laplace's rule one in rays + 2."""
     return np.where(share > 0, value, value / (rays + 2))
 
 
 def _disc(receiver: Shapes, source: Shapes) -> np.ndarray:
-    """A bound, roughly, of the factor from a point of the receiver to the source, turned as may be: pairs that look over each
-    other's planes in part are judged by it, since points of quadrature may miss the part."""
+    """Return a rough bound of the factor from a point of the receiver to the source, for any directions of the two.
+
+    It judges pairs that are partly behind each other's planes, since points of quadrature may miss the visible part.
+    """
     square = ((receiver.centroid - source.centroid) ** 2).sum(axis=1)
     return source.area / (np.pi * square + source.area)

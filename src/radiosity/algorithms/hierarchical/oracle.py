@@ -1,16 +1,16 @@
-"""Which links are too coarse.
+"""Oracles, which decide which links are too coarse.
 
-brightness-factor (P. Hanrahan, D. Salzman, L. Aupperle, "A rapid hierarchical radiosity algorithm", SIGGRAPH 1991): by the power
-that a link carries, F B_s A_r; the error of an irradiance held constant over the receiver is at most a share of it.
+brightness-factor (P. Hanrahan, D. Salzman, L. Aupperle, "A rapid hierarchical radiosity algorithm", SIGGRAPH 1991) judges by the
+power that a link carries, F B_s A_r; the error of an irradiance held constant over the receiver is at most a share of it.
 
 error-radiance and error-power (P. Bekaert, Y. Willems, "Error control for radiosity", Eurographics Workshop on Rendering, 1996)
 judge by the link's part of delta in equation 6 of the paper, at the point of the receiver where it is largest,
 
     rho_r (dK B_s + F max |B(y) - B_s|),
 
-with dK the largest difference of the factor of a point of the receiver from the mean, and max |B(y) - B_s| that of a patch of the
-source from its mean. Radiance norm: that; power norm: that times A_r. A receiver that reflects nothing is judged as if it
-reflected all: its irradiance is asked for.
+with dK the largest difference of the factor of a point of the receiver from the mean, and max |B(y) - B_s| the largest difference
+of a patch of the source from its mean. This is the radiance norm; the power norm is this times A_r. A receiver that reflects
+nothing is judged as if it reflected all, since its irradiance is a result, too.
 """
 
 from dataclasses import dataclass
@@ -28,8 +28,8 @@ class Oracle:
     """Judges links.
 
     Attributes:
-        levels: of all elements.
-        parameters: epsilon is given to `too_coarse` apart, since rounds change it.
+        levels: the values of all elements.
+        parameters: the parameters; `too_coarse` takes epsilon as an argument, since rounds change it.
     """
 
     levels: Levels
@@ -41,7 +41,7 @@ class Oracle:
 
     @cached_property
     def limit(self) -> np.ndarray:
-        """(n_bands,): what epsilon is a share of, W or W/m²."""
+        """The power or radiosity that epsilon is a share of, (n_bands,) W or W/m²."""
         patches = self.levels.hierarchy.patches
         if self.parameters.refinement == "error-radiance":
             return patches.emission.max(axis=0)
@@ -49,20 +49,22 @@ class Oracle:
 
     @cached_property
     def weight(self) -> np.ndarray:
-        """(n_elements, n_bands): the largest reflectance within each element, 1 where nothing is reflected."""
+        """The largest reflectance within each element, 1 where nothing is reflected, (n_elements, n_bands)."""
         _, high = self.levels.extremes(self.levels.hierarchy.patches.reflectance)
         return np.where((high > 0).any(axis=1, keepdims=True), high, 1.0)
 
     def parts(self, links: Links, radiosity: "Radiosity") -> tuple[np.ndarray, np.ndarray]:
-        """(m, n_bands) W/m² each, of irradiance: what varies over the receiver (all of F B_s, for brightness-factor), and what
-        varies over the source."""
+        """Return the parts of an irradiance that vary over the receiver and over the source, (m, n_bands) W/m² each.
+
+        For brightness-factor the first is all of F B_s.
+        """
         carried = links.spread[:, None] * radiosity.mean[links.source]
         if not self.by_error:
             return carried, np.zeros_like(carried)
         return carried, links.factor[:, None] * radiosity.deviation[links.source]
 
     def _weighted(self, links: Links, values: np.ndarray) -> np.ndarray:
-        """(m,): irradiance by what of it matters, the largest of the bands, over what epsilon is a share of."""
+        """Return irradiance in the norm of the oracle, over what epsilon is a share of, the largest of the bands, (m,)."""
         if self.by_error:
             values = values * self.weight[links.receiver]
         if self.parameters.refinement != "error-radiance":
@@ -70,15 +72,15 @@ class Oracle:
         return np.divide(values, self.limit, out=np.zeros_like(values), where=self.limit > 0).max(axis=1)
 
     def too_coarse(self, links: Links, radiosity: "Radiosity", epsilon: float) -> np.ndarray:
-        """(m,) bool: judged too coarse, and not yet from patch to patch."""
+        """Return which links are too coarse and not yet from patch to patch, (m,) bool."""
         leaf, (here, there) = self.levels.is_leaf, self.parts(links, radiosity)
         return (self._weighted(links, here + there) > epsilon) & ~(leaf[links.receiver] & leaf[links.source])
 
     def divides_receiver(self, links: Links, radiosity: "Radiosity") -> np.ndarray:
-        """(m,) bool: which end of coarse links to divide; a patch never is.
+        """Return whether to divide the receiver of coarse links, or else the source, (m,) bool; a patch is never divided.
 
-        Of brightness-factor links it is the larger one, the receiver where they are equal, as published. Of the others it is the
-        one with the larger part in the error, which with as many links halves the error in our scenes: dividing the source makes
+        With brightness-factor it is the larger end, the receiver where they are equal, as published. With the others it is the
+        end with the larger part in the error, which with as many links halves the error in our scenes: dividing the source makes
         four small errors of one, but their sum is no smaller.
         """
         leaf, area = self.levels.is_leaf, self.levels.area
@@ -94,8 +96,8 @@ class Radiosity:
     """Radiosity of all elements, (n_elements, n_bands) W/m² each.
 
     Attributes:
-        mean: over the element.
-        deviation: largest difference of a patch of the element from it.
+        mean: the mean over the element.
+        deviation: the largest difference of a patch of the element from the mean.
     """
 
     mean: np.ndarray
@@ -103,6 +105,6 @@ class Radiosity:
 
     @staticmethod
     def of(levels: Levels, patches: np.ndarray) -> "Radiosity":
-        """From radiosities of patches, (n_patches, n_bands)."""
+        """Return the radiosity of elements from that of patches, (n_patches, n_bands)."""
         mean, (low, high) = levels.pull(patches), levels.extremes(patches)
         return Radiosity(mean, np.maximum(np.maximum(high - mean, mean - low), 0.0))

@@ -1,4 +1,4 @@
-"""What hierarchical radiosity is told."""
+"""The parameters of hierarchical radiosity."""
 
 from dataclasses import dataclass
 
@@ -12,20 +12,22 @@ REFINEMENTS = tuple(schemes.REFINEMENTS)
 
 @dataclass(frozen=True)
 class Hierarchical:
-    """Attributes:
+    """The parameters of hierarchical radiosity.
+
+    Attributes:
     epsilon: links whose error exceeds this are refined; a pure number, so that neither units nor the scene's size or
         brightness matter.
         brightness-factor: F B_s A_r over the total emitted power of the scene. error-radiance: the link's error of radiosity
         over the largest emitted radiosity. error-power: that error times A_r, over the total emitted power. See `oracle`.
     refinement: one of `REFINEMENTS`.
-    rays: of a link, for the share of it that meets no obstacle; 0 where there are none to meet.
+    rays: rays of a link, which find its visible share; 0 where there are no obstacles.
     coarsest: the first round's epsilon over ``epsilon``, a power of ``step``: rounds go from there down to ``epsilon``.
-    step: from round to round.
-    tolerance: of the solution with given links, relative to the largest radiosity of a band.
-    seed: of the rays.
+    step: the factor of epsilon from round to round.
+    tolerance: tolerance of the solution with given links, relative to the largest radiosity of a band.
+    seed: the seed of the rays.
 
     Raises:
-        MethodError: values without sense.
+        MethodError: a value out of its range.
     """
 
     epsilon: float = 1e-5

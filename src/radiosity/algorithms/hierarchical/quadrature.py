@@ -5,14 +5,16 @@ from functools import cache
 
 import numpy as np
 
-INSET = 0.05  # of a side: how far corner samples lie within their element, off the rims of polygons that touch it there
+INSET = 0.05  # share of a side: distance of corner samples from the corners, away from polygons that touch the element there
 
 
 @dataclass(frozen=True, eq=False)
 class Rule:
-    """Attributes:
+    """A quadrature rule.
+
+    Attributes:
     square, half: (q, 2) points of a parallelogram and of a triangle.
-    square_weights, half_weights: (q,) with a sum of 1.
+    square_weights, half_weights: (q,) weights with a sum of 1.
     """
 
     square: np.ndarray
@@ -23,8 +25,10 @@ class Rule:
 
 @cache
 def gauss(order: int) -> Rule:
-    """Gauss-Legendre points, ``order`` each way; on triangles drawn together towards a corner (A. H. Stroud, "Approximate
-    calculation of multiple integrals", 1971, conical product)."""
+    """Return Gauss-Legendre points, ``order`` along each direction.
+
+    On triangles it is the conical product (A. H. Stroud, "Approximate calculation of multiple integrals", 1971).
+    """
     x, w = np.polynomial.legendre.leggauss(order)
     x, w = (x + 1) / 2, w / 2
     s, t = (grid.ravel() for grid in np.meshgrid(x, x, indexing="ij"))
@@ -35,7 +39,7 @@ def gauss(order: int) -> Rule:
 
 @cache
 def extremes() -> tuple[np.ndarray, np.ndarray]:
-    """(5, 2) each: the corners, drawn in a little, and the middle, at which values over an element are compared."""
+    """Return the points at which values over an element are compared, (5, 2) each: corners, a little inwards, and middle."""
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.5]])
     third = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0.5], [1 / 3, 1 / 3]])
     return INSET + (1 - 2 * INSET) * corners, INSET + (1 - 3 * INSET) * third

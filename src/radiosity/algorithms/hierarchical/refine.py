@@ -1,4 +1,4 @@
-"""Coarse links are replaced by links of children, until none is too coarse."""
+"""The refinement of links: coarse links are replaced by links of children, until none is too coarse."""
 
 import numpy as np
 
@@ -7,11 +7,11 @@ from .links import Links
 from .making import Maker
 from .oracle import Oracle, Radiosity
 
-MOST_LINKS = 1 << 25  # 1 GiB, and three times as much while they are sorted
+MOST_LINKS = 1 << 25  # links take 1 GiB, and three times as much while they are sorted
 
 
 def refined(links: Links, oracle: Oracle, maker: Maker, radiosity: Radiosity, epsilon: float) -> tuple[Links, bool]:
-    """The links that suffice for a radiosity, and whether any is new.
+    """Return the links that suffice for a radiosity, and whether any is new.
 
     Raises:
         MethodError: more links than can be kept.
@@ -35,7 +35,7 @@ def refined(links: Links, oracle: Oracle, maker: Maker, radiosity: Radiosity, ep
 
 
 def split(links: Links, oracle: Oracle, radiosity: Radiosity) -> tuple[np.ndarray, np.ndarray]:
-    """Receivers and sources of the pairs that take the place of coarse links."""
+    """Return the receivers and sources of the pairs that replace coarse links."""
     here = oracle.divides_receiver(links, radiosity)
     children = oracle.levels.hierarchy.children(np.where(here, links.receiver, links.source))
     other = np.where(here, links.source, links.receiver)[:, None]

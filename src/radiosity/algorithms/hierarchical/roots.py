@@ -13,15 +13,15 @@ from ..estimate import LONG
 from .kernel import PLANE
 from .refine import MOST_LINKS
 
-MOST_PAIRS = 1 << 33  # of sides: minutes of looking which face each other
-BYTES = 128  # of a link, while links are sorted
-SECONDS = 2e-5  # of a link with 16 rays, roughly, on two cores
+MOST_PAIRS = 1 << 33  # most pairs of sides: it takes minutes to find which face each other
+BYTES = 128  # bytes of a link, while links are sorted
+SECONDS = 2e-5  # rough time of a link with 16 rays, on two cores
 BLOCK = 1 << 22  # pairs looked at together
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """What first links take at most: pairs of sides, bytes, and roughly seconds. Refinement adds to it."""
+    """The most that first links take: pairs of sides, bytes, and rough seconds. Refinement adds to it."""
 
     pairs: int
     bytes: int
@@ -32,13 +32,13 @@ class Estimate:
 
 
 def estimate(hierarchy: Hierarchy) -> Estimate:
-    """Before anything is done: all pairs of two sides of different faces, as if each faced each."""
+    """Return the estimate before the run: it counts all pairs of two sides of different faces, as if all faced each other."""
     sides = len(hierarchy.side_face)
     return _of(sides * (sides - 1) - 2 * int(hierarchy.side_is_back.sum()))
 
 
 def check(hierarchy: Hierarchy) -> None:
-    """Refuse what cannot be begun.
+    """Refuse a hierarchy with too many pairs.
 
     Raises:
         MethodError: too many pairs of sides.
@@ -47,10 +47,10 @@ def check(hierarchy: Hierarchy) -> None:
 
 
 def root_pairs(hierarchy: Hierarchy, told: Callable[[int], None] = lambda rays: None) -> tuple[np.ndarray, np.ndarray]:
-    """Receivers and sources, root elements, that face each other; ``told(0)`` is called now and then, and may raise.
+    """Return receivers and sources, root elements, that face each other; ``told(0)`` is called now and then, and may raise.
 
     Raises:
-        MethodError: too many of them.
+        MethodError: there are too many pairs.
     """
     check(hierarchy)
     roots = hierarchy.first[:-1]
@@ -77,7 +77,7 @@ def root_pairs(hierarchy: Hierarchy, told: Callable[[int], None] = lambda rays: 
 
 
 def _in_front(normal: np.ndarray, height: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(a, b) bool: some corner of each of b polygons lies in front of each of a planes."""
+    """Return whether some corner of each of b polygons lies in front of each of a planes, (a, b) bool."""
     return (normal @ corners.reshape(-1, 3).T).reshape(len(normal), -1, 4).max(axis=2) > height[:, None]
 
 

@@ -1,4 +1,4 @@
-"""Refine, solve, and refine for the solution found, with smaller and smaller epsilon (multigridding)."""
+"""Rounds of hierarchical radiosity: refine, solve, and refine for that solution, with ever smaller epsilon (multigridding)."""
 
 from dataclasses import dataclass
 
@@ -23,8 +23,8 @@ class Pass:
     """One solution with given links.
 
     Attributes:
-        epsilon: of its links.
-        links: how many.
+        epsilon: the epsilon of its links.
+        links: the number of links.
         change: the largest change of a radiosity since the pass before, over the largest radiosity of its band.
     """
 
@@ -37,9 +37,9 @@ class Rounds:
     """A solution that each round makes better; arguments as in `solve.solve_hierarchical`.
 
     Attributes:
-        complete: rounds so far.
+        complete: the number of complete rounds.
         irradiance: (n_patches, n_bands) float64, with the links so far.
-        links: sorted; before the first round those between whole sides are made.
+        links: the links, sorted; before the first round, links between whole sides are made.
         history: every pass.
     """
 
@@ -57,7 +57,7 @@ class Rounds:
         return self.complete == len(self.parameters.rounds)
 
     def advance(self) -> None:
-        """The next round; if ``told`` ends it by raising, what it began is lost and it may be called again."""
+        """Make the next round. If ``told`` ends it with an exception, its work is lost, and it may be called again."""
         epsilon = self.parameters.rounds[self.complete]
         links = Links.joined([self.maker.make(*root_pairs(self.hierarchy, self.told))]) if self.complete == 0 else self.links
         irradiance, history, new = self.irradiance, list(self.history), True

@@ -1,4 +1,4 @@
-"""Hierarchical radiosity from begin to end, and what it found."""
+"""Hierarchical radiosity from beginning to end, and its result."""
 
 from dataclasses import dataclass
 
@@ -17,14 +17,16 @@ from .rounds import ROUGH, Pass, Rounds
 
 @dataclass(frozen=True, eq=False)
 class HierarchicalResult:
-    """Attributes:
+    """The result of hierarchical radiosity.
+
+    Attributes:
     irradiance, radiosity: (n_patches, n_bands) float64, W/m² or lm/m².
     indicated: (n_patches, n_bands) float64: the errors of irradiance of all links, summed without their signs and sent on as
-        light is (equation 6 of the paper): well above the true error. NaN for brightness-factor, which tells no error.
-    links, hidden: how many at the end, and how many of them carry nothing, since no ray came through.
-    elements: how many there are in the trees that the links ask for.
-    pairs: form factors computed, for links replaced later too.
-    rays: traced.
+        light is (equation 6 of the paper): well above the true error. NaN for brightness-factor, which gives no error.
+    links, hidden: the number of links at the end, and of those that carry nothing, since no ray came through.
+    elements: the number of elements in the trees that the links need.
+    pairs: form factors computed, also for links that were replaced later.
+    rays: rays traced.
     history: every pass.
     final: the links themselves.
     """
@@ -44,19 +46,19 @@ class HierarchicalResult:
 def solve_hierarchical(
     patches: Patches, geometry: Geometry | None = None, parameters: Hierarchical | None = None, told: Told = lambda rays: None
 ) -> HierarchicalResult:
-    """B = E + rho H over links of elements whose leaves are the patches.
+    """Solve B = E + rho H over links of elements whose leaves are the patches.
 
     The same arguments give the same bits.
 
     Args:
-        patches: cut by ``subdivide(..., powers_of_two=True)``.
-        geometry: the same patches on a device; None: nothing stands between any two faces, and no rays are traced.
-        parameters: epsilon and the rest.
+        patches: patches cut by ``subdivide(..., powers_of_two=True)``.
+        geometry: the same patches on a device; None: there are no obstacles between faces, and no rays are traced.
+        parameters: the parameters.
         told: called between batches with the rays traced since; it may raise.
 
     Raises:
         SceneError: patches that are no leaves of a hierarchy.
-        MethodError: more links than there is room for.
+        MethodError: more links than fit into memory.
     """
     rounds = Rounds(patches, geometry, parameters or Hierarchical(), told)
     while not rounds.done:
@@ -84,13 +86,13 @@ def solve_hierarchical(
 
 
 def _delta(levels: Levels, links: Links, errors: np.ndarray) -> np.ndarray:
-    """(n_patches, n_bands): the errors of all links that reach a patch, summed."""
+    """Return the sum of the errors of all links that reach a patch, (n_patches, n_bands)."""
     columns = [np.bincount(links.receiver, weights=band, minlength=len(levels.area)) for band in errors.T]
     return levels.push(np.stack(columns, axis=1))
 
 
 def _elements(levels: Levels, links: Links) -> int:
-    """Elements at the ends of links, those that hold them, and the siblings of all."""
+    """Return the number of elements at the ends of links, of those that hold them, and of the siblings of all."""
     used = np.zeros(len(levels.area), bool)
     used[links.receiver] = used[links.source] = True
     divided = np.zeros_like(used)

@@ -1,4 +1,4 @@
-"""What hierarchical radiosity tells of a round; its links are not kept."""
+"""The state of hierarchical radiosity after a round; links are not kept."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from ..state import number
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HierarchicalState(AbstractSolvedState):
-    """Rounds of refinement made, and links between elements after them."""
+    """The numbers of complete rounds, and of links between elements after them."""
 
     alone = ALONE["hierarchical"]
 

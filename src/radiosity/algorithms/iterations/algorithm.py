@@ -1,4 +1,4 @@
-"""Stochastic Jacobi iterations of local lines as a process.
+"""Stochastic Jacobi iterations of local lines as an algorithm.
 
 L. Neumann, W. Purgathofer, R. F. Tobler, A. Neumann, P. Elias, M. Feda and X. Pueyo, "The stochastic ray method for
 radiosity", Eurographics Rendering Workshop 1995; P. Bekaert, "Hierarchical and stochastic algorithms for radiosity", thesis,
@@ -17,7 +17,7 @@ from .tally import IterationTally
 
 
 class Iteration(AbstractAlgorithm[IterationState]):
-    """Orders ``incremental`` and ``regular``, which share how power is sent, and differ in what is."""
+    """Runs the orders ``incremental`` and ``regular``, which send power in the same way, but not the same power."""
 
     def __init__(self, *arguments):
         super().__init__(*arguments)

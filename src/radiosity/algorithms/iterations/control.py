@@ -1,8 +1,8 @@
 """A constant control variate: a radiosity beta is taken out of what lines carry, and put back exactly.
 
 H_i = sum_j F_ij B_j = beta f_i + sum_j F_ij (B_j - beta), where f_i = sum_j F_ij is 1 in a closed scene and 1 less the share of
-its lines that patch i misses in any other. Lines fired for nothing else measure that share, so the form holds in open scenes
-too: exactly where nothing is missed, and with the error of those lines where something is. (P. Bekaert, "Hierarchical and
+its lines that patch i misses in any other. Probing lines, fired for this alone, measure that share, so the form holds in open
+scenes, too: exactly where nothing is missed, and else with the error of these lines. (P. Bekaert, "Hierarchical and
 stochastic algorithms for radiosity", thesis, K. U. Leuven 1999; docs/iterations.md.)
 """
 
@@ -14,7 +14,7 @@ from ...tally.shooter import Ends
 from .exchange import BITS, LINE, Exchange
 from .state import ControlState
 
-SHARE = 8  # one line in so many measures what is missed
+SHARE = 8  # one line in 8 measures the share of missed lines
 
 
 class Control:
@@ -33,7 +33,7 @@ class Control:
         self.probed = np.zeros((replicates, n), np.int64)
 
     def probe(self, lines: int) -> int:
-        """Fire ``lines`` of each replicate, evenly over all area and at least one a patch, to see which are missed."""
+        """Fire ``lines`` of each replicate, evenly over all area and at least one a patch, to count which are missed."""
         exchange, types = self.exchange, self.exchange.types
         counts = dr.maximum(exchange.counts(types.UInt64(exchange.area * dr.opaque(types.Float64, float(lines) * LINE))), 1)
         slots, groups, replicates = exchange.shooter.slots, exchange.groups, exchange.replicates
@@ -47,16 +47,16 @@ class Control:
         return fired
 
     def kept(self) -> np.ndarray:
-        """(replicates, n_patches) float64: f_i, from all probing lines so far."""
+        """The share f_i of lines that hit patches, from all probing lines so far, (replicates, n_patches) float64."""
         return kept(self.missed, self.probed)
 
     def constant(self):
-        """(total * groups,) Float64: the power A_i beta / Phi of the constant on each patch."""
+        """Return the power A_i beta / Phi of the constant on each patch, (total * groups,) Float64."""
         exchange = self.exchange
         return upload(exchange.types.Float64, self.beta[:, None, :] * exchange.areas[:, None])
 
     def received(self):
-        """(total * groups,) Float64: the power f_i A_i beta / Phi that patches receive of it."""
+        """Return the power f_i A_i beta / Phi that patches receive of the constant, (total * groups,) Float64."""
         return self.constant() * self.exchange.by_patch(upload(self.exchange.types.Float64, self.kept()))
 
     def adapt(self, power) -> None:
@@ -68,27 +68,27 @@ class Control:
                 self.beta[replicate, group] = median(value[replicate, :, group], exchange.areas)
 
     def capture(self) -> ControlState:
-        """Copies."""
+        """Return copies of the numbers."""
         beta, missed, probed = self.beta.copy(), self.missed.copy(), self.probed.copy()
         return ControlState(sizes=self.exchange.sizes, beta=beta, probe_missed=missed, probed=probed)
 
     def restore(self, state: ControlState) -> None:
-        """Put captured numbers back."""
+        """Set the numbers to captured ones."""
         self.beta, self.missed, self.probed = state.beta.copy(), state.probe_missed.copy(), state.probed.copy()
 
 
 def kept(missed: np.ndarray, probed: np.ndarray) -> np.ndarray:
-    """Share of the probing lines that landed on patches."""
+    """Return the share of the probing lines that hit patches."""
     return 1 - missed.sum(axis=0) / np.maximum(probed, 1)
 
 
 def median(values: np.ndarray, weights: np.ndarray) -> float:
-    """The value at which the weights of smaller and of larger values are equal."""
+    """Return the value at which the weights of smaller and of larger values are equal."""
     order = np.argsort(values)
     below = np.cumsum(weights[order])
     return float(values[order[np.searchsorted(below, below[-1] / 2)]])
 
 
 def source_constant(emission: np.ndarray, reflectance: np.ndarray, areas: np.ndarray) -> float:
-    """The constant for which the remaining source, sum A |E - (1 - rho) beta|, is least."""
+    """Return the constant for which the remaining source, sum A |E - (1 - rho) beta|, is least."""
     return median(emission / (1 - reflectance), areas * (1 - reflectance))

@@ -1,8 +1,8 @@
 """One stochastic Jacobi step: patches send powers along local lines, and patches receive them.
 
-How many lines a patch fires is what it expects, rounded systematically: with offset r, uniform in [0, 1), patch i fires
+The number of lines of a patch is its expectation c_i, rounded systematically: with offset r, uniform in [0, 1), patch i fires
 floor(C_i + r) - floor(C_(i-1) + r) lines, where C_i is the sum of expectations up to it. Each count is one of the two whole
-numbers beside c_i, and its mean is c_i.
+numbers next to c_i, and its mean is c_i.
 """
 
 import drjit as dr
@@ -23,19 +23,19 @@ TURNS = 2  # sequences that steps take in turn where both ends of a line score (
 
 
 class Exchange:
-    """Powers out, powers in.
+    """Sends powers along lines, and receives them.
 
     Arrays over patches and groups are flat, group g of patch number m at m * n_groups + g.
 
     Attributes:
-        shooter: fires.
+        shooter: fires the lines.
         n, replicates, groups, total: sizes; total is n * replicates.
         area: (total,) Float64, share of each patch in the area of all.
-        rho: (total * groups,) Float64, reflectance as the integers of the firing engine have it.
+        rho: (total * groups,) Float64, reflectance, rounded as in the firing engine.
         emitted: (total * groups,) Float64, E_i A_i over Phi.
-        step: how many steps were made: each has rounding offsets of its own.
-        turns: sequences of points that steps take in turn; a warm-up has others, so many too.
-        first: of the sequences that are taken now.
+        step: the number of steps so far: each has rounding offsets of its own.
+        turns: the number of sequences of points that steps take in turn; a warm-up has as many others.
+        first: the first of the sequences that are used now.
     """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
@@ -59,36 +59,36 @@ class Exchange:
 
     @property
     def sizes(self) -> Sizes:
-        """Of states."""
+        """The sizes of states."""
         return Sizes(self.replicates, self.n, self.groups)
 
     def _tiled(self, values: np.ndarray):
         return upload(self.types.Float64, np.tile(values.ravel(), self.replicates))
 
     def by_patch(self, values):
-        """(total,) array spread over the groups."""
+        """Spread a (total,) array over the groups."""
         return values if self.groups == 1 else dr.repeat(values, self.groups)
 
     def by_replicate(self, values: np.ndarray):
-        """(replicates,) float64 spread over patches: (total,) Float64."""
+        """Spread (replicates,) float64 over patches, to (total,) Float64."""
         return dr.gather(self.types.Float64, upload(self.types.Float64, np.append(values, 0.0)), self.replicate)
 
     def by_slot(self, values: np.ndarray):
-        """(replicates,) float64 spread over slots and groups."""
+        """Spread (replicates,) float64 over slots and groups."""
         return dr.gather(self.types.Float64, upload(self.types.Float64, np.append(values, 0.0)), self.slot_replicate)
 
     def largest(self, values):
-        """(total * groups,) to the largest magnitude of the groups, (total,)."""
+        """Return the largest magnitude of the groups, from (total * groups,) to (total,)."""
         return dr.abs(values) if self.groups == 1 else dr.block_reduce(dr.ReduceOp.Max, dr.abs(values), self.groups)
 
     def sums(self, values) -> np.ndarray:
-        """(total,) whole numbers to their sum in each replicate, (replicates,)."""
+        """Return the sum of (total,) whole numbers in each replicate, (replicates,)."""
         sums = dr.block_reduce(dr.ReduceOp.Add, values, self.n)
         dr.eval(sums)
         return np.array(sums)
 
     def counts(self, expected):
-        """Lines that patches fire in this step: (total,) UInt32, from their expectation in units of 1 / LINE."""
+        """Return the lines that patches fire in this step, (total,) UInt32, from their expectation in units of 1 / LINE."""
         types = self.types
         dr.eval(expected)
         before = dr.prefix_sum(expected)
@@ -102,18 +102,18 @@ class Exchange:
 
     @property
     def turn(self) -> int:
-        """Which of the sequences that are taken now the next step takes."""
+        """The number of the sequence, among those in use now, that the next step takes."""
         return self.step % self.turns
 
     def begin_warm_up(self) -> None:
-        """Take sequences that no later step takes, where steps take several."""
+        """Use sequences that no later step uses, where steps take several in turn."""
         self.first = self.turns if self.turns > 1 else 0
 
     def end_warm_up(self) -> None:
         self.first = 0
 
     def shoot(self, counts, weights=None, ends: Ends | None = None) -> int:
-        """The step's lines, see `Shooter.shoot`."""
+        """Fire the lines of a step, see `Shooter.shoot`."""
         self.shooter.take(self.first + self.turn)
         self.step += 1
         return self.shooter.shoot(counts, weights, ends)
@@ -125,8 +125,8 @@ class Exchange:
         """Send powers; `Shooter.received` then holds what arrived.
 
         Args:
-            power: (total * groups,) Float64, signed, in the units that are received; by expected line below 2^30 of them.
-            expected: (total,) UInt64, lines that patches are to fire in the mean, times LINE; positive where there is power.
+            power: (total * groups,) Float64, signed, in the units of received power; below 2^30 of them for each expected line.
+            expected: (total,) UInt64, mean number of lines that patches fire, times LINE; positive where there is power.
 
         Returns:
             Lines fired, and the power that left each replicate in them, (replicates, groups) int64; None where both ends
@@ -137,7 +137,7 @@ class Exchange:
         mean = types.Float64(expected) * (1.0 / LINE)
         if self.two_ended:
             return self.shoot(counts, ends=self._ends(power, mean)), None
-        # a patch that surely fires shares its power out among its lines; one that may not fire sends it with its probability
+        # a patch that surely fires divides its power among its lines; one that may not fire sends it over its probability
         lines = dr.select(expected >= LINE, types.Float64(counts), mean)
         weights = types.Int(dr.round(power / self.by_patch(dr.select(lines > 0, lines, 1.0))))
         dr.eval(weights)
@@ -155,5 +155,5 @@ class Exchange:
         return Ends(density, carried)
 
     def patches(self, received):
-        """Of an array over slots and groups the part of the patches, (total * groups,)."""
+        """Return the part of the patches of an array over slots and groups, (total * groups,)."""
         return dr.gather(type(received), received, dr.arange(self.types.UInt32, self.total * self.groups))

@@ -1,7 +1,7 @@
 """Incremental stochastic Jacobi iterations: send what was not sent yet, until nothing is left (Shirley 1991; Bekaert 1999).
 
-With N quanta a patch owes E_i A_i N / Phi + rho_i (what it received) quanta of power; a step sends all that is owed beyond what
-was sent, in one expected line a quantum. When N grows, emission grows and the same counters go on: what a stage adds is an
+With N quanta a patch must send E_i A_i N / Phi + rho_i (what it received) quanta of power. A step sends the part of it that was
+not sent yet, in one expected line a quantum. When N grows, emission grows and the same counters continue: what a stage adds is an
 independent solution with its share of the lines, merged in proportion to them (Feda and Purgathofer 1993).
 
 Rounding ends the iterations: when less than a line is left it is sent with its probability, in full or not at all. So what is cut
@@ -41,14 +41,14 @@ class Incremental:
             control.beta[:] = np.array(best) * area.sum() / problem.source.power
 
     def advance(self, quanta: int, swept: Swept) -> None:
-        """Send all that is owed at N quanta."""
+        """Send all power that patches must send at N quanta."""
         if quanta > self.quanta:
             self.begin(quanta)
         while lines := self.step():
             swept(lines)
 
     def begin(self, quanta: int) -> None:
-        """More emission."""
+        """Add the emission of a stage of N quanta."""
         exchange, types = self.exchange, self.exchange.types
         more, self.quanta = quanta - self.quanta, quanta
         source = np.array(exchange.emitted)
@@ -61,13 +61,13 @@ class Incremental:
         self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.groups).sum(axis=1)
 
     def step(self) -> int:
-        """One iteration, and its lines; none when all is sent."""
+        """Make one iteration, and return its number of lines; 0 when all is sent."""
         if self.probing:
             lines, self.probing = self.probing, 0
             return lines
         exchange, types = self.exchange, self.exchange.types
         if not dr.any(self.unsent != 0):
-            return 0  # without a step counted: a run that goes on from here comes by twice
+            return 0  # no step is counted: a run that continues here calls this twice
         lines, fired = exchange.send(self.unsent, types.UInt64(exchange.largest(self.unsent)))
         self.fired += 0 if fired is None else fired
         self.received += exchange.shooter.received
@@ -77,11 +77,11 @@ class Incremental:
 
     @property
     def scale(self) -> float:
-        """Of the received power: one unit over Phi."""
+        """One unit of the received power over Phi."""
         return 1.0 / (float(self.quanta) * LINE)
 
     def capture(self) -> IncrementalState:
-        """Copies."""
+        """Return copies of the power."""
         whole = not self.exchange.two_ended and self.control is None
         return IncrementalState(
             sizes=self.exchange.sizes,
@@ -94,7 +94,7 @@ class Incremental:
         )
 
     def restore(self, state: IncrementalState) -> None:
-        """Put captured power back."""
+        """Set the power to a captured one."""
         types = self.exchange.types
         self.received = upload(types.Int64, state.received)
         self.unsent = upload(types.Float64, state.unsent)

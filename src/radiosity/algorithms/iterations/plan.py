@@ -1,4 +1,4 @@
-"""How many lines regular iterations fire when: first a start, then ever longer iterations."""
+"""The plan of regular iterations, how many lines each fires: first a start, then ever longer iterations."""
 
 import math
 
@@ -6,22 +6,22 @@ import numpy as np
 
 from .control import SHARE
 
-START = 4  # one line in so many of the first stage is for the start
+START = 4  # one line in 4 of the first stage is for the start
 DARK = 1e-4  # share of the light that may be missing when the start-up ends
-FEWEST = 1024  # lines of an iteration, and one a patch
+FEWEST = 1024  # least lines of an iteration, besides one a patch
 COUNTERS = ("quanta", "done", "summed", "count", "starting", "start_lines", "probing")
 
 
 class Plan:
-    """Counters of a replicate; all replicates go alike.
+    """Counters of a replicate; they are the same for all replicates.
 
     Attributes:
-        n: patches.
+        n: the number of patches.
         mean: the mean reflectance, about the factor by which light falls from bounce to bounce.
-        quanta, done: lines to be traced in this stage and before, and traced.
-        summed, count: lines of the iterations in the mean, and how many iterations there were.
+        quanta, done: lines to trace up to the end of this stage, and lines traced so far.
+        summed, count: lines of the iterations in the mean, and the number of these iterations.
         starting, start_lines: iterations of the start-up that are left (1 during a warm-up), and the lines of each.
-        probing: lines of this stage that are yet to be fired for the control variate.
+        probing: lines of this stage that are left to fire for the control variate.
     """
 
     def __init__(self, n: int, mean: float):
@@ -29,7 +29,7 @@ class Plan:
         self.quanta = self.done = self.summed = self.count = self.starting = self.start_lines = self.probing = 0
 
     def begin(self, quanta: int, *, probes: bool) -> None:
-        """A stage of N lines. The first also plans the start, unless one is under way."""
+        """Begin a stage of N lines. The first also plans the start, unless one is under way."""
         if self.quanta == 0 and not self.starting:
             self.starting = max(1, math.ceil(math.log(DARK) / math.log(max(self.mean, DARK))))
             self.start_lines = max(1, min(quanta // START // self.starting, 10 * self.n))
@@ -37,9 +37,12 @@ class Plan:
         self.quanta = quanta
 
     def lines(self) -> int:
-        """Of the next iteration: one a patch at least, then a share of all so far, so that between L and 2 L lines there are
-        enough iterations for an error of the source to die out, and few enough to be cheap. A stage that the start used up gets
-        one iteration more, of the lines that it was to leave."""
+        """Return the number of lines of the next iteration.
+
+        It is at least one a patch, then a share of all lines so far. So between L and 2 L lines there are enough iterations for
+        an error of the source to vanish, and few enough to be cheap. A stage whose lines the start used up gets one more
+        iteration, of the lines that the start should have left.
+        """
         if self.starting:
             return self.start_lines
         wanted = max(self.n, FEWEST, self.summed // min(max(8, round(4 / (1 - self.mean))), 128))
@@ -50,11 +53,11 @@ class Plan:
 
     @property
     def over(self) -> bool:
-        """The stage is complete: its lines are traced, and an iteration is in the mean."""
+        """True where the stage is complete: its lines are traced, and an iteration is in the mean."""
         return self.done >= self.quanta and self.summed > 0
 
     def count_iteration(self, lines: int) -> bool:
-        """An iteration is done; whether it is part of the result."""
+        """Count a complete iteration, and return whether it is part of the result."""
         self.done, self.count = self.done + lines, self.count + 1
         if self.starting:
             self.starting -= 1

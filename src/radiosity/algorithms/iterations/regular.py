@@ -6,11 +6,11 @@ its weight in the result too, but never with less than 1/2: a source that rememb
 iterations, which falls as slowly as L^-(1-lambda) with all lines L (docs/iterations.md).
 
 Where both ends score, iterations take two sequences in turn, and there are two sources: iterations of one sequence send what
-those of the other received. What is sent then does not depend on the points that it is sent along. Each source hears of every
-other iteration only, so it forgets more of what it had.
+those of the other received. What is sent then does not depend on the points that it is sent along. Each source takes only every
+other iteration, so it forgets more of what it had.
 
-Iterations begin at the light alone, whose image is too dark by lambda^k after k of them. With ``warm_up`` they begin at an
-incremental solution instead, which has no bias, and neither have they (Bekaert 1999). Without it, the first iterations, until
+Iterations begin with the light alone, and after k of them the image is too dark by lambda^k. With ``warm_up`` they begin with an
+incremental solution instead, which has no bias, so they have none (Bekaert 1999). Without it, the first iterations, until
 lambda^k is 1/10 000 or less, are a start-up that the result leaves out (RenderPark has such an option).
 """
 
@@ -28,8 +28,8 @@ from .plan import START, Plan
 from .state import RegularState
 
 FORGET = {1: 1 / 2, 2: 7 / 8}  # least weight of an iteration in the source that takes it, by turns
-UNIT = 2.0**27  # of received power: the mean of what a line carries
-TOTAL = 2.0**58  # of sums of power: Phi / (1 - rho_max)
+UNIT = 2.0**27  # fixed point units of the mean power of a line
+TOTAL = 2.0**58  # fixed point units of Phi / (1 - rho_max), in sums of power
 
 
 class Regular:
@@ -40,7 +40,7 @@ class Regular:
         sources: (total * groups,) Float64 each, A over Phi: for each turn, of what steps of the other turn received.
         weights: (replicates,) float64, the sum of the weights of all R_k in the mean.
         constants: (replicates, groups) float64, the mean of beta_k.
-        plan: how many lines are fired when.
+        plan: the number of lines of each iteration.
     """
 
     def __init__(self, exchange: Exchange, problem: Problem, control: Control | None, warm_up: bool):
@@ -86,7 +86,7 @@ class Regular:
         return self._iterate(plan.lines())
 
     def _take_over(self, warm: Incremental) -> None:
-        """The incremental solution becomes the source, and part of the result, with the weight of its lines."""
+        """Take the incremental solution as the source, and as part of the result, with the weight of its lines."""
         types, plan = self.exchange.types, self.plan
         lines = round(warm.quanta / (1 - plan.mean))  # not the lines traced: these depend on the solution
         self.received = types.Float64(warm.received) * warm.scale
@@ -99,18 +99,18 @@ class Regular:
         plan.starting, plan.done, plan.summed = 0, plan.done + lines, lines
 
     def _largest(self, power):
-        """(total,) UInt64: the largest band of each patch."""
+        """Return the power of the largest band of each patch, (total,) UInt64."""
         types = self.exchange.types
         largest = types.UInt64(self.exchange.largest(power) * dr.opaque(types.Float64, self.total))
         dr.eval(largest)
         return largest
 
     def _sent(self, largest) -> np.ndarray:
-        """(replicates,) float64: T over Phi, from whole numbers, so that no order matters."""
+        """Return T over Phi, from whole numbers, so that no order matters, (replicates,) float64."""
         return np.maximum(self.exchange.sums(largest), 1).astype(np.float64) / self.total
 
     def _weight(self, lines: int, sent: np.ndarray) -> np.ndarray:
-        """(replicates,) float64, of an iteration in the mean."""
+        """Return the weight of an iteration in the mean, (replicates,) float64."""
         return np.full(len(sent), float(lines)) if self.control is None else lines / sent**2
 
     def _iterate(self, lines: int) -> int:
@@ -142,7 +142,7 @@ class Regular:
         return fired
 
     def capture(self) -> RegularState:
-        """Copies."""
+        """Return copies of the means."""
         warm = self.warm if self.plan.starting else None
         return RegularState(
             sizes=self.exchange.sizes,
@@ -156,7 +156,7 @@ class Regular:
         )
 
     def restore(self, state: RegularState) -> None:
-        """Put captured means back."""
+        """Set the means to captured ones."""
         types = self.exchange.types
         self.plan.restore(state.progress)
         self.received = upload(types.Float64, state.received)

@@ -1,7 +1,7 @@
 """The state of iterations between two steps.
 
-Each step draws its rounding offsets by its number, and all replicates of a run make equally many steps: as many as the one that
-takes longest. So what an incremental solution takes is felt by all, in all that follows it.
+Each step draws its rounding offsets by its number, and all replicates of a run make the same number of steps: as many as the one
+that needs most. So the steps of an incremental solution change the numbers of all later steps, in all replicates.
 """
 
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ from ..state import AbstractState, Record, array, number, part
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class IncrementalState(Record):
-    """Of `Incremental`; arrays over slots are flat.
+    """The state of `Incremental`; arrays over slots are flat.
 
     Attributes:
         received: (slots * groups,) int64, all that arrived.
         unsent: (replicates * n_patches * groups,) float64.
-        scale: received times it is the share of Phi.
-        progress: quanta, and lines of probes that are not told yet.
+        scale: the factor from received power to shares of Phi.
+        progress: quanta, and lines of probes that are not reported yet.
         emitted, left: (replicates, groups) int64, where power is carried in whole numbers.
     """
 
@@ -34,20 +34,20 @@ class IncrementalState(Record):
 
     @property
     def unfinished(self) -> bool:
-        """Power is left to send."""
+        """True where power is left to send."""
         return bool(self.unsent.any())
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RegularState(Record):
-    """Of `Regular`; arrays over slots are flat.
+    """The state of `Regular`; arrays over slots are flat.
 
     Attributes:
         received: (slots * groups,) float64, the mean over iterations, a share of Phi.
         source: (turns * replicates * n_patches * groups,) float64, what the next iterations send.
         scale: 1.
         constants: (replicates, groups), the mean of the control variate's constants.
-        weights: (replicates,), of all iterations in the mean.
+        weights: (replicates,), the sum of the weights of all iterations in the mean.
         progress: (7,) counters of `Plan`.
         warm: the warm-up, while it lasts.
     """
@@ -62,14 +62,14 @@ class RegularState(Record):
 
     @property
     def unfinished(self) -> bool:
-        """Lines of the stage are left, or no iteration counts yet."""
+        """True where lines of the stage are left, or no iteration counts yet."""
         quanta, done, summed = (int(x) for x in self.progress[:3])
         return done < quanta or summed == 0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ControlState(Record):
-    """Of `Control`.
+    """The state of `Control`.
 
     Attributes:
         beta: (replicates, groups) float64, constants.
@@ -83,8 +83,11 @@ class ControlState(Record):
 
 
 def _steps(layout, values: list, records: list["IterationState"]) -> int:
-    """Of incremental iterations the replicates that need fewer steps make the rest with no lines. Where regular ones follow a
-    warm-up, its length decides what all of them draw."""
+    """Return the number of steps of one run with all replicates.
+
+    In incremental iterations, replicates that need fewer steps make the rest without lines. Where regular iterations follow a
+    warm-up, its length decides what all of them draw, so the runs must have the same number of steps.
+    """
     if records[0].regular is not None and len(set(values)) > 1:
         raise MethodError(
             f"merge: with their warm-ups, runs took {', '.join(map(str, values))} steps, and all replicates of one run make as "
@@ -98,10 +101,10 @@ class IterationState(AbstractState):
     """Counters of lines, and one of the two schemes.
 
     Attributes:
-        arrivals, fired: (replicates, n_patches) uint32, lines that landed on patches and left them.
+        arrivals, fired: (replicates, n_patches) uint32, hit counts and fired counts.
         missed: (2, replicates) uint32, lines that escaped and were lost.
         fired_apart: (sequences, replicates, n_patches) uint32, where several sequences are taken in turn; ``fired`` is the sum.
-        step: how many steps were made.
+        step: the number of steps so far.
     """
 
     arrivals: np.ndarray = array("replicates", "rows")
@@ -121,7 +124,7 @@ class IterationState(AbstractState):
 
     @property
     def scheme(self) -> RegularState | IncrementalState:
-        """What the order keeps."""
+        """The state of the order."""
         found = self.regular or self.incremental
         assert found is not None
         return found

@@ -1,4 +1,4 @@
-"""What the state of iterations means."""
+"""The tally of iterations."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from .state import IncrementalState, IterationState
 
 
 class IterationTally(AbstractTally[IterationState]):
-    """Power received, in fixed point; ``scale`` times it is the share of Phi. Then what a control variate put aside."""
+    """Reads power received, in fixed point, where ``scale`` times it is the share of Phi, and adds that of a control variate."""
 
     def lines(self, problem: Problem, state: IterationState) -> int:
         return int(state.fired.sum(dtype=np.uint64))
@@ -25,7 +25,7 @@ class IterationTally(AbstractTally[IterationState]):
         return values, problem.source.power
 
     def line(self, problem: Problem, state: IterationState, group: int) -> np.ndarray | float:
-        """Of the lines traced, of which few-lined stages have more than quanta."""
+        """Return the power of a line from the number of lines traced, which in short stages is larger than that of quanta."""
         return line_of_quanta(problem, self.lines(problem, state) // len(state.fired), group)
 
     def books(self, problem: Problem, state: IterationState, group: int) -> dict:
@@ -39,7 +39,7 @@ class IterationTally(AbstractTally[IterationState]):
 
 
 def _received(problem: Problem, state: IterationState, group: int) -> tuple[np.ndarray, np.ndarray]:
-    """Shares of Phi: received by patches, (replicates, n_patches), and escaped and lost, (2, replicates)."""
+    """Return shares of Phi: received by patches, (replicates, n_patches), and escaped and lost, (2, replicates)."""
     replicates, n = state.fired.shape
     scheme, control = state.scheme, state.control
     received = scheme.received.reshape(replicates * (n + 2), -1)[:, group] * scheme.scale
@@ -54,7 +54,7 @@ def _received(problem: Problem, state: IterationState, group: int) -> tuple[np.n
 
 
 def _exact(problem: Problem, state: IterationState, scheme: IncrementalState, group: int) -> dict:
-    """Of incremental iterations in one direction, power is carried line by line, in whole numbers."""
+    """Return the energy balance of incremental iterations in one direction, which carry power in whole numbers, by lines."""
     replicates, n = state.fired.shape
     received = scheme.received.reshape(replicates * (n + 2), -1)[:, group].astype(np.uint64)
     counts, missed = received[: replicates * n].reshape(replicates, n), received[replicates * n :].reshape(2, replicates)

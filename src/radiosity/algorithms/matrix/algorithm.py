@@ -1,4 +1,4 @@
-"""Form factors first, from counted lines; then the equation (Sbert 1993 with global lines; local lines likewise).
+"""The matrix method: form factors from counted lines, then the equation (Sbert 1993 with global lines; also with local lines).
 
 M. Sbert, "An integral geometry based method for fast form-factor computation", Computer Graphics Forum 12(3), 1993.
 """
@@ -13,12 +13,12 @@ from ..state import Arrays, Sizes
 from .state import MatrixState
 from .tally import MatrixTally
 
-LIMIT = 1 << 28  # pairs that are kept: 3 GiB, and as much again while they are merged
+LIMIT = 1 << 28  # most pairs that are kept: 3 GiB, and as much again while they are merged
 LAUNCH = 1 << 22  # lines between two looks at the clock
 
 
 class Matrix(AbstractAlgorithm[MatrixState]):
-    """Counts of lines between patches. N lines a replicate give the same counts in any stages."""
+    """Counts lines between patches. N lines a replicate give the same counts in any stages."""
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
@@ -58,7 +58,7 @@ class Matrix(AbstractAlgorithm[MatrixState]):
             swept(traced)
 
     def _check(self, end: int) -> None:
-        """Refuse what would not fit in memory: no more pairs than there are, and than lines."""
+        """Refuse pairs that would not fit into memory; there are at most as many as lines, and as patches squared."""
         ends = len(self.counts) / max(self.reached, 1) if self.reached else 1.0 * self.replicates
         expected = min(self.replicates * self.n * (self.n + 2), len(self.counts) + int(ends * (end - self.reached)))
         if expected <= LIMIT:

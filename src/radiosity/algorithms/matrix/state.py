@@ -10,7 +10,7 @@ from ..state import AbstractState, array, number
 
 
 def _keys(layout, values: list[np.ndarray], records: list["MatrixState"]) -> np.ndarray:
-    """Rows of later replicates have larger numbers."""
+    """Return the keys of all states; rows of later replicates have larger numbers."""
     before, found = 0, []
     for keys, record in zip(values, records, strict=True):
         found.append(keys + (np.uint64(before * record.sizes.rows) << WORD))
@@ -24,7 +24,7 @@ class MatrixState(AbstractState):
 
     Attributes:
         reached: lines of each replicate so far.
-        replicates: independent runs.
+        replicates: the number of independent runs.
         keys: (m,) uint64, ascending: row, r n + i, times 2^32 plus column.
         counts: (m,) uint32, lines of each pair.
     """

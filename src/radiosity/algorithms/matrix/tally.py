@@ -1,4 +1,4 @@
-"""What counted lines mean: form factors, and the solution of the equation with them."""
+"""The tally of the matrix method: form factors from counted lines, and the solution of the equation with them."""
 
 import numpy as np
 
@@ -22,11 +22,11 @@ class MatrixTally(AbstractMeanTally[MatrixState]):
         self._last: tuple[np.ndarray | None, CountedPairs | None, list[Received]] = (None, None, [])
 
     def pairs(self, problem: Problem, state: MatrixState) -> CountedPairs:
-        """What was prepared: it depends on geometry alone."""
+        """Return the form factors of a state, which depend on geometry alone."""
         return CountedPairs(problem.patches, state.keys, state.counts, state.replicates, self.both_ways, self.directed)
 
     def lines(self, problem: Problem, state: MatrixState) -> int:
-        """Each line of a patch is an entry; a span between two patches is two."""
+        """Return the number of lines: a line of a patch is one entry, a span between two patches is two."""
         return int(state.counts.sum(dtype=np.uint64))
 
     def arrivals(self, problem: Problem, state: MatrixState) -> np.ndarray:
@@ -36,7 +36,10 @@ class MatrixTally(AbstractMeanTally[MatrixState]):
         return self._solved(problem, state, group).power, 1.0
 
     def bias(self, problem: Problem, state: MatrixState, group: int) -> np.ndarray:
-        """What patches without lines were given, and what patches get back of their own light, `solve.of_own_light`."""
+        """Return the bias: what patches without lines were given, and what patches get back of their own light.
+
+        For the second see `solve.of_own_light`.
+        """
         found = self._solved(problem, state, group)
         return bias(found.power, self.measured(problem, state)) + found.bias.mean(axis=0)
 
@@ -47,7 +50,7 @@ class MatrixTally(AbstractMeanTally[MatrixState]):
         return pairs.lines
 
     def line(self, problem: Problem, state: MatrixState, group: int) -> np.ndarray | float:
-        """Of a patch's lines one meets the brightest light."""
+        """Return the power that one of a patch's lines brings where it hits the brightest light."""
         each = self.pairs(problem, state).lines.mean(axis=0)
         return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(each, 1)
 

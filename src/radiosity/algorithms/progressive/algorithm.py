@@ -18,12 +18,12 @@ from .recent import RecentRows
 from .state import ProgressiveState
 from .tally import ProgressiveTally, ambient
 
-UNSHOT = 1e-4  # of the emitted power: what is left then is not worth a shot
-DENSER = 1.05  # the history has an entry for so many times as many shots as the last
+UNSHOT = 1e-4  # share of the emitted power that may be left unshot at the end
+DENSER = 1.05  # each entry of the history has 1.05 times as many shots as the last
 
 
 class Progressive(AbstractAlgorithm[ProgressiveState]):
-    """N shots; the state after them depends on N alone."""
+    """Progressive refinement. N is the number of shots; the state after them depends on N alone."""
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
@@ -54,11 +54,11 @@ class Progressive(AbstractAlgorithm[ProgressiveState]):
 
     @property
     def _left(self) -> float:
-        """Unshot power over what was emitted, of the worst group."""
+        """Return the unshot power over the emitted power, of the worst group."""
         return float(self._share(self.area @ np.abs(self.unshot)))
 
     def _share(self, power: np.ndarray) -> np.ndarray:
-        """Over what was emitted, of the worst group."""
+        """Return a power over the emitted power, of the worst group."""
         return (power / np.where(self.emitted > 0, self.emitted, 1)).max()
 
     @property

@@ -1,18 +1,18 @@
-"""Rows of form factors that were made lately: a bright patch shoots again before long, and rows made together cost less."""
+"""Recent rows of form factors. They are kept since a bright patch soon shoots again, and made together since that is faster."""
 
 import numpy as np
 
 from ...factors.rows import AbstractRows, Swept
 
-MOST_ENTRIES = 1 << 22  # form factors that are kept, 16 bytes each: far less than a matrix
-AHEAD = 16  # rows that are made together at most
+MOST_ENTRIES = 1 << 22  # most form factors that are kept, 16 bytes each: far less than a matrix
+AHEAD = 16  # most rows that are made together
 
 
 class RecentRows:
     """Rows by patch number. Which of them are kept changes no value, only how often lines are traced.
 
     Attributes:
-        lines: traced so far.
+        lines: lines traced so far.
     """
 
     def __init__(self, rows: AbstractRows):
@@ -20,8 +20,10 @@ class RecentRows:
         self._kept: dict[int, tuple[np.ndarray, np.ndarray, float, float]] = {}
 
     def get(self, number: int, unshot: np.ndarray, swept: Swept) -> tuple[np.ndarray, np.ndarray, float, float]:
-        """Columns, values, escaped and lost share of a patch's row; if it must be made, so are those of the patches with the most
-        ``unshot`` power, (n,) W, that are not kept either."""
+        """Return the columns, values, escaped and lost share of a patch's row.
+
+        If the row must be made, rows of the patches with the most ``unshot`` power, (n,) W, that are not kept are made, too.
+        """
         if number not in self._kept:
             count = min(self.rows.at_once, AHEAD)
             likely = np.argsort(-unshot, kind="stable")[: 2 * AHEAD]
@@ -43,5 +45,5 @@ class RecentRows:
 
     @property
     def numbers(self) -> np.ndarray:
-        """(k,) int64, the patches whose rows are kept, the oldest first."""
+        """Return the patches whose rows are kept, the oldest first, (k,) int64."""
         return np.array(list(self._kept), np.int64)

@@ -14,11 +14,11 @@ class ProgressiveState(AbstractSolvedState):
     """Power received and not shot yet.
 
     Attributes:
-        shots: made so far.
+        shots: the number of shots so far.
         unshot: (n_patches, groups) float64, W/m² or lm/m².
         recent: (k,) int64, the patches whose rows are kept, the oldest first.
-        cut_power: (groups,) W or lm that was cut off form factors above what is possible.
-        cut: the same over the emitted power, of the worst group.
+        cut_power: (groups,) W or lm that was cut off where form factors were larger than possible.
+        cut: this power over the emitted power, of the worst group.
     """
 
     alone = ALONE["progressive"]

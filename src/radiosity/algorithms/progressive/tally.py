@@ -1,4 +1,4 @@
-"""The ambient term, and how the state of a progressive run is read."""
+"""The ambient term, and the tally of progressive refinement."""
 
 from dataclasses import dataclass
 
@@ -11,15 +11,21 @@ from .state import ProgressiveState
 
 
 def ambient(area: np.ndarray, reflectance: np.ndarray, unshot: np.ndarray) -> np.ndarray:
-    """(groups,) irradiance, the same everywhere, that light not shot yet will bring in the end, if it spreads evenly: the sum of
-    A dB over the sum of (1 - rho) A, which balances what it brings with what is absorbed (Cohen et al. 1988, equation 6)."""
+    """Return the ambient irradiance, (groups,), the same everywhere: what light not shot yet will bring if it spreads evenly.
+
+    It is the sum of A dB over the sum of (1 - rho) A, which balances what it brings with what is absorbed (Cohen et al. 1988,
+    equation 6).
+    """
     absorbs = area @ (1 - reflectance)
     return np.divide(area @ unshot, absorbs, out=np.zeros(unshot.shape[1]), where=absorbs > 0)
 
 
 @dataclass(frozen=True, eq=False)
 class ProgressiveTally(AbstractTally[ProgressiveState]):
-    """As `SolvedTally`; with ``ambient`` irradiance is more by the ambient term, which the books leave out: it is for display."""
+    """Reads states as `SolvedTally` does. With ``ambient`` it adds the ambient term to the irradiance.
+
+    The energy balance leaves the ambient term out: it is for display.
+    """
 
     ambient: bool
     solved: SolvedTally

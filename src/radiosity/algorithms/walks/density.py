@@ -1,4 +1,4 @@
-"""Landings of particles, reconstructed by local linear fits."""
+"""Hits of particles, reconstructed by local linear fits."""
 
 from dataclasses import dataclass, field
 
@@ -13,10 +13,10 @@ from .state import WalkState
 
 @dataclass(frozen=True)
 class DensityTally(AbstractBiasedTally[WalkState]):
-    """Another tally's powers, smoothed replicate by replicate with the bandwidths of all landings together.
+    """Smooths the powers of another tally, each replicate by itself, with the bandwidths of all hits together.
 
     Attributes:
-        counted: how the landings are read.
+        counted: the tally that reads the hits.
     """
 
     counted: AbstractTally[WalkState]
@@ -38,14 +38,16 @@ class DensityTally(AbstractBiasedTally[WalkState]):
         return smoother.bias(values, smoother.smooth(values))
 
     def _smoother(self, problem: Problem, state: WalkState) -> Smoother:
-        """The same for all bands and for the books of a state; the last one is kept."""
+        """Return the smoother of a state, the same for all bands and for the energy balance; the last one is kept."""
         if self._known.get("counts") is not state.arrivals:
             self._known.update(counts=state.arrivals, fit=Smoother.of(problem.patches, self.arrivals(problem, state)))
         return self._known["fit"]
 
     def books(self, problem: Problem, state: WalkState, group: int) -> dict:
-        """Of the smoothed irradiance: what smoothing moved between patches of one region, where their reflectances differ, does
-        not balance exactly."""
+        """Return the energy balance of the smoothed irradiance.
+
+        It is not exact: smoothing moves power between patches of one region, whose reflectances may differ.
+        """
         exact = self.counted.books(problem, state, group)
         values, unit = self.irradiance(problem, state, group)
         received = values.mean(axis=0) * unit

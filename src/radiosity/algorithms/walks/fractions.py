@@ -1,9 +1,9 @@
-"""Fractional absorption: of M walks the first M rho^k go on at the k-th landing (A. Keller, "Quasi-Monte Carlo radiosity", 7th
+"""Fractional absorption: of M walks the first M rho^k go on at the k-th hit (A. Keller, "Quasi-Monte Carlo radiosity", 7th
 Eurographics Workshop on Rendering, 1996; the rule as in his "Instant radiosity", 1997).
 
-The birth patch of walk n is chosen by the fifth number of point n, so that the first walks are a fair sample of all. A landing
-on patch i multiplies the power by rho_i c_k / c_(k+1), where c_k walks go on k times: nothing but the last leg is cut off, a bias
-of the order of 1 / M.
+The first patch of walk n is chosen by the fifth number of point n, so that the first walks are a fair sample of all. A hit on
+patch i multiplies the power by rho_i c_k / c_(k+1), where c_k walks go on k times: only the last segment is cut off, a bias of
+the order of 1 / M.
 """
 
 from dataclasses import dataclass, field
@@ -22,13 +22,14 @@ MIX = 0x9E3779B1  # low bits of the choice, of which a number in single precisio
 
 @dataclass
 class Fractions:
-    """Birthplaces and the fixed shares that go on.
+    """The patches where walks begin, and the fixed shares that go on.
 
     Attributes:
         tracer: lines of the patches.
         cumulative: UInt32 (n_patches,), the sum of shares of emission up to each patch, times 2^32.
         mean: area-weighted mean reflectance, of the largest band.
-        begun: walks of earlier stages; counts: how many of this one's go on k times.
+        begun: walks of earlier stages.
+        counts: walks of this stage that go on k times.
     """
 
     tracer: LineTracer
@@ -39,7 +40,7 @@ class Fractions:
 
     @staticmethod
     def of(tracer: LineTracer, problem: Problem) -> "Fractions":
-        """Of a problem."""
+        """Return the fractions of a problem."""
         area, rho = problem.patches.area, problem.groups.reflectance.max(axis=1)
         whole = np.cumsum(problem.source.share)
         cumulative = np.minimum(np.floor(whole / whole[-1] * 2.0**32), 2**32 - 1).astype(np.uint32)
@@ -48,7 +49,7 @@ class Fractions:
         return Fractions(tracer, upload(tracer.types.UInt32, cumulative), float(area @ rho / area.sum()))
 
     def batch(self, begun: int, quanta: int) -> tuple[Batch, int]:
-        """Walks begun + 1 to quanta of each replicate; their patches are chosen in the kernel."""
+        """Return walks begun + 1 to quanta of each replicate; the kernel chooses their patches."""
         tracer, new = self.tracer, quanta - begun
         self.begun, self.counts = begun, [new]
         while self.counts[-1]:
@@ -59,7 +60,7 @@ class Fractions:
         return Batch.of(tracer.types, numbers, counts, fired, tracer.record), quanta
 
     def birthplace(self, number, index, bits: int):
-        """In a kernel: patch number where a walk begins, and its record; ``number`` tells the replicate."""
+        """Return the patch number where a walk begins, and its record; called in a kernel. ``number`` gives the replicate."""
         tracer, types = self.tracer, self.tracer.types
         replicate = tracer.replicate(number)
         chosen = tracer.points(number, index, replicate, tracer.record(number), bits)[4]
@@ -73,13 +74,13 @@ class Fractions:
         return here, tracer.record(here)
 
     def go_on(self, index, segment: int):
-        """Mask: walks that go on at their ``leg``-th landing."""
+        """Return the mask of walks that go on at hit number ``segment``."""
         return index - dr.opaque(self.tracer.types.UInt32, self.begun) <= dr.opaque(
             self.tracer.types.UInt32, self._count(segment)
         )
 
     def factor(self, segment: int):
-        """Float: how many walks each of those stands for."""
+        """Return how many walks each of those stands for, Float."""
         after = self._count(segment)
         return dr.opaque(self.tracer.types.Float, self._count(segment - 1) / after if after else 0.0)
 

@@ -1,10 +1,10 @@
 """Random walks that gather: from patches, in proportion to area, to the light (M. Sbert 1997; collision estimator).
 
 The transitions are those of shooting. A line that leaves patch q estimates the radiosity that it meets: emission of the patch
-it lands on, plus, where the walk goes on there, reflectance over survival probability times what the next line meets. So
-every part of a walk is a sample of the irradiance of the patch where it begins, and all are used. The number of parts and what
-they met hang together, so the mean is biased by the order of one over the walks of a replicate: 2 % at two walks a patch and
-mean reflectance 0.5, 0.2 % at 27.
+it hits, plus, where the walk goes on there, reflectance over survival probability times what the next line meets. So every part
+of a walk is a sample of the irradiance of the patch where it begins, and all are used. The number of parts and what they met are
+correlated, so the mean has a bias of the order of one over the walks of a replicate: 2 % at two walks a patch and mean
+reflectance 0.5, 0.2 % at 27.
 """
 
 from dataclasses import dataclass
@@ -33,8 +33,7 @@ UNIT = 2.0**24  # fixed point units of the largest emission of a group
 
 @dataclass(frozen=True)
 class Visit:
-    """One leg of a launch's walks: their lanes in the launch, the patch numbers that they left, the slots they landed in, and
-    who goes on."""
+    """One segment of a launch's walks: lanes, patch numbers that they left, slots that they hit, and which of them go on."""
 
     lane: Any
     left: Any
@@ -43,7 +42,7 @@ class Visit:
 
 
 class Gathering(AbstractWalks[GatheringState]):
-    """Sums of the radiosity met, and numbers of lines that left each patch."""
+    """Runs walks that gather: it keeps sums of the radiosity met, and numbers of lines that left each patch."""
 
     def _prepare(self) -> None:
         method = self.method
@@ -97,7 +96,7 @@ class Gathering(AbstractWalks[GatheringState]):
         return after, Visit(lane, left, step.landed, alive)
 
     def _score(self, visits: list[Visit], launch: Launch) -> None:
-        """From the last legs back to the first: what each line met."""
+        """Score what each line met, from the last segments back to the first."""
         tracer, types = self.tracer, self.types
         met = [dr.opaque(types.Float, 0.0, launch.width) for _ in range(self.n)]
         for at, visit in reversed(list(enumerate(visits))):
@@ -108,7 +107,7 @@ class Gathering(AbstractWalks[GatheringState]):
                 behind = dr.gather(types.Float, met[g], visit.lane, visit.alive)
                 value = dr.gather(types.Float, self.emission[g], patch, on)
                 value += dr.gather(types.Float, self.ratio[g], patch, visit.alive) * behind
-                dr.eval(value)  # before its place is written
+                dr.eval(value)  # before its entry is overwritten
                 dr.scatter(met[g], value, visit.lane, active=real)
                 fixed = types.UInt64(value * UNIT + 0.5)
                 dr.scatter_add(self.met, fixed, visit.left * self.n + g, active=on)
@@ -136,7 +135,7 @@ class Gathering(AbstractWalks[GatheringState]):
 
 
 class GatheringTally(AbstractMeanTally[GatheringState]):
-    """Means of the radiosity met."""
+    """Reads means of the radiosity met."""
 
     def lines(self, problem: Problem, state: GatheringState) -> int:
         return exact_sum(state.fired)
@@ -149,7 +148,7 @@ class GatheringTally(AbstractMeanTally[GatheringState]):
         return mean * problem.patches.area, float(problem.groups.emission[:, group].max()) / UNIT
 
     def line(self, problem: Problem, state: GatheringState, group: int) -> np.ndarray | float:
-        """Of a patch's lines one meets the brightest light."""
+        """Return the power that one of a patch's lines brings where it hits the brightest light."""
         brightest, each = problem.groups.emission[:, group].max(), state.fired.sum(axis=0) / len(state.fired)
         return brightest * problem.patches.area / np.maximum(each, 1)
 
@@ -165,7 +164,7 @@ class GatheringTally(AbstractMeanTally[GatheringState]):
         rho, area = problem.groups.reflectance[:, group], problem.patches.area
         emitted = float(problem.groups.emission[:, group] @ area)
         left = emitted + float(received @ rho)
-        # walks leave patches as often as light does not: what is missed is taken to be what does not land
+        # walks do not leave patches in proportion to light, so missed power is taken to be the power that does not hit
         missed = max(left - float(received.sum()), 0.0)
         counts = [exact_sum(kind) for kind in state.missed]
         escaped, lost = (missed * count / max(sum(counts), 1) for count in counts)

@@ -1,4 +1,4 @@
-"""Processes that follow walks to their ends, a launch of up to a million at a time; between launches their state is whole."""
+"""Algorithms that follow walks until they end, in launches of up to a million; between launches their state is whole."""
 
 from abc import abstractmethod
 from typing import Any, TypeVar
@@ -11,7 +11,7 @@ S = TypeVar("S", bound=AbstractLaunchState)
 
 
 class AbstractWalks(AbstractAlgorithm[S]):
-    """Stages made of launches. ``quanta`` is the number of walks of a replicate."""
+    """Runs stages made of launches. ``quanta`` is the number of walks of a replicate."""
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
@@ -24,19 +24,19 @@ class AbstractWalks(AbstractAlgorithm[S]):
 
     @abstractmethod
     def _sources(self, before: int, quanta: int) -> tuple[Batch | None, int]:
-        """Walks of a stage, and the largest index among them."""
+        """Return the walks of a stage, and the largest index among them."""
 
     @abstractmethod
     def _follow(self, launch: Launch, largest: int) -> int:
-        """All walks of a launch, to their ends: how many lines they took."""
+        """Follow all walks of a launch until they end, and return the number of their lines."""
 
     @abstractmethod
     def _state(self, **progress: Any) -> S:
-        """The counters on the host, and what is given of sizes and launches."""
+        """Return the state: the counters on the host, with the given sizes and launches."""
 
     @abstractmethod
     def _put_back(self, state: S) -> None:
-        """Counters from a captured state."""
+        """Set the counters to those of a captured state."""
 
     @property
     def quanta(self) -> int:

@@ -1,7 +1,8 @@
-"""Particles on their way, and the step that takes them from one landing to the next.
+"""Particles, and the step that takes them from one hit to the next.
 
-A walk is (patch, replicate, index): its k-th point of the sequence gives the first leg. Later legs take points of the same
-sequence in orders of their own (Latin supercube sampling, see `sampling.numbers.shuffle`), each moved by its own randomisation.
+A walk is (patch, replicate, index): its k-th point of the sequence gives the first segment. Later segments take points of the
+same sequence in orders of their own (Latin supercube sampling, see `sampling.numbers.shuffle`), each moved by its own
+randomisation.
 So a walk is a function of seed, replicate, patch and index, whatever the order in which walks are followed.
 """
 
@@ -18,19 +19,19 @@ from ...tracing.hits import first_hit, place_of
 from ...tracing.line_tracer import LineTracer
 from ...tracing.ray_generation import Frame
 
-SEGMENTS = 64  # randomisations; the orders of later legs still differ
+SEGMENTS = 64  # number of randomisations; the orders of later segments still differ
 INDEX_BITS = 32
 GOLDEN = 0x9E3779B9  # (sqrt(5) - 1) / 2 times 2^32
 
 
 @dataclass(frozen=True)
 class ParticleBank:
-    """Particles about to leave: columns of Dr.Jit arrays, one entry each.
+    """Particles about to leave: columns of Dr.Jit arrays, with one entry for each particle.
 
     Attributes:
         walk: UInt32, replicate * n_patches + the patch where the walk began.
-        index: UInt32, from 1: which walk of that patch.
-        place: on a face (face, s, t; see `departure.Frame`) or, of the discrete equation, (patch number,).
+        index: UInt32, from 1: the number of the walk of that patch.
+        place: on a face (face, s, t; see `ray_generation.Frame`) or, with the discrete equation, (patch number,).
         weights: Floats, power carried of each group of bands, in quanta; none where all carry one.
     """
 
@@ -47,13 +48,13 @@ class ParticleBank:
         return self.walk, self.index, *self.place, *self.weights
 
     def having(self, columns) -> "ParticleBank":
-        """The same, with other columns."""
+        """Return the particles with other columns."""
         walk, index, *rest = columns
         n = len(self.place)
         return ParticleBank(walk, index, tuple(rest[:n]), tuple(rest[n:]))
 
     def at(self, rows) -> "ParticleBank":
-        """Those at some indices."""
+        """Return the particles at some indices."""
         chosen = self.having([dr.gather(type(column), column, rows) for column in self.columns()])
         dr.eval(chosen.columns())
         return chosen
@@ -61,7 +62,7 @@ class ParticleBank:
 
 @dataclass(frozen=True)
 class Step:
-    """What a leg led to: the landing's slot of `LineTracer`, the numbers drawn, and the place to go on from."""
+    """The result of a segment: the hit's slot of `LineTracer`, the numbers drawn, and the place to go on from."""
 
     landed: Any
     numbers: Any
@@ -69,7 +70,7 @@ class Step:
 
 
 class PathSegments:
-    """Traces legs of walks in kernels."""
+    """Traces segments of walks in kernels."""
 
     def __init__(self, tracer: LineTracer, *, continuous: bool):
         self.tracer, self.continuous = tracer, continuous
@@ -80,7 +81,7 @@ class PathSegments:
         self.randomisations = upload(tracer.types.UInt32, np.array(drawn, np.uint32))
 
     def first(self, number, index, record, bits: int) -> Step:
-        """The first leg of a walk, from a uniform point of its patch."""
+        """Trace the first segment of a walk, from a uniform point of its patch."""
         tracer = self.tracer
         replicate = tracer.replicate(number)
         numbers = tracer.points(number, index, replicate, record, bits)
@@ -88,7 +89,7 @@ class PathSegments:
         return self._land(tracer.leave(record)(numbers), replicate, numbers)
 
     def later(self, particles: ParticleBank, segment) -> Step:
-        """Leg number ``leg`` (UInt32, 1 and up), from where the particles are."""
+        """Trace segment number ``segment`` (UInt32, 1 and up), from where the particles are."""
         tracer, types = self.tracer, self.tracer.types
         replicate = tracer.replicate(particles.walk)
         patch = particles.walk - replicate * tracer.n_opaque
@@ -105,8 +106,11 @@ class PathSegments:
         return self._land(line, replicate, numbers)
 
     def _moved(self, numbers, stream):
-        """Numbers moved modulo 1 by hashes of a stream, the birth patch and leg. The k-th walks of all patches would live and die
-        together else, and turn into the same directions: measured, that costs a factor of up to 1.8 in error."""
+        """Return numbers moved modulo 1 by hashes of a stream, the first patch and the segment.
+
+        Without this the k-th walks of all patches would go on and end together, and turn into the same directions: the error was
+        measured to be up to 1.8 times as large.
+        """
         Float, word, result = self.tracer.types.Float, mix(stream), []
         for number in numbers:
             value = number + Float(word >> 8) * 2.0**-24

@@ -1,4 +1,4 @@
-"""What landings score, and the power that particles carry (the estimators of random walks; M. Sbert 1997, section 3)."""
+"""The scores of hits, and the power that particles carry (the estimators of random walks; M. Sbert 1997, section 3)."""
 
 import drjit as dr
 import numpy as np
@@ -8,23 +8,23 @@ from ...method.model import Method
 from ...problem.model import Problem
 from ...tracing.line_tracer import LineTracer
 
-UNIT = 2**24  # fixed point units of a quantum: as fine as a weight in single precision, and 2^32 landings fit
+UNIT = 2**24  # fixed point units of a quantum: as fine as a weight in single precision, and 2^32 hits fit
 
 
 class Scores:
     """Power received by every patch, as an estimator sees it.
 
-    With w the power that a particle brings to patch i, and p_i the chance to survive there, a landing scores w (collision),
+    With w the power that a particle brings to patch i, and p_i the chance to survive there, a hit scores w (collision),
     w / (1 - p_i) where the walk ends (absorption), or w / p_i where it goes on (survival; a black patch, where none goes on,
     scores w). Each has the mean w, so that all of them estimate the power received. p_i is the largest reflectance of the bands;
-    of each band the particle goes on with w rho_i / p_i.
+    in each band the particle goes on with w rho_i / p_i.
 
     Attributes:
         survival: Float (n_patches,), p.
-        carries: particles have powers of their own; else all carry one quantum.
-        weighted: ``received`` is kept; else arrivals are all there is.
+        carries: True where particles have powers of their own; else all carry one quantum.
+        weighted: True where ``received`` is kept; else only hits are counted.
         received: UInt64, group g of a slot at slot * n_groups + g, in `UNIT`.
-        fired: power that left along lines, from the lines' side of the ledger, for each group.
+        fired: power that left along lines, summed from the lines' side, for each group.
     """
 
     def __init__(self, tracer: LineTracer, problem: Problem, method: Method):
@@ -49,23 +49,23 @@ class Scores:
         self.fired = [0] * self.n
 
     def arrays(self) -> tuple:
-        """What kernels write to."""
+        """The arrays that kernels write to."""
         return (self.received,) if self.weighted else ()
 
     def born(self, number) -> tuple:
-        """What particles of patch numbers carry at first."""
+        """Return the power that particles of patch numbers carry at first."""
         if not self.carries:
             return ()
         patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
         return tuple(dr.gather(self.tracer.types.Float, share, patch) for share in self.shares)
 
     def fixed(self, weights) -> tuple:
-        """In fixed point, rounded."""
+        """Return weights in fixed point, rounded."""
         types = self.tracer.types
         return tuple(types.UInt64(weight * float(UNIT) + 0.5) for weight in weights)
 
     def count_fired(self, weights, lines: int, real=True) -> None:
-        """Enter lines that leave in the ledger, with what they carry."""
+        """Add the power of lines that leave to ``fired``."""
         if not self.carries:
             self.add_fired([lines * (UNIT if self.weighted else 1)] * self.n)
             return
@@ -74,11 +74,11 @@ class Scores:
         self.add_fired([int(total[0]) for total in sums])
 
     def add_fired(self, power: list[int]) -> None:
-        """To the ledger."""
+        """Add power to ``fired``."""
         self.fired = [before + new for before, new in zip(self.fired, power, strict=True)]
 
     def deposit(self, weights, slot, patch, probability, alive, real, mode) -> None:
-        """In a kernel: lines land in slots; those of no patch score what they bring."""
+        """Score lines that hit slots; called in a kernel. Slots of no patch score what the lines bring."""
         if not self.weighted:
             return
         one = self.tracer.types.Float(1)
@@ -95,15 +95,18 @@ class Scores:
         return brought
 
     def reflected(self, weights, patch, on, factor) -> tuple:
-        """What goes on from a landing; ``factor`` restores what a fixed share of walks left behind."""
+        """Return the power that goes on from a hit; ``factor`` restores the power of walks that a fixed share ended."""
         if not self.carries:
             return ()
         ratios = (dr.gather(self.tracer.types.Float, ratio, patch, on) for ratio in self.ratios)
         return tuple(w * r * (1 if factor is None else factor) for w, r in zip(weights, ratios, strict=True))
 
     def read(self) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None]:
-        """On the host, uint64: fired, (n_groups,), and where weighted received, (replicates, n_patches, n_groups), and what
-        escaped and was lost, (2, replicates, n_groups)."""
+        """Copy the sums to the host, uint64.
+
+        Returns fired, (n_groups,), and where weighted received, (replicates, n_patches, n_groups), and what escaped and was lost,
+        (2, replicates, n_groups).
+        """
         tracer, fired = self.tracer, np.array(self.fired, np.uint64)
         if not self.weighted:
             return fired, None, None
@@ -112,7 +115,7 @@ class Scores:
         return fired, flat[:split].reshape(tracer.replicates, tracer.n, self.n), missed
 
     def write(self, fired: np.ndarray, received: np.ndarray | None, missed: np.ndarray | None) -> None:
-        """Put back what `read` gave."""
+        """Set the sums to what `read` returned."""
         self.fired = [int(power) for power in fired]
         if received is not None and missed is not None:
             self.received = upload(self.tracer.types.UInt64, np.concatenate([received.ravel(), missed.ravel()]))

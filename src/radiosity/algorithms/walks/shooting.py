@@ -1,7 +1,7 @@
-"""Random walks that shoot: particles leave the lights, land, and go on or end there.
+"""Random walks that shoot: particles leave the lights, hit patches, and go on or end there.
 
 Continuous: S. N. Pattanaik and S. P. Mudur, "Computation of global illumination by Monte Carlo simulation of the particle model
-of light", 3rd Eurographics Workshop on Rendering, 1992. Discrete: M. Sbert 1997. What a landing scores is the estimator's choice.
+of light", 3rd Eurographics Workshop on Rendering, 1992. Discrete: M. Sbert 1997. The estimator decides what a hit scores.
 """
 
 from dataclasses import replace
@@ -26,15 +26,16 @@ from .source_sampling import SourceSampling
 from .state import WalkState
 from .tally import WalkTally
 
-FEW = 1 << 12  # particles that are followed to their ends at once: the sums are the same
+FEW = 1 << 12  # so few particles are followed until they end in one kernel: the sums are the same
 
 
 class Walks(AbstractWalks[WalkState]):
-    """Walks of local lines that score where they land."""
+    """Runs walks of local lines that score where they hit."""
 
     def _prepare(self) -> None:
         method = self.method
-        if method.absorption == "fractional":  # walk n takes point n, its birth patch too: patches have no points of their own
+        # with fractional absorption walk n takes point n, also for its first patch: patches have no points of their own
+        if method.absorption == "fractional":
             method = replace(method, randomisation="shared")
         self.tracer = LineTracer.of(self.geometry, method.points, method.randomisation, self.seed, self.replicates)
         self.hits = HitCounts(self.tracer)
@@ -77,7 +78,7 @@ class Walks(AbstractWalks[WalkState]):
             particles, alive = self._settle(particles, step, True, segment, particles.size)
 
     def _settle(self, particles: ParticleBank, step, real, segment: int, width: int) -> tuple[ParticleBank, Any]:
-        """Score landings and decide who goes on, in a kernel of its own."""
+        """Score hits and decide which particles go on, in a kernel of its own."""
         mode = dr.ReduceMode.Expand if width > DENSE * self.tracer.total else dr.ReduceMode.Direct
         after, alive = self._landed(particles, step, real, segment, mode)
         dr.eval(self.hits.arrivals, *self.scores.arrays(), alive, after.columns())
@@ -99,7 +100,7 @@ class Walks(AbstractWalks[WalkState]):
         return ParticleBank(particles.walk, particles.index, step.place, weights), alive
 
     def _to_the_end(self, particles: ParticleBank, segment: int) -> int:
-        """Follow particles in one symbolic loop: how many lines they took."""
+        """Follow particles in one symbolic loop, and return the number of their lines."""
         types, size = self.types, particles.size
         going = dr.arange(types.UInt32, max(size, 2)) < dr.opaque(types.UInt32, size)
         particles = particles if size > 1 else particles.at(dr.zeros(types.UInt32, 2) + dr.opaque(types.UInt32, 0))
@@ -111,7 +112,7 @@ class Walks(AbstractWalks[WalkState]):
             sums = tuple(s + dr.select(going, fixed, 0) for s, fixed in zip(sums, self.scores.fixed(here.weights), strict=True))
             step = self.segments.later(here, segment)
             after, alive = self._landed(here, step, going, segment + 1, dr.ReduceMode.Direct)
-            # places of those that ended are kept as they were: what lies beyond the patches has no record
+            # particles that ended keep their places: slots after the patches have no record
             kept = [dr.select(alive, new, old) for new, old in zip(after.columns(), columns, strict=True)]
             return tuple(kept), segment + 1, lines + dr.select(going, types.UInt32(1), types.UInt32(0)), sums, alive
 

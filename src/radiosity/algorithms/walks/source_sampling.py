@@ -1,4 +1,4 @@
-"""Where walks begin: how many of each patch at N quanta."""
+"""Source sampling: how many walks begin on each patch at N quanta."""
 
 from dataclasses import dataclass
 
@@ -14,8 +14,9 @@ from ...tracing.line_tracer import LineTracer
 
 @dataclass(frozen=True, eq=False)
 class SourceSampling:
-    """Walks of patch i at N quanta: floor(N share_i + phase_i), as patches of the firing engine emit (contract 2); so the walks
-    of any N are among those of a larger one.
+    """The number of walks of patch i at N quanta: floor(N share_i + phase_i), as patches of the firing engine emit (contract 2).
+
+    So the walks of any N are among those of a larger one.
 
     Attributes:
         source: shares of emitted power for shooting, of area for gathering.
@@ -27,24 +28,24 @@ class SourceSampling:
 
     @staticmethod
     def of_power(problem: Problem, seed: Seed | int, replicates: int) -> "SourceSampling":
-        """Particles leave lights in proportion to their power."""
+        """Return the sampling of particles that leave lights in proportion to their power."""
         return SourceSampling(problem.source, phases(seed, replicates, len(problem.patches)))
 
     @staticmethod
     def of_area(problem: Problem, seed: Seed | int, replicates: int) -> "SourceSampling":
-        """Gathering walks leave all patches in proportion to their area."""
+        """Return the sampling of gathering walks, which leave all patches in proportion to their area."""
         area = problem.patches.area
         source = Source(area / area.sum(), problem.source.rho, problem.source.power)
         return SourceSampling(source, phases(seed, replicates, len(area)))
 
     def count(self, quanta: int) -> np.ndarray:
-        """(replicates, n_patches) uint32 at N quanta."""
+        """Return the number of walks at N quanta, (replicates, n_patches) uint32."""
         if quanta == 0:
             return np.zeros(self.phase.shape, np.uint32)
         return target_counts(self.source, quanta, np.zeros(self.phase.shape[1], np.uint32), self.phase).astype(np.uint32)
 
     def batch(self, tracer: LineTracer, before: int, quanta: int) -> tuple[Batch | None, int]:
-        """Walks that N = quanta has and N = before had not, and the largest index among them."""
+        """Return the walks that are new at N = quanta after N = before, and the largest index among them."""
         old, now = self.count(before).ravel(), self.count(quanta).ravel()
         rows = np.flatnonzero(now > old)
         if not len(rows):

@@ -10,12 +10,12 @@ from ..state import AbstractState, array, number
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AbstractLaunchState(AbstractState):
-    """Which launches of a stage are done.
+    """The state between two launches of a stage.
 
     Attributes:
-        arrivals: (replicates, n_patches) uint32, lines that landed.
+        arrivals: (replicates, n_patches) uint32, hit counts.
         missed: (2, replicates) uint32, lines that escaped and were lost.
-        quanta_before, launches: within a stage, N of the stage before, and how many launches are done.
+        quanta_before, launches: within a stage, N of the stage before, and the number of launches done.
     """
 
     arrivals: np.ndarray = array("replicates", "rows")
@@ -34,8 +34,8 @@ class WalkState(AbstractLaunchState):
 
     Attributes:
         fired_power: (groups,) uint64, power that left along lines of all replicates.
-        received, received_missed: (replicates, n_patches, groups) and (2, replicates, groups) uint64, scores; where arrivals are
-            not all there is.
+        received, received_missed: (replicates, n_patches, groups) and (2, replicates, groups) uint64, scores; where more
+            than hits is kept.
     """
 
     fired_power: np.ndarray = array("groups", merged=added)

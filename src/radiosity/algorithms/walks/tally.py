@@ -1,4 +1,4 @@
-"""What the sums of shooting walks mean."""
+"""The tally of shooting walks."""
 
 from dataclasses import dataclass
 
@@ -14,11 +14,11 @@ from .state import WalkState
 
 @dataclass(frozen=True)
 class WalkTally(AbstractTally[WalkState]):
-    """Landings, or their scores.
+    """Reads hits, or their scores.
 
     Attributes:
-        collisions: every landing scores what it brings, so that the books close in whole numbers.
-        chosen: walks are N to a replicate, not rounded patch by patch.
+        collisions: True where every hit scores what it brings, so that the energy balance closes in whole numbers.
+        chosen: True where a replicate has N walks, not a number rounded for each patch.
     """
 
     collisions: bool

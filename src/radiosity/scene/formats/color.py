@@ -16,19 +16,19 @@ def _from_xyz() -> np.ndarray:
 
 @cache
 def luminance_weights() -> np.ndarray:
-    """(3,) share of red, green and blue in the luminance of white: about 0.265, 0.670, 0.065."""
+    """Return the share of red, green and blue in the luminance of white, (3,): about 0.265, 0.670, 0.065."""
     return np.linalg.inv(_from_xyz())[1]
 
 
 def is_neutral(x: float, y: float) -> bool:
-    """Whether a chromaticity is grey."""
+    """Return whether a chromaticity is grey."""
     return max(abs(x - 1 / 3), abs(y - 1 / 3)) < NEUTRAL
 
 
 def unit_rgb(x: float, y: float) -> np.ndarray:
-    """(3,) RGB of luminance 1. Grey has three equal values; ``y`` must be positive.
+    """Return the RGB of luminance 1 of a chromaticity, (3,). Grey has three equal values; ``y`` must be positive.
 
-    What lies outside the triangle of primaries is moved towards grey of equal luminance until no value is negative.
+    A colour outside the triangle of primaries is moved towards grey of equal luminance until no value is negative.
     """
     rgb = np.ones(3) if is_neutral(x, y) else _from_xyz() @ (x / y, 1.0, (1 - x - y) / y)
     least = rgb.min()

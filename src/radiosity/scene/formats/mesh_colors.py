@@ -11,7 +11,7 @@ FULL = 255
 
 
 def are_bytes(colors: np.ndarray) -> bool:
-    """Whether colours, (n, 3), NaN where there is none, are whole numbers up to 255 that exceed 1."""
+    """Return whether colours, (n, 3), NaN where there is none, are whole numbers up to 255 that exceed 1."""
     known = colors[np.isfinite(colors)]
     return bool(len(known) and known.min() >= 0 and 1 < known.max() <= FULL and (known == np.floor(known)).all())
 

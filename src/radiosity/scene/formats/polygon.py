@@ -6,7 +6,7 @@ ROUNDING = 1e-9  # relative difference of areas that is none
 
 
 def vector_area(points: np.ndarray) -> np.ndarray:
-    """(3,) area times normal of a closed polygon, points (n, 3), counterclockwise seen from the normal's side."""
+    """Return area times normal of a closed polygon, (3,); points, (n, 3), are counterclockwise seen from the normal's side."""
     spokes = points[1:] - points[0]
     return np.cross(spokes[:-1], spokes[1:]).sum(axis=0) / 2
 

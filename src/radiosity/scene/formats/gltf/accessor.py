@@ -11,10 +11,10 @@ MOST_UNSTORED = 2**27  # numbers in an accessor that has no bytes of its own
 
 
 def accessor(file: GltfFile, index) -> np.ndarray:
-    """(count, width) float64, or int64 where the accessor holds integers that are not normalised.
+    """Return the values, (count, width) float64, or int64 where the accessor holds integers that are not normalised.
 
     Raises:
-        SceneError: it does not exist, or does not fit its bytes.
+        SceneError: the accessor does not exist, or does not fit its bytes.
     """
     info, what = file.item("accessors", index), f"accessor {index}"
     count, width = file.whole(info, "count", what), WIDTHS.get(str(info.get("type")), 0)

@@ -13,7 +13,7 @@ from .nodes import local_matrix
 
 
 def morphed(file: GltfFile, node: dict, mesh: dict, primitive: dict, vertices: np.ndarray, what: str) -> np.ndarray:
-    """(n, 3) vertices moved by the weights of the node, or else of the mesh."""
+    """Return vertices moved by the weights of the node, or else of the mesh, (n, 3)."""
     targets = file.items(primitive, "targets")
     holder = node if "weights" in node else mesh
     weights = file.items(holder, "weights")
@@ -39,7 +39,7 @@ class Skins:
     made: dict[int, np.ndarray] = field(default_factory=dict)
 
     def placed(self, index, attributes: dict, vertices: np.ndarray, what: str) -> tuple[np.ndarray, bool]:
-        """(n, 3) vertices in the world, and whether the joints mirror them."""
+        """Return vertices in the world, (n, 3), and whether the joints mirror them."""
         file, matrices = self.file, self._matrices(index)
         total, weights_of_all, number = np.zeros((len(vertices), 4, 4)), np.zeros(len(vertices)), 0
         while number == 0 or f"JOINTS_{number}" in attributes:
@@ -66,7 +66,7 @@ class Skins:
         return values
 
     def _matrices(self, index) -> np.ndarray:
-        """(n_joints, 4, 4) matrices from the mesh's own coordinates to the world."""
+        """Return matrices from the mesh's own coordinates to the world, (n_joints, 4, 4)."""
         file, skin = self.file, self.file.item("skins", index)
         if index not in self.made:
             joints = file.items(skin, "joints")
@@ -83,7 +83,7 @@ class Skins:
         return self.made[index]
 
     def _world(self, joint) -> np.ndarray:
-        """(4, 4) matrix of a joint to the world, through all nodes above it."""
+        """Return the matrix of a joint to the world, through all nodes above it, (4, 4)."""
         matrix, above, seen = np.eye(4), self._parents(), set()
         while joint is not None:
             info = self.file.item("nodes", joint)

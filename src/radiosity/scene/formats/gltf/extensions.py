@@ -75,13 +75,13 @@ def warn_of_unread(file: GltfFile) -> None:
 
 
 def instances(file: GltfFile, node: Node, size: int) -> np.ndarray | None:
-    """(k, 4, 4) transforms of the copies of a node's mesh within the node (EXT_mesh_gpu_instancing), or None without any.
+    """Return transforms of the copies of a node's mesh within the node, (k, 4, 4), or None (EXT_mesh_gpu_instancing).
 
     Args:
-        size: faces or vertices of the mesh, whichever are more.
+        size: the number of faces or of vertices of the mesh, whichever is larger.
 
     Raises:
-        SceneError: attributes that do not fit each other, or more faces than can be meant.
+        SceneError: attributes do not fit each other, or there are more faces than can be meant.
     """
     info = node.extension(file, "EXT_mesh_gpu_instancing")
     if info is None:

@@ -121,7 +121,10 @@ class Materials:
         return Finish(name, material, self._texture(texture, what), emissive, plain)
 
     def _is_glossy(self, metal: dict, extensions: dict, what: str) -> bool:
-        """Whether the file says so explicitly: the defaults (fully metallic) of files that leave it out mean nothing."""
+        """Return whether the file states that the material is glossy.
+
+        The default (fully metallic) of files that leave it out means nothing.
+        """
         textured = "metallicRoughnessTexture" in metal
         metallic, rough = (
             self.file.numbers({"v": [metal.get(key, default)]}, "v", (0.0,), f"{key} of {what}")[0]

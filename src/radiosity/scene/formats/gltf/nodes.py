@@ -121,7 +121,7 @@ def _name(file: GltfFile, info: dict, index: int) -> str:
 
 
 def local_matrix(file: GltfFile, info: dict, what: str) -> np.ndarray:
-    """(4, 4) transform of a node in that of its parent."""
+    """Return the transform of a node to the coordinates of its parent, (4, 4)."""
     if "matrix" in info:
         matrix = np.array(file.numbers(info, "matrix", tuple(np.eye(4).ravel()), what)).reshape(4, 4).T
         if not np.allclose(matrix[3], (0, 0, 0, 1), atol=1e-6):
@@ -136,7 +136,7 @@ def local_matrix(file: GltfFile, info: dict, what: str) -> np.ndarray:
 
 
 def composed(translation: np.ndarray, rotation: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """(..., 4, 4) matrices of translations (..., 3), quaternions x y z w (..., 4) of any length, and scales (..., 3)."""
+    """Return matrices, (..., 4, 4), of translations (..., 3), quaternions x y z w (..., 4) of any length, and scales (..., 3)."""
     x, y, z, w = np.moveaxis(rotation, -1, 0)
     s = 2 / (rotation**2).sum(axis=-1)
     matrix = np.zeros((*rotation.shape[:-1], 4, 4))

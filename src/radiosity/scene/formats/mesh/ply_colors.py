@@ -32,7 +32,7 @@ LARGEST = 65535
 
 
 def colors_of(path: Path, columns: Columns, element: str) -> np.ndarray | None:
-    """(n, 3) linear colours of an element, or None. Whole numbers are sRGB, floating point numbers linear.
+    """Return linear colours of an element, (n, 3), or None. Whole numbers are sRGB, floating point numbers linear.
 
     Raises:
         SceneError: whole numbers that are no colours.

@@ -40,7 +40,7 @@ def textures(path: Path, ply: Ply, options: ReadOptions) -> list[np.ndarray | No
 
 
 def of_faces(path: Path, face: Columns, count: int, n_textures: int) -> np.ndarray:
-    """(count,) int: the number of each polygon's texture, or `NONE`.
+    """Return the number of each polygon's texture, or `NONE`, (count,) int.
 
     Raises:
         SceneError: a number of a texture that the file does not name.
@@ -76,6 +76,6 @@ def of_corners(path: Path, wedges: Lists | None, sizes: np.ndarray) -> tuple[np.
 
 
 def of_vertices(vertex: Columns) -> np.ndarray | None:
-    """(n_vertices, 2) texture coordinates of vertices, or None."""
+    """Return texture coordinates of vertices, (n_vertices, 2), or None."""
     held = vertex.numbers
     return next((np.column_stack([held[u], held[v]]) for u, v in COORDINATES if u in held and v in held), None)

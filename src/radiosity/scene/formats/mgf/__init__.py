@@ -92,7 +92,7 @@ def _part(
 
 
 def _cut(ring: np.ndarray, name: str, statement: Statement, faults: Faults) -> np.ndarray:
-    """(m, 3) triangles of a face with more than four corners, none where it is faulty."""
+    """Return the triangles of a face with more than four corners, (m, 3), none where it is faulty."""
     if not np.isfinite(ring).all():
         return np.array([[0, 1, 2]])
     triangles, difference = triangulate(ring)

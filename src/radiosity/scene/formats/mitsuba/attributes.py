@@ -68,7 +68,7 @@ def with_colors(geometry: Geometry, wanted: list[VertexColors | None], place: st
 
 
 def mean_color(geometry: Geometry, wanted: VertexColors, place: str) -> np.ndarray:
-    """(1 or 3,) mean over the area of the faces."""
+    """Return the mean over the area of the faces, (1 or 3,)."""
     geometry, (color,) = with_colors(geometry, [wanted], place)
     assert color is not None
     corners = geometry.faces[:, [0, 1, 2, -1]]

@@ -26,7 +26,7 @@ class Image:
     sampler: Sampler = DEFAULT_SAMPLER
 
     def coordinates(self, uv: np.ndarray) -> np.ndarray:
-        """(n, 2) texture coordinates of a paint, whose v grows from the last row to the first, from those of Mitsuba."""
+        """Return texture coordinates of a paint, (n, 2), whose v grows from the last row to the first, from those of Mitsuba."""
         u, v = (np.column_stack([uv, np.ones(len(uv))]) @ self.to_uv.T).T[:2]
         return np.column_stack([u, 1 - v])
 
@@ -128,7 +128,7 @@ def _sampler(node: Node) -> Sampler:
 
 
 def equal_energy_rgb() -> np.ndarray:
-    """(3,) linear sRGB of a radiance that is 1 at all wavelengths, as Mitsuba converts it."""
+    """Return the linear sRGB of a radiance that is 1 at all wavelengths, as Mitsuba converts it, (3,)."""
     return np.array(_srgb((360.0, 830.0), (1.0, 1.0), True, ""))
 
 

@@ -34,10 +34,10 @@ def find_file(folders: list[Path], name: str, node: Node, options: ReadOptions) 
 
 
 def read_image(file: Path, raw: bool, options: ReadOptions) -> np.ndarray:
-    """(height, width, 1 or 3) float32; linear, or where ``raw`` the values as they are in the file.
+    """Return an image, (height, width, 1 or 3) float32; linear, or where ``raw`` the values as they are in the file.
 
     Raises:
-        SceneError: it is no image.
+        SceneError: the file is no image.
     """
     if file.suffix.lower() in FLOAT_IMAGES:
         return reduced(_float_image(file), lambda block: block, str(file), options)

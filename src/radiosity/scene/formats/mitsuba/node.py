@@ -52,10 +52,10 @@ class Node:
         return value
 
     def vector(self, name: str, default: tuple[float, float, float]) -> np.ndarray:
-        """(3,) an argument that is a point or vector.
+        """Return an argument that is a point or vector, (3,).
 
         Raises:
-            SceneError: it is something else.
+            SceneError: the argument is something else.
         """
         value = self.values.get(name, default)
         if np.shape(value) != (3,):

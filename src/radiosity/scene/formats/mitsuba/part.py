@@ -52,7 +52,7 @@ def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None,
 
 
 def is_equal_energy(emitter: Node | None) -> bool:
-    """Whether the radiance is a spectrum that is constant over all wavelengths: grey to us, reddish in sRGB."""
+    """Return whether the radiance is a spectrum that is constant over all wavelengths: grey here, reddish in sRGB."""
     radiance = emitter and emitter.values.get("radiance")
     return isinstance(radiance, Spectrum) and not radiance.wavelengths
 

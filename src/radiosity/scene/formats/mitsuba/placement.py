@@ -12,10 +12,10 @@ UNEVEN = 1e-3  # relative: what rounding of the numbers of a file may make
 
 
 def transformation(node: Node, label: str) -> np.ndarray:
-    """(4, 4) ``to_world`` of a shape.
+    """Return ``to_world`` of a shape, (4, 4).
 
     Raises:
-        SceneError: it is not finite, or in perspective.
+        SceneError: the matrix is not finite, or is a perspective.
     """
     matrix = np.asarray(node.values.get("to_world", np.eye(4)))
     if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or not np.allclose(matrix[3], (0, 0, 0, 1)):

@@ -107,6 +107,6 @@ class Maps:
 
 
 def _as_default(values: list[str], default: tuple[str, ...]) -> bool:
-    """Whether an option says what holds without it."""
+    """Return whether an option has its default value."""
     pairs = list(zip(values, default, strict=False))
     return all(v.lower() == d or (NUMBER.fullmatch(v) and NUMBER.fullmatch(d) and float(v) == float(d)) for v, d in pairs)

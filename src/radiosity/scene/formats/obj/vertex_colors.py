@@ -11,7 +11,7 @@ COLORED = 6  # numbers of a vertex that has a colour
 
 
 def colors_of(path: Path, rows: list[list[float]]) -> np.ndarray:
-    """(n, 3) sRGB colours from 0 to 1; NaN where a vertex has none. Other numbers behind the coordinates are told."""
+    """Return sRGB colours from 0 to 1, (n, 3); NaN where a vertex has none. Warn of other numbers after the coordinates."""
     longer = sum(len(row) > COLORED for row in rows)
     if longer:
         warn(f"{path}: vertices of more than {COLORED} numbers ({longer}): the fourth to sixth are taken as red, green and blue")
