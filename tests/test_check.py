@@ -240,3 +240,9 @@ def test_what_the_reader_says_is_among_the_findings(tmp_path):
     assert any("no material" in text for text in texts)
     assert any("without area" in text for text in texts)
     assert "no light" in kinds(report, "error")
+
+
+def test_the_older_name_of_check_still_works():
+    from radiosity.scene.check import check as older
+
+    assert older is rd.check

@@ -18,6 +18,7 @@ from .hooks import HOOKS
 if TYPE_CHECKING:
     __version__: str
 
+    from .diagnostics.check import check
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
     from .run.merge import merge
@@ -39,6 +40,7 @@ HOOKS["export"] = _export  # of `Solution.export`
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
+    "diagnostics.check": ("check",),
     "run.merge": ("merge",),
     "run.refine": ("refine_check",),
     "run.solve": ("solve",),
@@ -66,6 +68,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Solution",
+    "check",
     "load_scene",
     "load_solution",
     "merge",

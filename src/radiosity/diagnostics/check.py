@@ -38,8 +38,23 @@ def check_file(
 def check(scene: Scene, *, walks: int = leaks.WALKS, seed: int = 0, device: str = "auto") -> Report:
     """Check a scene: geometry, materials, light, and, by tracing lines, where light is lost.
 
+    Args:
+        scene: what `load_scene` gave, or a scene of arrays.
+        walks: how many lines look for leaks.
+        seed: with the same scene, the same findings.
+        device: "auto", "cpu" or "cuda".
+
+    Returns:
+        A report with ``findings`` (each has ``severity``, ``kind`` and ``message``), ``surfaces`` and ``serious``: True where a
+        solution would be worthless or impossible.
+
     Raises:
         DeviceError: lines cannot be traced on this machine.
+
+    Example:
+        >>> report = rd.check(rd.load_scene("room"))
+        >>> report.serious
+        False
     """
     from ..patches import subdivide
 
