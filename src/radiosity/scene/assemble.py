@@ -1,4 +1,4 @@
-"""Parts with materials become one scene; what is taken differently from the file is told."""
+"""The assembly of parts with materials to one scene, with warnings of values that differ from the file."""
 
 from dataclasses import replace
 
@@ -26,7 +26,7 @@ def assemble(
     cameras: tuple[Camera, ...] = (),
     scale: float = 1.0,
 ) -> Scene:
-    """One scene from parts whose vertices are in metres already; ``scale`` is only recorded.
+    """Return one scene from parts whose vertices are already in metres; ``scale`` is only recorded.
 
     Triangles that are the halves of a parallelogram become one face again; faces without area are left out;
     missing materials and reflectances above ``options.max_reflectance`` are replaced. One warning for each kind.

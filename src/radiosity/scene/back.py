@@ -1,4 +1,4 @@
-"""What the back of a face does to lines that come to it."""
+"""Backs of faces, and what they do to lines that hit them."""
 
 from enum import IntEnum
 
@@ -15,5 +15,5 @@ class Back(IntEnum):
 
     ABSORBS = 0
     RADIATES = 1
-    PASSES = 2  # invisible from behind: lines go on
-    OPEN = 3  # of a lamp that hides nothing: lines go on from both sides, and the front emits
+    PASSES = 2  # invisible from behind: lines pass through
+    OPEN = 3  # a lamp that hides nothing: lines pass through from both sides, and the front emits

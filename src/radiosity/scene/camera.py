@@ -1,4 +1,4 @@
-"""Cameras: from where pictures are taken."""
+"""Cameras: the points from which pictures are taken."""
 
 from dataclasses import dataclass
 

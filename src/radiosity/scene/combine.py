@@ -1,4 +1,4 @@
-"""One scene of several."""
+"""The combination of several scenes to one."""
 
 from dataclasses import replace
 

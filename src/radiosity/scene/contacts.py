@@ -1,4 +1,4 @@
-"""Pairs of faces that lie on each other, or nearly so, and what becomes of light between them."""
+"""Contacts: pairs of faces that lie on each other, or nearly so, and what happens to light between them."""
 
 from dataclasses import dataclass, fields
 
@@ -11,15 +11,15 @@ CERTAIN = 1  # ulps: less is no gap, but what coordinates were rounded by
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Pairs of faces, nearer than 8 ulps wherever they overlap; of copies, pairs of the first of them.
+    """Pairs of faces, nearer than 8 ulps wherever they overlap. The first of several copies stands for all of them.
 
     Attributes:
         one, two: (m,) int64, ``one`` before ``two``, pairs in order.
         gap: (m,) float64 metres by which ``two`` lies in front of ``one`` (negative: behind it), where that is most.
-        ulp: (m,) float64 metres, of single precision there.
-        share: (m,) float64, of the smaller one's area that the two have in common.
-        coplanar: (m,) bool, within 4 ulps: in one plane.
-        same_way: (m,) bool, fronts look the same way.
+        ulp: (m,) float64 metres, an ulp of single precision there.
+        share: (m,) float64, the share of the smaller face's area that the two have in common.
+        coplanar: (m,) bool, True where they lie in one plane: within 4 ulps.
+        same_way: (m,) bool, True where fronts look the same way.
     """
 
     one: np.ndarray
@@ -31,7 +31,7 @@ class Contacts:
     same_way: np.ndarray
 
     def take(self, rows: np.ndarray) -> "Contacts":
-        """The pairs of a choice (indices or mask)."""
+        """Return some of the pairs (indices or mask)."""
         return Contacts(*(getattr(self, field.name)[rows] for field in fields(Contacts)))
 
     def doubled(self, scene: Scene) -> np.ndarray:
@@ -55,7 +55,7 @@ class Contacts:
 
     @staticmethod
     def joined(parts: "list[Contacts]") -> "Contacts":
-        """The pairs of several values, in their order, each once."""
+        """Return the pairs of several contacts, in order, each once."""
         if not parts:
             return Contacts(*(np.zeros(0, t) for t in (np.int64, np.int64, float, float, float, bool, bool)))
         every = Contacts(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Contacts)))

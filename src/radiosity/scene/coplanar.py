@@ -1,7 +1,7 @@
 """Faces that lie on each other within what single precision holds apart, however they are cut.
 
-Of copies, faces with the very same corners in the same order, the first stands for all: it alone is compared with other faces,
-and each copy with it. So a million copies are a million pairs, not half a billion.
+Copies are faces with the very same corners in the same order. The first copy stands for all: only it is compared with other
+faces, and each copy with it. So a million copies are a million pairs, not half a billion.
 """
 
 import warnings
@@ -18,8 +18,8 @@ from .overlap import common, overlapping
 from .precision import EPSILON
 
 ONE_PLANE = 4  # ulps: faces nearer than this where they overlap lie in one plane
-NEAR = 8  # ulps: so far in front of their face lines begin (tracing/geometry.py), so that they miss what is nearer
-WIDTH = 32  # ulps: what faces share is wider than that, and than SLIVER of the smaller one's longest edge
+NEAR = 8  # ulps: distance in front of their face where lines begin (tracing/geometry.py); they miss faces that are nearer
+WIDTH = 32  # ulps: the common part of faces is wider than that, and than SLIVER of the smaller one's longest edge
 SLIVER = 1e-5
 MOST = 1 << 24  # pairs
 
@@ -106,13 +106,13 @@ def _measured(scene: Scene, corners: np.ndarray, least: np.ndarray, small: np.nd
     shape, area = common(below[rows], above[rows])
     points = corners[large][:, :1] + np.einsum("mkj,mij->mki", shape, basis)
     exact = _height(corners, normal[large], small, points) - _height(corners, normal[large], large, points)
-    rounded = corners.astype(np.float32).astype(np.float64)  # as lines meet them
+    rounded = corners.astype(np.float32).astype(np.float64)  # as the BVH has them
     told = _height(rounded, normal[large], small, points) - _height(rounded, normal[large], large, points)
     most = np.take_along_axis(exact, np.abs(exact).argmax(axis=1)[:, None], axis=1)[:, 0]
     place = np.maximum(scene.plane_reach[small], scene.plane_reach[large])
     ulp = EPSILON * np.maximum(np.abs(points).max(axis=(1, 2)), place)
     same = np.einsum("ij,ij->i", normal[small], normal[large]) > 0
-    turn = small < large  # then the larger one is `two`, and its height over the smaller is told along that one's normal
+    turn = small < large  # then the larger one is `two`, and its height is measured along the normal of the smaller
     gap = np.where(turn, np.where(same, -most, most), most)
     share = area / np.minimum(scene.area[small], scene.area[large])
     every = Contacts(

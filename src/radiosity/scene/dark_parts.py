@@ -1,6 +1,6 @@
 """Dark sides within surfaces that light reaches on both sides, as a room and a table top that are one surface of an STL file.
 
-Parts of a surface that hang together by their corners are looked at first, then each face.
+Parts of a surface that are connected by their corners are looked at first, then each face.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ from .model import Back, Scene
 from .reached import MANY, Lit
 from .topology import weld
 
-EXPECTED = 12  # lines that a side would have got, were it as dim as the dimmer sides of its surface: none of them is no chance
+EXPECTED = 12  # a side is dark where it has no hit, and would have this many if it were as dim as its surface's dimmer sides
 
 
 def dark_parts(scene: Scene, reached: np.ndarray, kind: np.ndarray) -> np.ndarray:

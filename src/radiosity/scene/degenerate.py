@@ -7,10 +7,10 @@ import numpy as np
 from ..errors import RadiosityWarning, SceneError, shown
 from .precision import EPSILON
 
-RESOLUTION = 4 * EPSILON  # of the distance from the scene's centre: what the ray caster can tell apart
+RESOLUTION = 4 * EPSILON  # share of the distance from the scene's centre that the BVH can tell apart
 
-# Twice a face's area over the square of the scene's reach: where the caster's scene reaches to 2^20 (tracing/bvh.py),
-# smaller faces are so close to what Embree can divide by, seen along a line, that places of hits would be wrong.
+# Least value of twice a face's area over the square of the scene's reach. The BVH's scene reaches to 2^20 (tracing/bvh.py);
+# there Embree divides by numbers so close to zero for smaller faces that the places of hits would be wrong.
 SMALLEST = 4e-27
 
 

@@ -1,8 +1,9 @@
 """Pairs of faces that may lie on each other: near in space, and in planes that are near where they meet.
 
-Faces are put into a grid of cubes, for each power of four one whose cubes are as large as the faces of that size, and within a
-cube into slabs by the distance of their planes from its middle. Each face is compared with those of its own size and larger that
-share a cube and a slab with it. So a wall does not meet all that stands before it, nor a fine mesh all of itself.
+Faces are put into grids of cubes, one grid for each power of four, whose cubes are as large as the faces of that size. Within a
+cube they are put into slabs by the distance of their planes from its middle. Each face is compared with those of its own size
+and larger that share a cube and a slab with it. So a wall is not compared with all faces before it, nor a fine mesh with all of
+itself.
 """
 
 from collections.abc import Iterator
@@ -11,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 SQUARE = 0.7  # below sqrt(1/2)
-STEP = 2  # of one grid to the next, as a power of two
-SLABS = 64  # of a cube
-FILTER = np.uint64((1 << 22) - 1)  # most keys that nobody shares are told by their last bits
+STEP = 2  # binary logarithm of the ratio of one grid to the next
+SLABS = 64  # slabs of a cube
+FILTER = np.uint64((1 << 22) - 1)  # last bits of keys: they find most keys that no other face shares
 CHUNK = 1 << 19  # faces, and pairs, at a time
 PRIMES = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0x27D4EB2F165667C5)
 
@@ -23,10 +24,11 @@ class Plates:
     """Flat convex pieces.
 
     Attributes:
-        low, high: (n, 3) their boxes.
+        low, high: (n, 3) the corners of their boxes.
         normal, centroid: (n, 3).
-        tilt: (n,) radians that normals are uncertain by. margin: (n,) what planes and places are uncertain by.
-        width: (n,) what is narrower is no overlap with this plate.
+        tilt: (n,) radians, the uncertainty of normals.
+        margin: (n,) the uncertainty of planes and places.
+        width: (n,) the least width of an overlap with this plate.
         piece: (n,) int: plates of one piece are not compared.
     """
 
@@ -41,8 +43,10 @@ class Plates:
 
 
 def pairs(plates: Plates, some: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Pairs of some plates (indices) whose boxes and planes may meet, in parts: (m,) indices of the smaller, and of the larger.
-    Some come twice."""
+    """Yield pairs of some plates (indices) whose boxes and planes may meet, in parts: (m,) indices of the smaller and the larger.
+
+    Some pairs come twice.
+    """
     size = np.maximum((plates.high - plates.low).max(axis=1) + 2 * plates.margin, 1e-300)
     level = STEP * np.ceil(np.log2(size) / STEP).astype(np.int64)
     for at in np.unique(level[some]):
@@ -56,7 +60,7 @@ def pairs(plates: Plates, some: np.ndarray) -> Iterator[tuple[np.ndarray, np.nda
 
 
 def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The cubes and slabs of each face, an entry each: face, cube (k, 3) and key."""
+    """Return the cubes and slabs of each face, with an entry for each: face, cube (k, 3) and key."""
     margin = plates.margin[face][:, None]
     low = np.floor((plates.low[face] - margin) / cube).astype(np.int64)
     wide = np.floor((plates.high[face] + margin) / cube).astype(np.int64) > low
@@ -78,7 +82,7 @@ def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray,
     at = np.repeat(np.arange(len(face)), many)
     number = first[at] + np.arange(len(at)) - np.repeat(np.cumsum(many) - many, many)
     factors = np.array(PRIMES, np.uint64)
-    keys = cell[:, 0].astype(np.uint64) * factors[0]  # a hash: what meets by chance is sorted out below
+    keys = cell[:, 0].astype(np.uint64) * factors[0]  # a hash: pairs that share it by chance are removed below
     for axis in (1, 2):
         keys += cell[:, axis].astype(np.uint64) * factors[axis]
     keys = keys[at] + number.astype(np.uint64) * factors[3]
@@ -102,7 +106,7 @@ def _matches(plates: Plates, some: np.ndarray, cube: float, level: np.ndarray, l
     face, cell, keys = face[shared], cell[shared], keys[shared]
     begin, end = np.searchsorted(target_keys, keys, "left"), np.searchsorted(target_keys, keys, "right")
     met = np.flatnonzero(end > begin)
-    # where all that are met are of the plate's own piece there is nothing to compare
+    # where all faces of a key are of the plate's own piece there is nothing to compare
     piece, ends_of = plates.piece[target], np.flatnonzero(np.concatenate([target_keys[1:] != target_keys[:-1], [True]]))
     starts = np.concatenate([[0], ends_of[:-1] + 1])
     lowest, highest = (reduce.reduceat(piece, starts) for reduce in (np.minimum, np.maximum))

@@ -1,4 +1,4 @@
-"""How far convex polygons of up to four corners overlap in a plane, many pairs at a time."""
+"""The overlap of convex polygons of up to four corners in a plane, for many pairs at a time."""
 
 import numpy as np
 
@@ -28,12 +28,13 @@ def overlapping(one: np.ndarray, two: np.ndarray, least: np.ndarray) -> np.ndarr
 
 
 def common(one: np.ndarray, two: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The part that both cover: (m, 8, 2) corners, the last one repeated, and (m,) area. Zeros where there is none.
+    """Return the part that both cover: (m, 8, 2) corners, the last one repeated, and (m,) area; zeros where there is none.
 
-    By cutting ``two`` along the edges of ``one`` (I. Sutherland, G. Hodgman, "Reentrant polygon clipping", CACM 17(1), 1974).
+    It cuts ``two`` along the edges of ``one`` (I. Sutherland, G. Hodgman, "Reentrant polygon clipping", CACM 17(1), 1974).
 
     Args:
-        one: (m, 4, 2) counterclockwise. two: (m, 4, 2) either way round.
+        one: (m, 4, 2) counterclockwise.
+        two: (m, 4, 2) in either direction.
     """
     shape, count = two, np.full(len(two), 4)
     for edge in range(4):
@@ -43,7 +44,7 @@ def common(one: np.ndarray, two: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _cut(shape: np.ndarray, count: np.ndarray, start: np.ndarray, along: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The part of polygons to the left of lines."""
+    """Return the part of polygons to the left of lines."""
     offset = shape - start[:, None]
     height = along[:, None, 0] * offset[..., 1] - along[:, None, 1] * offset[..., 0]
     k = shape.shape[1]

@@ -15,12 +15,12 @@ class Paint:
     Attributes:
         images: linear (not gamma encoded) images, each (height, width, n_bands) float32; row 0 is the top
             (v = 1), as in image files.
-        image: (n_faces,) int32, which image; -1 where there is none.
+        image: (n_faces,) int32, the number of the image; -1 where there is none.
         uv: (n_faces, 4, 2) float32, texture coordinates of the corners (unused where image is -1).
         color: (n_faces, 4, n_bands) float32, corner colours; 1 where there are none.
-        limit: product of base value and paint is brought down to this (reflectance), or infinity. Each texel is, and where
-            there is no image each point.
-        samplers: one for each image; none at all: all images repeat, and are linear between the centres of texels.
+        limit: the largest product of base value and paint (reflectance), or infinity. Larger products are brought down to it, at
+            each texel, and where there is no image at each point.
+        samplers: one for each image. If empty, all images repeat, and are linear between the centres of texels.
     """
 
     images: tuple[np.ndarray, ...]
@@ -84,5 +84,5 @@ def look_up(image: np.ndarray, sampler: Sampler, uv: np.ndarray) -> np.ndarray:
 
 
 def _texels(at: np.ndarray, count: int, wrap: str) -> np.ndarray:
-    """The texels that hold places on an axis, as far away as they may be."""
+    """Return the texels that hold places on an axis, at any distance."""
     return fold(np.floor(at), count, wrap).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Textures and colours of the parts become one `Paint` of all faces."""
+"""The paint of all faces, made from textures and colours of the parts."""
 
 import numpy as np
 

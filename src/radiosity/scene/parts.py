@@ -22,7 +22,7 @@ class Material:
         reflectance: diffuse reflectance, or None where the file gives no material.
         emission: exitance, W/m² or lm/m² (pi times the radiance of a diffuse emitter).
         back: what the back does.
-        back_reflectance, back_emission: of a radiating back; None: as the front.
+        back_reflectance, back_emission: values of a radiating back; None: those of the front.
         diffuse: False where the file's material is not diffuse and was taken by its diffuse albedo.
         given: the user's own .toml sets the reflectance, below 1: it is taken as it is.
         origin: the file that sets the reflectance, where it is another one than the scene's.
@@ -43,13 +43,13 @@ class Part:
     """Faces of one surface (object x material).
 
     Attributes:
-        name: of the surface. Parts of equal name become one surface.
+        name: the name of the surface. Parts of equal name become one surface.
         vertices: (n, 3) metres.
         faces: (m, 3) or (m, 4) int, as in `Scene.from_arrays`.
-        material: of all its faces.
+        material: the material of all its faces.
         uv: (n, 2) texture coordinates of the vertices, or None.
         color: (n, n_bands) linear vertex colours that multiply the reflectance, or None.
-        emission_color: the same for the emission.
+        emission_color: linear vertex colours that multiply the emission, or None.
         texture, emission_texture: (height, width, 1 or 3) linear images that multiply reflectance, emission; or None.
         sampler, emission_sampler: how these images are continued.
         emission_uv: (n, 2) texture coordinates of the emission's texture; None: ``uv``.
@@ -106,12 +106,12 @@ class ReadOptions:
             raise SceneError(f"max_reflectance is {self.max_reflectance}; it must be above 0 and strictly below 1, such as 0.95")
 
     def admit(self, file: Path, source) -> Path:
-        """A file that the scene file ``source`` asks for, if it lies in the scene's folder. Links are followed first.
+        """Return a file that the scene file ``source`` asks for, if it lies in the scene's folder. Links are followed first.
 
-        A scene of a stranger must not read other files of this machine.
+        A scene from an unknown source must not read other files of the machine.
 
         Raises:
-            SceneError: it lies outside.
+            SceneError: the file lies outside.
         """
         try:
             place = Path(os.path.realpath(file))

@@ -1,14 +1,13 @@
 """The resolution of single precision: the centre of coordinates, and the size of an ulp about it.
 
-Lines are traced in single precision, about the scene's centre. The centre is a median, so that an object far away leaves the
-precision of all others as it was; and what is rounded at a point depends on the numbers near it, not on how far the scene
-reaches.
+Lines are traced in single precision, about the scene's centre. The centre is a median, so that an object far away does not change
+the precision of all others. The rounding at a point depends on the numbers near it, not on the size of the scene.
 """
 
 import numpy as np
 
 EPSILON = float(np.finfo(np.float32).eps)
-TIE = 1e-9  # of the area: where so little decides, the lower of two medians is taken, however sums are rounded
+TIE = 1e-9  # share of the area: where less decides, the lower of two medians is taken, however sums are rounded
 
 
 def median_centre(centroid: np.ndarray, area: np.ndarray) -> np.ndarray:

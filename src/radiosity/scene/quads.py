@@ -1,4 +1,4 @@
-"""Two triangles that a file format made of one flat parallelogram become one face again."""
+"""The merge of two triangles, which a file format made of one flat parallelogram, to one face."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from .bends import tolerance
 from .model import Scene
 from .paint import Paint
 
-ROUNDS = 16  # of mutual best matching; meshes need two or three
+ROUNDS = 16  # most rounds of mutual best matching; meshes need two or three
 
 
 def merge_triangles(scene: Scene) -> Scene:

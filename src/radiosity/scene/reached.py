@@ -1,4 +1,4 @@
-"""Which sides of two-sided surfaces light reaches, by the lines that met each side of their faces."""
+"""The sides of two-sided surfaces that light reaches, found from the lines that hit each side of their faces."""
 
 from enum import IntEnum
 
@@ -6,14 +6,14 @@ import numpy as np
 
 from .model import Back, Scene
 
-MANY = 30  # lines on a face, from which on none on its other side says that it is dark
-STRAY = 0.01  # of the lines of a surface wound both ways at most meet faces that few lines reached
+MANY = 30  # from this number of lines on one side of a face, its other side is dark where it has none
+STRAY = 0.01  # largest share of the lines of a surface wound both ways that hit faces which few lines reached
 
 
 class Lit(IntEnum):
-    """The sides of a surface that are lit. One side alone is so where all lines met it."""
+    """The sides of a surface that are lit. It is one side alone where all lines hit that side."""
 
-    BOTH = 0  # or it is not known, or the surface has one side
+    BOTH = 0  # also where it is unknown, or the surface has one side
     FRONT = 1
     BACK = 2
     MIXED = 3  # one side of each face, fronts and backs: its faces are wound both ways

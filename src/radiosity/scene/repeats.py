@@ -1,4 +1,4 @@
-"""Edges that meet the same place of a repeating image again and again are followed once, and counted as often."""
+"""Repeats: an edge that passes the same place of a repeating image several times is followed once, and counted as often."""
 
 from math import gcd
 
@@ -10,12 +10,14 @@ FRACTIONS = np.array(sorted({(p / q, p, q) for q in range(1, HIGHEST + 1) for p 
 
 
 def folded(start: np.ndarray, edge: np.ndarray, period: tuple[float, float], width: np.ndarray):
-    """The edges with which to go on: starts, vectors, how often each counts, and the number of the edge that it stands for; and
-    (m,) of the given edges the periods that they run over if their direction is one that comes back, or infinity.
+    """Return the edges to follow: starts, vectors, how often each counts, and the number of the edge that it stands for.
+
+    The last value is, for each given edge, the periods that it runs over if its direction repeats, or infinity, (m,).
 
     Args:
-        start, edge: (m, 2), and the periods along x and y, in texels.
-        width: (m,) of the footprints across the edge; narrow ones are left as they are.
+        start, edge: (m, 2), in texels.
+        period: the periods along x and y, in texels.
+        width: (m,) widths of the footprints across the edge; narrow ones stay as they are.
     """
     along = np.abs(edge) / period
     longer = along.max(axis=1)

@@ -1,4 +1,4 @@
-"""How an image is continued outside the unit square, and between the centres of its texels."""
+"""Samplers: how an image is continued outside the unit square, and between the centres of its texels."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ FILTERS = ("linear", "nearest")
 
 @dataclass(frozen=True)
 class Sampler:
-    """Wraps and filter of an image.
+    """The wraps and the filter of an image.
 
     Attributes:
         wrap: along u and along v, each one of `WRAPS`.
@@ -29,7 +29,7 @@ DEFAULT_SAMPLER = Sampler()
 
 
 def fold(texel: np.ndarray, count: int, wrap: str) -> np.ndarray:
-    """Texels of the image, 0 to count - 1, from texels anywhere on the axis."""
+    """Return texels of the image, 0 to count - 1, from texels anywhere on the axis."""
     if wrap == "clamp":
         return np.clip(texel, 0, count - 1)
     if wrap == "repeat":

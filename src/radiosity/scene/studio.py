@@ -1,5 +1,7 @@
-"""`studio`: a furnished room in colour, which ``make demo`` shows. All edges lie on a grid of 10 cm, so that patches of that size
-meet furniture along their edges, and none lies half under it."""
+"""The scene `studio`: a furnished room in colour, which ``make demo`` shows.
+
+All edges lie on a grid of 10 cm, so that patches of that size end at furniture, and none lies half under it.
+"""
 
 from dataclasses import replace
 

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field
 
-MOST_TEXELS = 1 << 26  # of all images of a scene together: 0.8 GB of three bands
-LARGEST = 4096  # texels along an edge of an image that is kept whole
-SMALL = 1024  # those that are not are averaged to this
+MOST_TEXELS = 1 << 26  # most texels of all images of a scene together: 0.8 GB of three bands
+LARGEST = 4096  # most texels along an edge of an image that is kept whole
+SMALL = 1024  # larger images are averaged to this many texels along an edge
 
 
 @dataclass(eq=False)

@@ -6,7 +6,7 @@ import numpy as np
 
 from .model import Scene
 
-WELD = 2e-6  # of the median vertex's largest coordinate about the centre: vertices that are closer are one
+WELD = 2e-6  # share of the median vertex's largest coordinate about the centre: vertices that are closer are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,9 +14,9 @@ class OpenEdges:
     """Edges of one face only, after vertices were welded.
 
     Attributes:
-        face: (n_open,) int64, the face of each.
+        face: (n_open,) int64, the face of each edge.
         length: (n_open,) float64, metres.
-        total: number of all edges.
+        total: the number of all edges.
     """
 
     face: np.ndarray
