@@ -129,7 +129,7 @@ def test_backs_that_swallow_light_are_named(cube):
     wall = quad((0.5, 0.2, 0.2), (0, 0.6, 0), (0, 0, 0.6))
     scene = join([("shell", 0.5, 1.0, box((0, 0, 0), (1, 1, 1), inward=True)), ("screen", 0.5, 0.0, [wall])], source="s")
     report = check(scene)
-    assert "land on absorbing backs (of 'screen' 100 %)" in message(report, "leaks")
+    assert "hit absorbing backs (of 'screen' 100 %)" in message(report, "leaks")
     assert "leaks" in kinds(report, "warning")
     two_sided = replace(scene, back=np.where(scene.surface == 1, Back.RADIATES, Back.ABSORBS).astype(np.uint8))
     assert "leaks" not in kinds(check(two_sided))

@@ -136,8 +136,8 @@ def test_where_no_own_line_met_light_one_of_all_replicates_is_known(method):
 
 def test_reports_of_no_lines_say_unknown(blind):
     assert math.isnan(blind.error)
-    assert "unknown: no line landed anywhere" in blind.report()
-    assert "?: unknown, since no line landed there" in blind.report()
+    assert "unknown: no line hit a patch" in blind.report()
+    assert "?: unknown, since no line hit it" in blind.report()
     assert "nan" not in blind.report()
     assert "0.00%" not in blind.report()
     rows = blind.surface_table()

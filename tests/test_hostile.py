@@ -136,7 +136,7 @@ def test_nothing_sees_anything(name):
     assert book["closes"]
     assert book["escaped"] > 0
     assert book["escaped"] == pytest.approx(book["emitted"] + book["rounding"], rel=1e-12)
-    assert "no line landed anywhere" in solution.report()
+    assert "no line hit a patch" in solution.report()
     assert {finding.kind for finding in check(scene).findings if finding.severity == "error"} == {"leaks"}
 
 

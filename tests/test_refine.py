@@ -132,7 +132,7 @@ def test_what_no_line_tells_is_a_question_mark(quanta, known):
     assert (found.coarse.arrivals[1] > 0) == known
     text, rows = found.report(), {row["surface"]: row for row in found.table()}
     assert "nan" not in text
-    assert text.splitlines()[-1] == "?: unknown, since nothing is reflected there, or no line landed there"
+    assert text.splitlines()[-1] == "?: unknown, since nothing is reflected there, or no line hit it"
     assert np.isnan(rows["never"]["sampling"])
     assert np.isnan(rows["never"]["discretisation"])
     assert rows["lamp"]["sampling"] == 0  # black: its radiosity is its own light

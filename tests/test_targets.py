@@ -258,7 +258,7 @@ def test_what_is_known_of_an_error_is_how_many_lines_landed_on_its_surface():
     assert landed < FEW
     assert solution.arrivals[2] > 100
     text = next(str(w.message) for w in told if "not reached" in str(w.message))
-    assert f"after {solution.rays:,} lines it cannot be told yet ({landed:,} lines landed there)" in text
+    assert f"after {solution.rays:,} lines it cannot be told yet ({landed:,} lines hit it)" in text
 
 
 @pytest.mark.usefixtures("quick")

@@ -120,7 +120,7 @@ def _lines(scene: Scene, power: np.ndarray, walks: int, seed: int, device: str):
         counts = np.bincount(scene.surface[fates.hit[fates.fate == leaks.LOST]], minlength=len(scene.names))
         where, advice = _ranked(scene.names, counts), "if they should reflect, turn those faces round or make them two-sided"
         severity = WARNING if fates.lost > LITTLE else NOTE
-        text = f"{_percent(fates.lost)} of {lines} lines land on absorbing backs (of {where}): {advice}"
+        text = f"{_percent(fates.lost)} of {lines} lines hit absorbing backs (of {where}): {advice}"
         yield Finding(severity, "leaks", text)
     yield from dark_sides.findings(scene, followed, power)
 

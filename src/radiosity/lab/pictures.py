@@ -70,7 +70,7 @@ def orders(path: Path) -> list[Path]:
     with matplotlib.rc_context(STYLE):
         figure = _figure(6.4, 8.6)
         above, below = figure.subplots(2, 1)
-        _numbered(above, room, paths, breadth_first(lengths), "breadth-first: sweep by sweep", "sweep", 1)
+        _numbered(above, room, paths, breadth_first(lengths), "breadth-first: wavefront by wavefront", "wavefront", 1)
         _numbered(below, room, paths, depth_first(lengths), "depth-first: particle by particle", "particle", 0)
         return _save(figure, path)
 

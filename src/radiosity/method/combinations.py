@@ -26,7 +26,7 @@ def _local(method) -> str:
     if method.order in (*ITERATIONS, "matrix"):
         if method.equation != "discrete":
             raise MethodError(
-                f"order '{method.order}' sends the power of whole patches, wherever on them it landed: "
+                f"order '{method.order}' sends the power of whole patches, wherever on them it arrived: "
                 "it solves the discrete equation only"
             )
         return "matrix" if method.order == "matrix" else "iteration"
@@ -35,7 +35,7 @@ def _local(method) -> str:
         return "firing"
     if method.order not in WALK_ORDERS:
         raise MethodError(
-            f"order '{method.order}' belongs to patches that fire what they owe: equation discrete, estimator "
+            f"order '{method.order}' belongs to patches that fire whole lines to a target count: equation discrete, estimator "
             f"collision, absorption rounded; walks of other kinds take {', '.join(WALK_ORDERS)}"
         )
     if method.estimator == "bidirectional":
@@ -45,19 +45,19 @@ def _local(method) -> str:
         )
     if method.absorption == "rounded":
         raise MethodError(
-            f"absorption 'rounded' is for counted landings (equation discrete, estimator collision), not for "
+            f"absorption 'rounded' is for counted hits (equation discrete, estimator collision), not for "
             f"equation {method.equation} with estimator {method.estimator}; take drawn or fractional"
         )
     if method.absorption == "fractional" and method.estimator != "collision":
         raise MethodError(
-            f"absorption 'fractional' has no probability of its own at a landing, which estimator "
+            f"absorption 'fractional' has no probability of its own at a hit, which estimator "
             f"'{method.estimator}' divides by; take collision"
         )
     if method.order == "depth-first" and method.absorption == "fractional":
         raise MethodError("absorption 'fractional' lets a share of all walks go on together; take --order breadth-first")
     if method.estimator == "gathering":
         if method.order == "depth-first":
-            raise MethodError("estimator 'gathering' goes back along walks whose landings sweeps have kept; take breadth-first")
+            raise MethodError("estimator 'gathering' goes back along walks whose hits wavefronts have kept; take breadth-first")
         return "gathering"
     return "walks"
 
@@ -107,9 +107,9 @@ def _refuse_options(method, found: str) -> None:
     if method.reconstruction == "local-linear" and (
         found != "walks" or method.equation != "continuous" or method.estimator == "gathering"
     ):
-        raise MethodError("density estimation needs landing points of particles: equation continuous, local lines, shooting")
+        raise MethodError("density estimation needs the points that particles hit: equation continuous, local lines, shooting")
     if method.coherent and (found != "firing" or method.order != "breadth-first" or method.points != "halton"):
         raise MethodError(
-            "coherent firing needs strata of the Halton sequence and whole sweeps: discrete/local/breadth-first/"
+            "coherent firing needs strata of the Halton sequence and whole wavefronts: discrete/local/breadth-first/"
             f"halton, not {method.lines}/{method.order}/{method.points}; leave one out"
         )

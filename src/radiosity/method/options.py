@@ -77,8 +77,8 @@ METHOD = table(
     ),
     Option(
         "coherent",
-        "Trace similar lines together. Faster where a patch fires 50 000 lines or more in a sweep; bits may differ where a line "
-        "meets two faces in one point.",
+        "Trace similar lines together. Faster where a patch fires 50 000 lines or more in a wavefront; bits may differ where a "
+        "line meets two faces in one point.",
         kind="flag",
         tuning=True,
         details="It sets Embree's coherent flag: at an exact tie of two faces the winner then depends on the packet of lines.",

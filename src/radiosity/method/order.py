@@ -2,7 +2,7 @@
 
 ORDERS = {
     "depth-first": "each walk is followed to its end",
-    "breadth-first": "sweep after sweep: all light reflected k times before any reflected k + 1 times",
+    "breadth-first": "wavefront after wavefront: all light reflected k times before any reflected k + 1 times",
     "staged": "breadth-first in stages of ever more, weaker lines; a picture after each",
     "well-distributed": "in stages of half the quantum each; a patch fires what it lacks to its share",
     "incremental": "iterations that send the light not sent yet, in ever fewer lines",

@@ -8,7 +8,7 @@ SCHEMES = {
 FACTORS = {
     "polygons": "exact form factors of polygons, times the share of lines between two patches that nothing stops",
     "hemicube": "item buffers of the five faces of a hemicube on the middle of each patch",
-    "lines": "local lines from each patch, counted where they land",
+    "lines": "local lines from each patch, counted where they hit",
 }
 SOLVERS = {  # each is a file of factors/solvers
     "jacobi": "all patches at once from the last iterate",

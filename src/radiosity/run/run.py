@@ -66,7 +66,7 @@ class Run:
         if bands > 1 and method.machine == "firing" and method.order == "depth-first":
             raise MethodError(
                 f"order '{method.order}' cannot carry {bands} different bands: "
-                "band power travels with whole sweeps; take breadth-first, or solve one band at a time"
+                "band power travels with whole wavefronts; take breadth-first, or solve one band at a time"
             )
         memory_estimate.check(method, patches, bands, part.replicates, budget.rays)
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits

@@ -36,7 +36,7 @@ def warn_of_target(snapshot: Snapshot, budget: Budget, target: Target, bound: fl
     """
     if math.isnan(bound):
         landed = int(snapshot.arrivals[target.rows].sum())
-        known = f"after {snapshot.lines:,} lines it cannot be told yet ({landed:,} lines landed there)"
+        known = f"after {snapshot.lines:,} lines it cannot be told yet ({landed:,} lines hit it)"
     else:
         known = f"after {snapshot.lines:,} lines it is {bound:.2%} or less in 95 % of runs"
     limits = [f"{name}={value:g}" for name, value in (("rays", budget.rays), ("seconds", budget.seconds)) if value is not None]

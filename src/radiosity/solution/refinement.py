@@ -125,7 +125,7 @@ class RefineCheck:
         if len(rows) > MOST_ROWS:
             lines.append(f"... and {len(rows) - MOST_ROWS} more surfaces (export a .csv for all)")
         if any(f" {UNKNOWN} " in f"{line} " for line in lines[2:]):
-            lines.append(f"{UNKNOWN}: unknown, since nothing is reflected there, or no line landed there")
+            lines.append(f"{UNKNOWN}: unknown, since nothing is reflected there, or no line hit it")
         return "\n".join(lines)
 
     def export(self, path) -> None:

@@ -58,9 +58,9 @@ def _error(solution) -> str:
     if solution.replicates < 2:
         return "unknown (one replicate; from 2 on there are errors)"
     if not solution.irradiance.any():
-        return "unknown: no line landed anywhere"
+        return "unknown: no line hit a patch"
     if not math.isfinite(solution.error):
-        return "unknown: no line landed where light would be reflected" + (" in some band" if len(solution.bands) > 1 else "")
+        return "unknown: no line hit where light would be reflected" + (" in some band" if len(solution.bands) > 1 else "")
     reflected = (solution.patches.reflectance * solution.irradiance).any()
     return f"{percent(solution.error)} of the {'reflected light' if reflected else 'irradiance (nothing is reflected)'}"
 
@@ -125,4 +125,4 @@ def _why(solution) -> str:
         return "since replicates cannot measure the error of form factors"
     if solution.replicates < 2:
         return "since errors need 2 replicates or more"
-    return "since no line landed there" if solution.surface_power is not None else "since none landed there, or the file is old"
+    return "since no line hit it" if solution.surface_power is not None else "since none hit it, or the file is old"

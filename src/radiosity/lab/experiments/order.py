@@ -37,7 +37,8 @@ def extras(protocol: Protocol, folder: Path) -> list[str]:
         "depth-first below.</p>",
         report.figure(path),
         "<p>At the start orders differ. Depth-first has a complete, if noisy, solution after one walk, and so has each stage. "
-        "Breadth-first lacks light reflected k times until its k-th sweep; the crosses are its sweeps in a run of 2<sup>13</sup> "
+        "Breadth-first lacks light reflected k times until its k-th wavefront; "
+        "the crosses are its wavefronts in a run of 2<sup>13</sup> "
         "lines. Where it ends all are equal.</p>",
     ]
 

@@ -46,7 +46,7 @@ WALKS = {
     "qmc-radiosity": Preset(
         Method(equation="continuous", absorption="fractional"),
         "Keller's quasi-Monte Carlo radiosity: walk n takes point n of a sequence, its birth patch too, and of M walks the "
-        "first M rho^k go on at the k-th landing with weights, rho being the mean reflectance. PathSegments after the first take "
+        "first M rho^k go on at the k-th hit with weights, rho being the mean reflectance. Later segments take "
         "the same sequence in other orders (Latin supercube sampling) in place of ever larger prime bases. What the last "
         "walk leaves behind is cut off: a bias of the order of one walk.",
         "To compare; random-walk and particle-tracing have less error where reflectances differ much.",
@@ -54,11 +54,11 @@ WALKS = {
     ),
     "density-estimation": Preset(
         Method(equation="continuous", reconstruction="local-linear"),
-        "Particle tracing, then each surface is reconstructed alone: a plane is fitted to the landings about each point, "
+        "Particle tracing, then each surface is reconstructed alone: a plane is fitted to the hits about each point, "
         "weighted by a kernel whose width falls as lines grow. The fit takes away the bias at boundaries. Landings are "
-        "binned to the patches first. Surfaces keep the power that landed on them, and stated errors hold what blurred "
+        "binned to the patches first. Surfaces keep the power that they received, and stated errors hold what blurred "
         "shadows are off.",
-        "For smooth pictures from few lines: 0.7 of the error of counting up to a hundred or so landings on a patch.",
+        "For smooth pictures from few lines: 0.7 of the error of counting up to a hundred or so hits on a patch.",
         "walter1997",
     ),
 }
