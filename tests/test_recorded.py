@@ -100,7 +100,7 @@ def passing():
 
 
 def test_lines_that_pass_backs_find_their_records_made(passing):
-    """`land` in no loop makes what its own loop reads: geometry that nobody prepared."""
+    """`first_hit` in no loop makes what its own loop reads: geometry that nobody prepared."""
     geometry = Geometry(rd.subdivide(passing, cells=1), choose())
     types, tree = geometry.device.types, geometry.bvh
     start = (np.array([[0.5, 0.5, -1.0]] * LANES) - tree.centre) * tree.scale

@@ -47,7 +47,7 @@ def read_image(file: Path, raw: bool, options: ReadOptions) -> np.ndarray:
 def _float_image(file: Path) -> np.ndarray:
     import mitsuba
 
-    from ....device.backend import bitmaps  # the engine stands later in the pipeline, and takes a while to start
+    from ....device.backend import bitmaps  # imported here: it takes a while to start
 
     try:
         with bitmaps():
