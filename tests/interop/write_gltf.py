@@ -13,12 +13,32 @@ from .gltf_skin import add_skin, add_weights
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
 HABITS = {
-    "mirror": 0.3, "uneven scale": 0.4, "matrices": 0.4, "nested nodes": 0.5, "instances": 0.4, "quantized": 0.15,
-    "interleaved": 0.15, "sparse": 0.15, "strips": 0.15, "fans": 0.15, "no indices": 0.2, "normals": 0.3, "unnamed nodes": 0.12,
-    "points and lines": 0.15, "several primitives": 0.5, "vertex colours": 0.3, "no material": 0.1, "second scene": 0.15,
-    "nodes outside the scene": 0.15, "cameras": 0.15, "instancing extension": 0.1, "morphs": 0.12, "skins": 0.12,
-    "hidden nodes": 0.1, "no base colour": 0.08,
-}  # fmt: skip  # chance that a file has any of it
+    "mirror": 0.3,
+    "uneven scale": 0.4,
+    "matrices": 0.4,
+    "nested nodes": 0.5,
+    "instances": 0.4,
+    "quantized": 0.15,
+    "interleaved": 0.15,
+    "sparse": 0.15,
+    "strips": 0.15,
+    "fans": 0.15,
+    "no indices": 0.2,
+    "normals": 0.3,
+    "unnamed nodes": 0.12,
+    "points and lines": 0.15,
+    "several primitives": 0.5,
+    "vertex colours": 0.3,
+    "no material": 0.1,
+    "second scene": 0.15,
+    "nodes outside the scene": 0.15,
+    "cameras": 0.15,
+    "instancing extension": 0.1,
+    "morphs": 0.12,
+    "skins": 0.12,
+    "hidden nodes": 0.1,
+    "no base colour": 0.08,
+}  # chance that a file has any of it
 DEFORMED = {"morphs", "skins"}  # their positions are not quantized
 
 

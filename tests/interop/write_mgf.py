@@ -7,11 +7,27 @@ import numpy as np
 from .draw import Draw, Sample, Shape, star
 
 HABITS = {
-    "mirror": 0.3, "arrays": 0.35, "nested transformations": 0.35, "nested objects": 0.4, "curved primitives": 0.2,
-    "prisms": 0.25, "holes": 0.2, "includes": 0.25, "templates": 0.35, "one-sided": 0.35, "colours": 0.6, "specular": 0.3,
-    "emission": 0.5, "line continuation": 0.15, "colour temperatures": 0.15, "mixed colours": 0.15, "spectra": 0.1,
-    "normals": 0.25, "iterations": 0.15, "comments": 0.3,
-}  # fmt: skip  # chance that a file has any of it
+    "mirror": 0.3,
+    "arrays": 0.35,
+    "nested transformations": 0.35,
+    "nested objects": 0.4,
+    "curved primitives": 0.2,
+    "prisms": 0.25,
+    "holes": 0.2,
+    "includes": 0.25,
+    "templates": 0.35,
+    "one-sided": 0.35,
+    "colours": 0.6,
+    "specular": 0.3,
+    "emission": 0.5,
+    "line continuation": 0.15,
+    "colour temperatures": 0.15,
+    "mixed colours": 0.15,
+    "spectra": 0.1,
+    "normals": 0.25,
+    "iterations": 0.15,
+    "comments": 0.3,
+}  # chance that a file has any of it
 
 
 def write(folder: Path, seed: int) -> Sample:

@@ -9,11 +9,28 @@ from .draw import Draw, Sample, Shape
 from .mitsuba_material import bsdf, emitter, no_bsdf
 
 HABITS = {
-    "mirror": 0.3, "uneven scale": 0.4, "meshes": 0.5, "round shapes": 0.3, "instances": 0.25, "twosided": 0.5, "textures": 0.35,
-    "flipped normals": 0.15, "face normals": 0.2, "shared BSDFs": 0.4, "parameters": 0.2, "includes": 0.15,
-    "other emitters": 0.15, "sensors": 0.2, "look-at": 0.2, "emission": 0.5, "plastics": 0.2, "conductors": 0.1, "spectra": 0.2,
-    "constant spectra": 0.15, "colours": 0.6,
-}  # fmt: skip  # chance that a file has any of it
+    "mirror": 0.3,
+    "uneven scale": 0.4,
+    "meshes": 0.5,
+    "round shapes": 0.3,
+    "instances": 0.25,
+    "twosided": 0.5,
+    "textures": 0.35,
+    "flipped normals": 0.15,
+    "face normals": 0.2,
+    "shared BSDFs": 0.4,
+    "parameters": 0.2,
+    "includes": 0.15,
+    "other emitters": 0.15,
+    "sensors": 0.2,
+    "look-at": 0.2,
+    "emission": 0.5,
+    "plastics": 0.2,
+    "conductors": 0.1,
+    "spectra": 0.2,
+    "constant spectra": 0.15,
+    "colours": 0.6,
+}  # chance that a file has any of it
 MESHES = {"obj": obj_bytes, "ply": ply_bytes, "serialized": serialized_bytes}
 
 
