@@ -5,9 +5,11 @@ Neumann, Purgathofer 1996).
 """
 
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
+from ...errors import MethodError
 from ...method.model import Method
 from ...problem.bands import QUANTUM
 from ...problem.model import Problem
@@ -18,6 +20,10 @@ from ..firing import state as firing_state
 from ..firing.counters import FiringCounters
 from ..firing.orders import fire_all
 from ..firing.state import FiringState
+from ..state import Arrays, Sizes
+from .state import MultipathState, PoolingState
+
+Kind = TypeVar("Kind", MultipathState, PoolingState)
 
 APART = 1 << 64  # added to the seed: local lines do not repeat the numbers of global ones
 
@@ -50,8 +56,22 @@ class FirstShot:
 
 
 def whole(shot: FiringState | None) -> bool:
-    """There was no shot, or it has the powers of bands where there are several."""
+    """Return True where there was no shot, or where it has the powers of bands if there are several."""
     return shot is None or shot.sizes.groups == 1 or shot.bands is not None
+
+
+def read(kind: type[Kind], arrays: Arrays, sizes: Sizes, *, shot: bool, lacks: str) -> Kind:
+    """Return the state of an algorithm that may have a first shot, from a file's arrays.
+
+    Raises:
+        MethodError: arrays are missing or damaged: the solution ``lacks`` what it should hold.
+    """
+    wanted = ("shot",) if shot else ()
+    if not kind.lacking(arrays, sizes, wanted):
+        state = kind.read(arrays, sizes, wanted)
+        if whole(state.shot):
+            return state
+    raise MethodError(f"the solution to go on from lacks {lacks}; start anew")
 
 
 def fired(shot: FiringState | None) -> int:

@@ -165,12 +165,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
         )
 
     def read(self, arrays: Arrays, sizes: Sizes) -> MultipathState:
-        wanted = () if self.shot is None else ("shot",)
-        if not MultipathState.lacking(arrays, sizes, wanted):
-            state = MultipathState.read(arrays, sizes, wanted)
-            if first_shot.whole(state.shot):
-                return state
-        raise MethodError("the solution to go on from lacks the sums of its multipath run; start anew")
+        return first_shot.read(MultipathState, arrays, sizes, shot=self.shot is not None, lacks="the sums of its multipath run")
 
     def restore(self, state: MultipathState) -> None:
         UInt64 = self.geometry.device.types.UInt64

@@ -7,7 +7,6 @@ why the result is consistent.
 
 import numpy as np
 
-from ...errors import MethodError
 from ...sampling.streams import Seed
 from ...tally.unmet import means, sides
 from ...tracing.global_lines.ends import Ends, of_lines
@@ -186,12 +185,7 @@ class Pooling(AbstractAlgorithm[PoolingState]):
         )
 
     def read(self, arrays: Arrays, sizes: Sizes) -> PoolingState:
-        wanted = () if self.shot is None else ("shot",)
-        if not PoolingState.lacking(arrays, sizes, wanted):
-            state = PoolingState.read(arrays, sizes, wanted)
-            if first_shot.whole(state.shot):
-                return state
-        raise MethodError("the solution to go on from lacks the sums of its iterations; start anew")
+        return first_shot.read(PoolingState, arrays, sizes, shot=self.shot is not None, lacks="the sums of its iterations")
 
     def restore(self, state: PoolingState) -> None:
         for name in ARRAYS:
