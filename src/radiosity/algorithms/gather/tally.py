@@ -50,4 +50,3 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         stored = np.maximum(np.minimum(state.cosine, STORED), 1)
         escaped, lost = (float(left @ (count.mean(axis=0) / stored)) for count in state.missed)
         return by_difference(float(own.sum()), float(received @ (1 - rho)), escaped, lost)
-
