@@ -30,7 +30,7 @@ def solve(
     files: OutputOptions = Unset.output,
     budget: BudgetOptions = Unset.budget,
     run: RunOptions = Unset.run,
-    method: MethodName = "random-walk",
+    method: MethodName = "auto",
     choices: MethodOptions = Unset.method,
     baseline: BaselineOptions = Unset.baseline,
     cut: CutOptions = Unset.cut,
@@ -46,7 +46,8 @@ def solve(
     scene
         A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene: cornell-box, room, studio, labyrinth.
     method
-        Name of a method; `radiosity methods` lists them. The options below change a part of it.
+        Name of a method; `radiosity methods` lists them. auto takes what a pilot of the scene says. The options below change a
+        part of the method, of random-walk for auto.
     """
     given = budget.given
     if cut.refine_check and (run.resume is not None or run.checkpoint is not None):
@@ -60,7 +61,7 @@ def solve(
     from .progress import bar
 
     chosen = rd.method.resolve(method, **(asdict(choices) | asdict(baseline)))
-    if not given and isinstance(chosen, rd.Method):
+    if not given and not isinstance(chosen, rd.Baseline):
         budget = replace(budget, rays=DEFAULT_RAYS)
     loaded = rd.load_scene(scene, **asdict(reading))
     before = None if run.resume is None else rd.load_solution(run.resume)

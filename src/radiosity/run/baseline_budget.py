@@ -5,7 +5,7 @@ import warnings
 from ..algorithms.baseline_state import AbstractSolvedState
 from ..algorithms.progressive.state import ProgressiveState
 from ..errors import MethodError, RadiosityWarning
-from ..method import Baseline, Method
+from ..method import Auto, Baseline, Method
 from .budget import DONE, Budget
 
 MISSING = 0.01  # of the emitted power: a larger error of the energy balance is told
@@ -29,7 +29,7 @@ def chosen_budget(method: Baseline, **asked) -> Budget:
     return Budget(**given) if given else Budget(quanta=DONE)
 
 
-def cut_for(method: "Method | Baseline") -> dict:
+def cut_for(method: "Method | Baseline | Auto") -> dict:
     """Return arguments of `subdivide` for a scene that is not cut yet."""
     if not isinstance(method, Baseline):
         return {}

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..errors import MethodError, OutputError, RadiosityWarning
-from ..method import Baseline, Method
+from ..method import Auto, Baseline, Method
 from ..solution.model import Solution
 from ..solution.saving import save
 from ..solution.whole import check_place
@@ -21,7 +21,7 @@ WHOLE = {
 }
 
 
-def resumable(method: "Method | Baseline") -> bool:
+def resumable(method: "Method | Baseline | Auto") -> bool:
     """Return whether runs of this method can go on from a checkpoint."""
     return method.machine not in WHOLE
 
@@ -46,7 +46,7 @@ class Checkpoint:
     def __post_init__(self):
         self._due = time.monotonic() + self.every
 
-    def check(self, method: "Method | Baseline") -> None:
+    def check(self, method: "Method | Baseline | Auto") -> None:
         """Refuse, before the run, a checkpoint that could not be written, or from which no run could go on.
 
         Raises:

@@ -29,6 +29,7 @@ class Record:
         part: seed and replicates.
         device: its name.
         budget: as it was given, without what was not.
+        choice: what is known of the choice of the method, where it was left to the program.
     """
 
     patches: Patches
@@ -36,6 +37,7 @@ class Record:
     part: Part
     device: str
     budget: dict
+    choice: dict | None = None
 
     @property
     def provenance(self) -> dict:
@@ -51,6 +53,7 @@ class Record:
             "cut": self.patches.hash,
             "tracing": TRACING,
             "budget": self.budget,
+            **({} if self.choice is None else {"auto": self.choice}),
             "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }
 
@@ -68,7 +71,7 @@ class Record:
             mean,
             error,
             snapshot.arrivals,
-            snapshot.lines,
+            snapshot.lines + int((self.choice or {}).get("pilot_lines", 0)),
             seconds,
             snapshot.quanta,
             self.part.replicates,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..device.memory import limited
 from ..device.turn import turn
 from ..errors import MethodError
-from ..method import Baseline, Method, resolve
+from ..method import Auto, Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..patches.nesting import halved, parents
 from ..scene.model import Scene
@@ -28,7 +28,7 @@ APART = 1 << 20  # difference of the seeds of the two runs, so that their errors
 
 
 def refine_check(
-    scene: Scene | Patches, method: str | Method | Baseline = "random-walk", *, memory: str | float | None = None, **choices
+    scene: Scene | Patches, method: str | Method | Baseline | Auto = "auto", *, memory: str | float | None = None, **choices
 ) -> RefineCheck:
     """Solve on the patches, and on four times as many with as many lines a patch.
 
@@ -59,8 +59,9 @@ def refine_check(
     more = {k: 4 * v for k, v in options.items() if k in ("rays", "quanta") and v is not None}
     seed = options.get("seed", 0)
     with limited(memory), turn():
-        one = _finished(prepared(coarse, chosen, **options))
-        second = prepared(fine, chosen, **(options | more | {"seed": seed + APART}))
+        first = prepared(coarse, chosen, **options)
+        one = _finished(first)
+        second = prepared(fine, first.method, **(options | more | {"seed": seed + APART}))
         second.also = lambda stage: stage.sums(parent, len(coarse))
         other = _finished(second)
     assert second.snapshot is not None

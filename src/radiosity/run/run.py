@@ -26,6 +26,7 @@ from . import memory_estimate
 from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
+from .choice import Choice
 from .error_target import Target, nothing_before_lights
 from .part import Part, check_stages
 from .pilot import few_quanta
@@ -55,6 +56,7 @@ class Run:
         resume: Solution | None = None,
         checkpoint: Checkpoint | None = None,
         error_of: str | None = None,
+        choice: Choice | None = None,
     ):
         self.patches, self.method, self.budget, self.part = patches, method, budget, part
         self.replicates, self.resume, self.checkpoint = part.replicates, resume, checkpoint
@@ -75,12 +77,15 @@ class Run:
         self.teller, self.stop = Teller(budget, listener), Stop()
         self.error_of, self.target = error_of, Target.of(patches, error_of)
         self.teller.tell("compiling")
+        if choice is not None and budget.rays is not None:  # lines of the pilot are lines
+            self.budget = replace(budget, rays=max(budget.rays - choice.extra_lines, 1))
         self.device = choose(device)
         given = {name: value for name, value in {**vars(budget), "error_of": error_of}.items() if value is not None}
-        self.record = Record(patches, method, part, self.device.name, given)
+        self.record = Record(patches, method, part, self.device.name, given, None if choice is None else choice.facts)
         if resume is not None:
             check_same(resume.provenance, self.record.provenance)
-        self.geometry = Geometry(patches, self.device)
+        made = None if choice is None else choice.geometry
+        self.geometry = Geometry(patches, self.device) if made is None else made
 
     def solve(self) -> Solution:
         """Run stage after stage until the budget is used up, or until Ctrl-C."""

@@ -10,7 +10,7 @@ from ..device.memory import limited
 from ..device.turn import turn
 from ..diagnostics.contact_findings import tell
 from ..errors import MethodError, shown
-from ..method import Baseline, Method, resolve
+from ..method import Auto, Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..sampling.streams import Seed
 from ..scene.model import Back, Scene
@@ -31,7 +31,7 @@ SHOOTING = ("firing", "walks")  # algorithms whose lines carry power from the pa
 
 def solve(
     scene: Scene | Patches,
-    method: str | Method | Baseline = "random-walk",
+    method: str | Method | Baseline | Auto = "auto",
     *,
     rays: float | None = None,
     seconds: float | None = None,
@@ -54,9 +54,11 @@ def solve(
 
     Args:
         scene: a `Scene` (cut into about 20 000 patches) or the `Patches` of one.
-        method: a preset's name, a `Method` or a `Baseline`.
-        choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. Without ``warm_up``
-            another order or other lines than the method's drop its warm-up.
+        method: a preset's name, a `Method` or a `Baseline`; or "auto", which takes gather, random-walk or an iteration with a
+            control variate, as a pilot of the scene says (`Solution.provenance` holds which, and why). A run that goes on keeps
+            the method of its solution.
+        choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. "auto" with choices is
+            random-walk with them. Without ``warm_up`` another order or other lines than the method's drop its warm-up.
         rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
             scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run bit
@@ -122,7 +124,7 @@ def solve(
 
 def prepared(
     scene: Scene | Patches,
-    chosen: Method | Baseline,
+    chosen: Method | Baseline | Auto,
     *,
     rays=None,
     seconds=None,
@@ -160,12 +162,18 @@ def prepared(
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
     if error_of is not None and error is None:
         raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
+    choice = None
+    if isinstance(chosen, Auto):
+        from .choice import choice_for
+
+        choice = choice_for(scene, budget, part, device, resume)
+        chosen = choice.method
     _refuse_open(scene.scene, chosen)
     keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
     tell(scene.scene)
     from .run import Run
 
-    return Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of)
+    return Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of, choice)
 
 
 def _refuse_open(scene: Scene, method: Method | Baseline) -> None:

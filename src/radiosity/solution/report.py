@@ -22,6 +22,7 @@ def report(solution) -> str:
         f"scene     {printable(scene.source)}: {scene.n_faces} faces, {len(scene.names)} surfaces, "
         f"{len(solution.patches)} patches",
         f"method    {solution.provenance['method']}, seed {solution.provenance['seed']}",
+        *_chosen(solution),
         f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({number(rate, '.1f')} million a second), {_counted(solution)}",
         f"error     {error}",
         f"status    {_status(solution)}",
@@ -41,6 +42,11 @@ def report(solution) -> str:
             f"{number(book['lost'])} ({closed})"
         )
     return "\n".join([*lines, "", *_surfaces(solution)])
+
+
+def _chosen(solution) -> list[str]:
+    auto = solution.provenance.get("auto")
+    return [f"chosen    {auto['chosen']}: {auto['why']}"] if auto else []
 
 
 def _counted(solution) -> str:

@@ -45,6 +45,11 @@ class Geometry:
     def bvh(self) -> Bvh:
         return self.faces.bvh
 
+    @cached_property
+    def made(self) -> dict:
+        """Values that algorithms have made of the scene and may use again, by what they follow from."""
+        return {}
+
     def prepare(self) -> None:
         """Make what kernels read, before any loop is recorded (`recorded.not_recorded`)."""
         self.prepare_hits()

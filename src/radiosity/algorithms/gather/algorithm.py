@@ -41,7 +41,7 @@ class Gather(AbstractAlgorithm[GatherState]):
                 "method gather needs both to be equal: take --method random-walk"
             )
         self.packets = Packets(self.geometry, self.replicates, self.method.coherent)
-        self.lamps = Lamps(self.geometry, self.problem, Packets(self.geometry, 1))
+        self.lamps = Lamps.of(self.geometry, self.problem)
         self.types: Any = self.packets.types
         self._quanta, self._done = 0, 0
         self._shares: Shares | None = None
@@ -69,7 +69,7 @@ class Gather(AbstractAlgorithm[GatherState]):
     def _begin(self) -> None:
         """Run the pilot, and make the sums."""
         method, types = self.method, self.types
-        self._shares = Pilot.run(self.geometry, self.problem, self.lamps, method, self.seed).shares
+        self._shares = Pilot.of(self.geometry, self.problem, self.lamps, method, self.seed).shares
         purposes = (Purpose.NUMBERS, Purpose.SHADOW_RAYS)
         self._lines = Lines.of(self.packets, self.lamps, self.problem, method, self.seed, purposes)
         self._reflectance = Rows.reflectances(self.packets, self.problem.groups.reflectance)

@@ -34,6 +34,13 @@ class Lamps:
     problem: Problem
     packets: Packets
 
+    @staticmethod
+    def of(geometry: Geometry, problem: Problem) -> "Lamps":
+        """Return the lamps of a scene; they are made once."""
+        if "lamps" not in geometry.made:
+            geometry.made["lamps"] = Lamps(geometry, problem, Packets(geometry, 1))
+        return geometry.made["lamps"]
+
     @cached_property
     def sides(self) -> np.ndarray:
         """The lamps, (n_lamps, 2) int64: face, and 1 for its back. Neighbours follow each other."""

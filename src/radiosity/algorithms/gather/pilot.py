@@ -40,6 +40,18 @@ class Pilot:
     irradiance: np.ndarray
 
     @staticmethod
+    def of(geometry: Geometry, problem: Problem, lamps: Lamps, method: Method, seed: Seed | int) -> "Pilot":
+        """Return the pilot of a scene and seed; it is run once.
+
+        Args:
+            method: its numbers and their randomisation.
+        """
+        key = ("pilot", method.points, method.randomisation, Seed.of(seed).value)
+        if key not in geometry.made:
+            geometry.made[key] = Pilot.run(geometry, problem, lamps, method, seed)
+        return geometry.made[key]
+
+    @staticmethod
     def run(geometry: Geometry, problem: Problem, lamps: Lamps, method: Method, seed: Seed | int) -> "Pilot":
         """Trace `LINES` lines of each patch.
 
@@ -53,7 +65,9 @@ class Pilot:
         shadow = lines.shadow(constant(0), constant(SHADOW), squares=True)
         hits = dr.zeros(types.UInt32, STORED * packets.lanes)
         lamplight = lines.cosine(constant(0), constant(STORED), keep=hits)
-        rows = Rows(packets, hits, dr.full(types.UInt32, STORED, packets.lanes), Rows.reflectances(packets, problem.groups.reflectance))
+        rows = Rows(
+            packets, hits, dr.full(types.UInt32, STORED, packets.lanes), Rows.reflectances(packets, problem.groups.reflectance)
+        )
         direct = [
             total * (1 / SHADOW) + types.Float(met) * (1 / lines.unit / STORED)
             for total, met in zip(shadow, lamplight, strict=False)

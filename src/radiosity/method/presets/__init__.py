@@ -3,6 +3,8 @@
 from dataclasses import fields, replace
 
 from ...errors import MethodError
+from .. import auto
+from ..auto import Auto
 from ..baseline import USED, Baseline
 from ..model import Method
 from .baselines import BASELINES
@@ -17,16 +19,22 @@ PRESETS: dict[str, Preset[Method]] = WALKS | ITERATIONS | GLOBAL
 __all__ = ["BASELINES", "PRESETS", "Citation", "Preset", "resolve"]
 
 
-def resolve(method: "str | Method | Baseline" = "random-walk", **choices) -> "Method | Baseline":
+def resolve(method: "str | Method | Baseline | Auto" = auto.NAME, **choices) -> "Method | Baseline | Auto":
     """Return a preset's method, or the given one, with the choices that are not None put into it.
+
+    ``auto`` with choices is random-walk with them.
 
     Raises:
         MethodError: unknown name, unknown value, a choice that it does not have, or a senseless combination.
     """
     known = PRESETS | BASELINES
+    if method == auto.NAME or isinstance(method, Auto):
+        if all(value is None for value in choices.values()):
+            return Auto()
+        method = auto.FALLBACK
     if isinstance(method, str):
         if method not in known:
-            raise MethodError(f"method '{method}' does not exist; known are {', '.join(known)}")
+            raise MethodError(f"method '{method}' does not exist; known are {', '.join([auto.NAME, *known])}")
         method = known[method].method
     if not isinstance(method, Method | Baseline):
         raise MethodError(f"method is {method!r}; give a name ({', '.join(known)}), a Method or a Baseline")

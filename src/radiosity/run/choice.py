@@ -1,0 +1,145 @@
+"""The choice of a method for a scene: ``method="auto"``.
+
+A pilot traces a few lines of every patch (`algorithms.gather.pilot`). It tells the variance of the lines of a gather, and a rough
+solution, from which the errors of a random walk and of iterations with a control variate follow. The least error for equal work is
+taken, by a table of costs; no clock is read. So the choice is a function of the scene, the seed and the budget in lines or quanta,
+and quanta replay it.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..algorithms.gather import pilot
+from ..algorithms.gather.lamps import CLUSTER, Lamps
+from ..device.backend import choose
+from ..errors import MethodError
+from ..method import Method
+from ..method.auto import FALLBACK, NAME
+from ..method.presets import PRESETS
+from ..patches import Patches
+from ..problem.model import Problem
+from ..scene.model import Back
+from ..solution.model import Solution
+from ..tracing.geometry import Geometry
+from .budget import Budget
+from .part import Part
+
+CONTROL = "stochastic-jacobi-control-variate"
+METHODS = {  # and what it takes besides its name
+    "gather": {},
+    FALLBACK: {},
+    CONTROL: {"estimator": "bidirectional"},
+}
+# CPU time of a line relative to a random walk's, and what measured errors are relative to predicted ones: 2 cores, ten scenes
+COSTS = {"gather": 1.1, FALLBACK: 1.0, CONTROL: 1.8}
+MEASURED = {"gather": 0.75, FALLBACK: 1.1, CONTROL: 1.2}
+ENOUGH = 48  # lines of a patch: with fewer, the pilot would take too much of them
+ENTRY = 10.0  # lines: the work of one entry of the table of clusters and lamps
+MOST = 0.3  # of the lines: the work of the pilot
+UNKNOWN = 3e7  # lines: the work of a pilot that is done where seconds or an error are asked for
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A chosen method.
+
+    Attributes:
+        method: what to solve with.
+        facts: what the provenance holds: the name, why it was chosen, and lines of the pilot that the method does not count.
+        geometry: the scene on the device, where the pilot has made it.
+    """
+
+    method: Method
+    facts: dict
+    geometry: Geometry | None = field(default=None, repr=False)
+
+    @property
+    def extra_lines(self) -> int:
+        return int(self.facts.get("pilot_lines", 0))
+
+
+def choice_for(patches: Patches, budget: Budget, part: Part, device: str, resume: Solution | None) -> Choice:
+    """Choose the method of a run; one that goes on takes that of its solution."""
+    if resume is not None:
+        return _of_solution(resume)
+    problem, n = Problem.of(patches), len(patches)
+    reason = _impossible(patches, problem)
+    if not reason:
+        entries = -(-n // CLUSTER) * _lamps(patches)
+        reason = _too_few(budget, part, n, pilot.LINES * n + ENTRY * entries)
+    if reason:
+        return _chosen(FALLBACK, reason, 0)
+    geometry = Geometry(patches, choose(device))
+    geometry.prepare()
+    method = PRESETS["gather"].method
+    errors = predicted(problem, pilot.Pilot.of(geometry, problem, Lamps.of(geometry, problem), method, part.seed))
+    best = min(errors, key=lambda name: errors[name])
+    shown = ", ".join(f"{name} {errors[name] / errors[best]:.3g}" for name in sorted(errors, key=lambda name: errors[name]))
+    counted = 0 if best == "gather" else pilot.LINES * n
+    return _chosen(best, f"predicted errors for equal work: {shown}", counted, geometry)
+
+
+def predicted(problem: Problem, found: pilot.Pilot) -> dict[str, float]:
+    """Return the relative error of each method of `METHODS` after one line of every patch, times the square root of its cost."""
+    area, groups, n = problem.patches.area, problem.groups, len(problem.patches)
+    shares = groups.emission / np.maximum(groups.emission.max(axis=0), 1e-300)
+    reflected = groups.reflectance * found.irradiance
+    group = int(np.argmax((area[:, None] * reflected**2).sum(axis=0)))
+    light, rho = reflected[:, group], groups.reflectance[:, group]
+    total = float(area @ light**2)
+    if not total:
+        return {"gather": 0.0}
+    packets = found.shares.packets
+    weights = np.repeat(found.shares.weights, packets.sizes, axis=1)[:, packets.place]
+    each = n * weights / weights.sum()
+    importance = area * groups.reflectance.max(axis=1) ** 2
+    gather = float((importance * found.variance / each).sum()) / total
+    power, again = float(area @ shares.max(axis=1)), float(area @ reflected.max(axis=1))
+    walk = float(rho @ light) * (power + again) / n / total
+    left = shares[:, group] + light
+    order = np.argsort(left)
+    middle = left[order][np.searchsorted(np.cumsum(area[order]), area.sum() / 2)]
+    even = float(area @ np.abs(left - middle)) / float(area @ left)
+    squares = {"gather": gather, FALLBACK: walk, CONTROL: walk * even**2}
+    return {name: MEASURED[name] * (COSTS[name] * max(squares[name], 0.0)) ** 0.5 for name in METHODS}
+
+
+def _impossible(patches: Patches, problem: Problem) -> str:
+    if problem.lights is not None:
+        return "lights without area are for random walks"
+    passes = np.isin(patches.scene.back, (Back.PASSES, Back.OPEN)).any()
+    return "lines pass through some backs, which only random walks follow" if passes else ""
+
+
+def _lamps(patches: Patches) -> int:
+    lit = patches.emission.any(axis=1)
+    return len(np.unique(2 * patches.face[lit].astype(np.int64) + patches.is_back[lit]))
+
+
+def _too_few(budget: Budget, part: Part, n: int, work: float) -> str:
+    replicates = part.in_all or part.replicates
+    if budget.quanta is not None:
+        lines = float(budget.quanta) * replicates + pilot.LINES * n
+    elif budget.rays is not None:
+        lines = budget.rays
+    else:
+        return "" if work <= UNKNOWN else f"a pilot would take the work of {work:.2g} lines"
+    if lines < (ENOUGH + pilot.LINES) * n:
+        return f"fewer than {ENOUGH + pilot.LINES} lines a patch"
+    return "" if work <= MOST * lines else f"a pilot would take the work of {work:.2g} lines"
+
+
+def _chosen(name: str, why: str, lines: int, geometry: Geometry | None = None) -> Choice:
+    method = Method(**{**PRESETS[name].method.choices, **METHODS[name]})
+    return Choice(method, {"chosen": name, "why": why, "pilot_lines": lines}, geometry)
+
+
+def _of_solution(resume: Solution) -> Choice:
+    choices = resume.provenance.get("choices")
+    try:
+        if resume.by_baseline:
+            raise TypeError
+        return Choice(Method(**dict(choices or {})), dict(resume.provenance.get(NAME) or {}))
+    except TypeError:
+        raise MethodError(f"method {NAME} cannot go on from a solution by {resume.provenance.get('method')}; name it") from None
