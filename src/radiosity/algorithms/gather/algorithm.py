@@ -27,7 +27,7 @@ from .state import GatherState
 from .tally import GatherTally
 
 SLICE = 1 << 22  # lines of a slice: between slices a run can be interrupted
-TOLERANCE = 1e-2  # of the mean irradiance, in the first correction; later ones take less, as errors do
+TOLERANCE = 5e-3  # of the mean irradiance, in the first correction; later ones take less, as errors do
 
 
 class Gather(AbstractAlgorithm[GatherState]):

@@ -5,6 +5,7 @@ iterations: a sparse system of each replicate, which nothing is traced for.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import drjit as dr
@@ -14,6 +15,7 @@ from ...device.backend import upload
 from ...device.recorded import loop
 from .packets import Packets
 
+WHOLE = 2.0**48  # fixed point units of sums of power: values are below 2^14
 LONGEST = 400  # iterations
 CHECKED = 4  # iterations between two looks at the change
 SLOWEST = 0.98  # largest factor that is believed
@@ -69,7 +71,9 @@ class Rows:
     def solve(self, right: list, tolerance: float, start: list | None = None, half: int | None = None) -> list:
         """Return x = r + rho F' x of each group, along all stored lines or a half of them.
 
-        Where changes fall by a factor q from one iteration to the next, what is missing is about q / (1 - q) times the last change.
+        A Jacobi iteration takes longest for the even part of the light. So after some, a multiple of the reflectance is added,
+        which makes the power of all areas balance. Where changes fall by a factor q from one iteration to the next, what is missing
+        is about q / (1 - q) times the last change.
 
         Args:
             right: of each group, (lanes,) Float.
@@ -80,6 +84,8 @@ class Rows:
         for iteration in range(1, LONGEST + 1):
             met = self.means(found, half)
             new = [one + share * value for one, share, value in zip(right, self.reflectance, met, strict=True)]
+            if iteration % CHECKED == CHECKED - 3:
+                new = [self._balanced(value, old, *even) for value, old, even in zip(new, found, self.even, strict=True)]
             dr.eval(new)
             if iteration % CHECKED in (CHECKED - 1, 0):
                 change = max(float(dr.max(dr.abs(a - b))[0]) for a, b in zip(new, found, strict=True))
@@ -90,6 +96,40 @@ class Rows:
                     if change * factor / (1 - factor) <= tolerance:
                         return new
             found = new
+        return found
+
+    @cached_property
+    def even(self) -> list:
+        """Return, of each group, what an iteration makes of light like the reflectance, and by how much less power it is."""
+        found = []
+        for rho in self.reflectance:
+            again = rho * self.means([rho])[0]
+            less = self._power(rho - again)
+            dr.eval(again, less)
+            found.append((again, less))
+        return found
+
+    def _balanced(self, new, old, again, less):
+        """Return an iterate with as much even light more as makes its power balance."""
+        _, replicate, _, _ = self.packets.read()
+        wanted = self._power(new - old)
+        factor = dr.select(less > 0, wanted / dr.maximum(less, 1e-30), 0)
+        return new + again * dr.gather(self.packets.types.Float, factor, replicate)
+
+    def _power(self, values):
+        """Return the sum over each replicate of values times shares of the area, from whole numbers, so that no order matters."""
+        types = self.packets.types
+        whole = types.Int64(dr.round(types.Float64(values * self.share) * WHOLE))
+        return types.Float(types.Float64(dr.block_sum(whole, self.packets.width)) / WHOLE)
+
+    @cached_property
+    def share(self):
+        """Return the share of each lane's area in that of its replicate, (lanes,) Float."""
+        _, _, place, patch = self.packets.read()
+        types, area = self.packets.types, self.packets.patches.area
+        shares = upload(types.Float, (area / area.sum()).astype(np.float32))
+        found = dr.gather(types.Float, shares, patch, place < dr.opaque(types.UInt32, self.packets.n))
+        dr.eval(found)
         return found
 
     def missed(self, code: int):
