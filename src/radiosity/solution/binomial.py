@@ -1,45 +1,50 @@
-"""Smoothed values: levels of a binomial filter over a lattice of patches, chosen by the bias and the variance that replicates show.
+"""Smoothed values: levels of a binomial filter on a lattice of patches, mixed by the bias and the variance that replicates show.
 
-Each pass replaces a value by half of it and a quarter of the two that are as far away on both sides, along each axis of the lattice:
-1, 2 and 4 patches away in turn (M. Holschneider et al., "A real-time algorithm for signal analysis with the help of the wavelet
-transform", in Wavelets, 1989). So linear fields stay as they are, up to the rim, and no value that is positive becomes negative.
+Each pass replaces a value by half of it and a quarter of the two that are as far away on both sides, along each axis of the
+lattice: 1, 2 and 4 patches away in turn. So linear fields stay as they are, up to the rim (M. Holschneider, R.
+Kronland-Martinet, J. Morlet and P. Tchamitchian, "A real-time algorithm for signal analysis with the help of the wavelet
+transform", in "Wavelets", 1989).
 
-The bias of a level is the sum of what its passes change in the mean. The square of a change, less its variance, estimates the
-squared change without bias. The estimate of a single patch is noisy, so it is averaged over two windows, and the larger one is taken:
-a narrow window sees the edge of a shadow, a wide one sees what is small. Each patch takes the level of the least squared bias and
-variance. At edges that is the level 0, the value as it was.
+What a pass changes in the mean of all replicates is bias b and noise of variance v. The share b² / (b² + v) of the change is
+undone, which has the least error (the Wiener filter). The squared change, less v as the replicates show it, estimates b² without
+bias. The estimate of a single patch is noisy, so b² and v are averaged over a window about the patch. At the edge of a shadow b
+is large, and nearly all is undone. A pass is undone by as much at least as those before it, so that no weight is negative.
 """
+
+from itertools import pairwise
 
 import numpy as np
 
 from ..patches.model import Patches
 from .lattice import Lattice, Pairs
 
-LEVELS = 3  # passes
-NARROW = 2  # passes of the narrow window; the wide one has all
-HELD = 0.5  # share of a sheet's sum that smoothed values must hold at least, for the sum to be restored
+PASSES = 3  # of the filter, and of the window
+NARROW = 2  # passes of a window of about 32 patches, which sees biases that the whole one thins out
+CLEAR = 0.5  # of a variance v: twice the standard error of a mean of 32 squares, 2 sqrt(2 / 32)
+HELD = 0.5  # share of a sheet's sum that the smoothed values must hold at least for the sum to be restored
 LEAST_REPLICATES = 2
 
 
 def smoothed(patches: Patches, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return smoothed values, (replicates, n_patches), and the size of the bias of their mean, (n_patches,).
 
-    In each replicate the sum over each sheet (the congruent patches of one plane, side and surface) stays as it was.
+    In each replicate the sum over each sheet (the congruent patches of one plane, side and surface) stays as it was. Where no
+    value is negative, no smoothed value is.
 
     Args:
-        values: (replicates, n_patches) irradiance, 2 replicates at least.
+        values: (replicates, n_patches) irradiance, of `LEAST_REPLICATES` at least: a single one shows no variance.
     """
     lattice = Lattice.of(patches)
-    steps = lattice.pairs(LEVELS)
+    steps = lattice.pairs(PASSES)
     levels = [np.ascontiguousarray(values.T, np.float64)]
     for pairs in steps:
         levels.append(_passed(levels[-1], pairs))
-    variance, bias = _told(levels, steps)
-    level = (variance + bias**2).argmin(axis=1)
-    result = levels[0].copy()
-    for number, one in enumerate(levels):
-        np.copyto(result, one, where=(level == number)[:, None])
-    return _with_sums(result.T, values, lattice.sheet, level > 0), bias[np.arange(len(level)), level]
+    undone, size = _told(levels, steps)
+    parts = np.diff(undone, prepend=0, append=1)
+    result = np.zeros_like(levels[0])
+    for level, part in zip(levels, parts.T, strict=True):
+        result += level * part[:, None]
+    return _with_sums(result.T, values, lattice.sheet, undone[:, 0] < 1), ((1 - undone) * size).sum(axis=1)
 
 
 def _passed(values: np.ndarray, pairs: Pairs) -> np.ndarray:
@@ -55,24 +60,21 @@ def _passed(values: np.ndarray, pairs: Pairs) -> np.ndarray:
 
 
 def _told(levels: list[np.ndarray], steps: list[Pairs]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the variance of the mean and the size of its bias at each level, (n_patches, levels) each, averaged over windows.
+    """Return the share of each pass that is undone, and the size of the bias of the pass, (n_patches, passes) each.
 
     Args:
-        levels: values of each level, (n_patches, replicates).
+        levels: values before the first pass and after each, (n_patches, replicates).
         steps: the pairs of each pass.
     """
-    count = len(levels)
-    estimates = [_mean_and_variance(one)[1] for one in levels]
-    for before, after in zip(levels, levels[1:], strict=False):
-        mean, variance = _mean_and_variance(after - before)
-        estimates.append(mean**2 - variance)
-    windows = [np.stack(estimates, axis=1)]
+    told = [_mean_and_variance(after - before) for before, after in pairwise(levels)]
+    windows = [np.stack([mean**2 - variance for mean, variance in told] + [variance for _, variance in told], axis=1)]
     for pairs in steps:
         windows.append(_passed(windows[-1], pairs))
-    changes = np.maximum(np.maximum(windows[NARROW], windows[-1])[:, count:], 0)
-    bias = np.zeros((len(changes), count))
-    np.cumsum(np.sqrt(changes), axis=1, out=bias[:, 1:])
-    return windows[-1][:, :count], bias
+    square, variance = (np.maximum(part, 0) for part in np.split(windows[-1], 2, axis=1))
+    near, its_variance = np.split(windows[NARROW], 2, axis=1)
+    whole = square + variance
+    undone = np.where(whole > 0, square / np.where(whole > 0, whole, 1), 1)
+    return np.maximum.accumulate(undone, axis=1), np.sqrt(np.maximum(square, near - CLEAR * its_variance))
 
 
 def _mean_and_variance(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

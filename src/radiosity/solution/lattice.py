@@ -1,8 +1,8 @@
 """Lattices: congruent patches beside each other in one plane, whose steps along an axis are all alike.
 
 The cells of a face are such a lattice, and so are the faces of a wall that is made of equal parallelograms. The cells of a
-triangle are two lattices, the upright and the inverted cells. Places on a lattice are whole numbers, by which neighbours are found,
-so nothing is compared in pairs.
+triangle are two lattices, the upright and the inverted cells. Places on a lattice are whole numbers, by which neighbours are
+found, so nothing is compared in pairs.
 """
 
 from dataclasses import dataclass
@@ -15,6 +15,7 @@ from ..patches.model import Patches
 from ..scene.flat_pieces import numbered
 
 FINE = 96  # steps of a cell in which places are told; a multiple of 3, for the centroids of triangles
+BEFORE = 0.637  # of such a step: where the next one begins; no usual share of a cell, which would be rounded up or down by chance
 ALIKE = 1 / 1021.3  # edges that agree to this, relative to their length, are alike; no round number, which edges have
 DOMINANT = 0.437  # a component of a unit vector that tells its sign; no cosine of a usual angle
 ALONG = (0.8231, 0.4417, 0.3571)  # a direction that tells the order of two edges
@@ -40,8 +41,8 @@ class Lattice:
     def of(patches: Patches) -> "Lattice":
         """Return the lattice of patches. It is found once."""
         if patches not in _known:
-            kind, basis, third = _kinds(patches)
-            place = _places(patches, kind, basis)
+            kind, axes, third = _kinds(patches)
+            place = _places(patches, kind, axes)
             _known[patches] = Lattice(_neighbours(place, third[patches.face]), numbered(place[:, ::3].astype(np.float64)))
         return _known[patches]
 
@@ -54,24 +55,28 @@ class Lattice:
             back[forth[here]] = here
         return result
 
-    def pairs(self, levels: int) -> list[Pairs]:
-        """Return the pairs of patches at equal distances on both sides of each patch, for 1, 2, 4, ... steps.
+    def pairs(self, count: int) -> list[Pairs]:
+        """Return the pairs of patches at equal distances on both sides of each patch, for 1, 2, 4, ... steps, ``count`` of them.
 
         Where fewer patches are on one side, both distances are halved until both patches are there. A patch at a rim is its own
         pair along that axis. An axis that no patch has is left out.
         """
-        n = self.after.shape[1]
-        itself = np.arange(n)
+        itself = np.arange(self.after.shape[1])
         ways = [(back, forth) for back, forth in zip(self.before, self.after, strict=True) if (forth >= 0).any()]
-        near = [(itself, itself)] * len(ways)
+        near: Pairs = [(itself, itself)] * len(ways)
         result = []
-        for _ in range(levels):
+        for _ in range(count):
             for axis, (back, forth) in enumerate(ways):
                 both = (back >= 0) & (forth >= 0)
-                near[axis] = tuple(np.where(both, far, old) for far, old in zip((back, forth), near[axis], strict=True))
+                near[axis] = np.where(both, back, near[axis][0]), np.where(both, forth, near[axis][1])
             result.append(list(near))
-            ways = [tuple(np.where(way >= 0, way[way], -1) for way in pair) for pair in ways]
+            ways = [(_twice(back), _twice(forth)) for back, forth in ways]
         return result
+
+
+def _twice(way: np.ndarray) -> np.ndarray:
+    """Return the patch that two such ways after each other lead to, or -1."""
+    return np.where(way >= 0, way[way], -1)
 
 
 def _neighbours(place: np.ndarray, third: np.ndarray) -> np.ndarray:
@@ -102,41 +107,41 @@ def _neighbours(place: np.ndarray, third: np.ndarray) -> np.ndarray:
 
 
 def _kinds(patches: Patches) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the kind of each face, its axes, and what the third axis of a triangle is of them.
+    """Return the kind of each face, the axes of its cells, and the third axis of triangles.
 
     Faces of one kind have one surface, look the same way, and their cells have the same edges, in any order.
 
     Returns:
-        (n_faces,) int64; (n_faces, 3, 3) metres, two edges and a normal of like length; (n_faces, 2) int64, zeros of a
-        parallelogram.
+        (n_faces,) int64; (n_faces, 3, 3), the scalar products with these are steps along two edges and the normal; (n_faces, 2)
+        int64, the third edge in steps along the other two, zeros of a parallelogram.
     """
     scene = patches.scene
     _, first, second = scene.frames
     first, second = first / patches.columns[:, None], second / patches.rows[:, None]
     edges = np.stack([first, second, np.where(scene.is_quad[:, None], 0.0, second - first)], axis=1)
     length = np.linalg.norm(edges, axis=2)
-    tells = np.abs(edges) > DOMINANT * length[:, :, None]
-    sign = np.sign(np.take_along_axis(edges, tells.argmax(axis=2)[:, :, None], axis=2))
-    edges = edges * sign
+    tells = (np.abs(edges) > DOMINANT * length[:, :, None]).argmax(axis=2)
+    edges *= np.sign(np.take_along_axis(edges, tells[:, :, None], axis=2))
     rank = np.where(length > 0, edges @ np.array(ALONG), -np.inf)
     edges = np.take_along_axis(edges, np.argsort(-rank, axis=1, kind="stable")[:, :, None], axis=1)
-    size = np.linalg.norm(edges[:, :2], axis=2).max(axis=1)
-    facing = np.einsum("ij,ij->i", np.cross(edges[:, 0], edges[:, 1]), scene.normal) > 0
-    _, power = np.frexp(size * 1.37)
-    rounded = np.rint(edges[:, :2].reshape(-1, 6) / np.ldexp(ALIKE, power)[:, None])
-    key = np.column_stack([scene.surface, scene.is_quad, facing, power, rounded]) + 0.0
-    kind = numbered(key)
-    basis = np.stack([edges[:, 0], edges[:, 1], scene.normal * size[:, None]], axis=1)
-    third = np.rint(np.einsum("ijk,ik->ij", np.linalg.inv(basis).transpose(0, 2, 1), edges[:, 2]))[:, :2].astype(np.int64)
-    return kind, basis, third
+    one, two, three = edges.transpose(1, 0, 2)
+    size, upright = length.max(axis=1)[:, None], np.cross(one, two)
+    _, power = np.frexp(size * 1.37)  # no round number, either
+    facing = np.einsum("ij,ij->i", upright, scene.normal) > 0
+    alike = np.rint(np.hstack([one, two]) / np.ldexp(ALIKE, power))
+    kind = numbered(np.column_stack([scene.surface, scene.is_quad, facing, power, alike]))
+    area = np.linalg.norm(upright, axis=1, keepdims=True)
+    normal = upright / np.where(area > 0, area, 1)
+    axes = np.stack([np.cross(two, normal), np.cross(normal, one), normal * area / size], axis=1)
+    axes /= np.where(area > 0, area, 1)[:, :, None]
+    return kind, axes, np.rint(np.einsum("ijk,ik->ij", axes[:, :2], three)).astype(np.int64)
 
 
-def _places(patches: Patches, kind: np.ndarray, basis: np.ndarray) -> np.ndarray:
+def _places(patches: Patches, kind: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Return the kind and side, and the place on its lattice of each patch, (n_patches, 4) int64."""
-    _, begin, kind = np.unique(kind, return_index=True, return_inverse=True)
-    kind = kind.ravel()
-    origin = patches.centroid[patches.first[begin]]
-    turned = np.linalg.inv(basis[begin])
+    begin = np.unique(kind, return_index=True)[1]
+    origin, along = patches.centroid[patches.first[begin]], axes[begin]
     of = kind[patches.face]
-    place = np.einsum("ij,ijk->ik", patches.centroid - origin[of], turned[of])
-    return np.column_stack([2 * of + patches.is_back, np.rint(place * FINE)]).astype(np.int64)
+    steps = np.einsum("ijk,ik->ij", along[of], patches.centroid - origin[of])
+    place = np.clip(np.floor(steps * FINE + BEFORE), -(2.0**60), 2.0**60)
+    return np.column_stack([2 * of + patches.is_back, place]).astype(np.int64)
