@@ -53,6 +53,10 @@ class AbstractAlgorithm(ABC, Generic[S]):
     def stage_independent(self) -> bool:
         """True where the state after N depends on N alone, not on the stages that led there."""
 
+    def quanta_for(self, lines: float) -> int | None:
+        """Return N of a number of lines of all replicates, where that is known beforehand; None where a pilot must tell."""
+        return None
+
     @abstractmethod
     def advance(self, quanta: int, swept: Swept) -> None:
         """Complete the stage of N quanta a replicate.

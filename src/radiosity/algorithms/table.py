@@ -13,6 +13,7 @@ ALGORITHMS = {
     "firing": "firing.algorithm:Firing",
     "walks": "walks.shooting:Walks",
     "gathering": "walks.gathering:Gathering",
+    "gather": "gather.algorithm:Gather",
     "iteration": "iterations.algorithm:Iteration",
     "multipath": "global_lines.multipath:Multipath",
     "pooling": "global_lines.pooling:Pooling",

@@ -23,13 +23,13 @@ def machine(method) -> str:
 def _local(method) -> str:
     if method.order == "multipath":
         raise MethodError("order 'multipath' carries power along lines that cross many patches; take --lines global")
-    if method.order in (*ITERATIONS, "matrix"):
+    if method.order in (*ITERATIONS, "matrix", "gather"):
         if method.equation != "discrete":
             raise MethodError(
                 f"order '{method.order}' sends the power of whole patches, wherever on them it arrived: "
                 "it solves the discrete equation only"
             )
-        return "matrix" if method.order == "matrix" else "iteration"
+        return method.order if method.order in ("matrix", "gather") else "iteration"
     fires = method.equation == "discrete" and method.estimator == "collision" and method.absorption in ("auto", "rounded")
     if fires and method.order in FIRING_ORDERS:
         return "firing"

@@ -7,6 +7,7 @@ ORDERS = {
     "well-distributed": "in stages of half the quantum each; a patch fires what it lacks to its share",
     "incremental": "iterations that send the light not sent yet, in ever fewer lines",
     "regular": "iterations that send all light anew, averaged",
+    "gather": "every patch fires shadow rays to the lamps, and cosine lines that read a solution along stored lines",
     "multipath": "each line carries on what earlier lines left on the patches it crosses",
     "matrix": "lines give form factors first; the equation is solved afterwards",
 }

@@ -12,6 +12,7 @@ LEAST_QUANTA = 1024
 AIM, AIM_ONCE = 0.97, 0.9  # of an error target, at the last stage; lower where no run goes on from a stage between two rungs
 LEAST_STEP = 1.05  # times the lines so far
 DONE = 1 << 31  # quanta, more than any baseline takes: it ends when there is nothing left to do
+GATHERED = 24  # lines of a patch and replicate that a gather begins with
 BASELINE_RUNGS = {"full-matrix": 1, "progressive": 64, "hierarchical": 1}  # the whole matrix; shots; passes of refinement
 
 
@@ -96,6 +97,8 @@ def first_rung(order: str, replicates: int, share) -> int:
     if order in BASELINE_RUNGS:
         return BASELINE_RUNGS[order]
     usual = first_stage(replicates, len(share))
+    if order == "gather":  # so that all its stored lines are in the first stage
+        return max(usual, 1 << (GATHERED * len(share) - 1).bit_length())
     if order == "staged":
         return LEAST_QUANTA
     if order == "well-distributed":

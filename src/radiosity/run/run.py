@@ -253,6 +253,9 @@ class Run:
             return self.rung
         if self.budget.rays is None or self.budget.rays >= MANY * self.rung * self.replicates:
             return self.rung
+        known = self.algorithm.quanta_for(self.budget.rays)
+        if known is not None:
+            return min(self.rung, known)
         counted = self.problem.scalar if self.method.machine == "firing" else self.problem
         found = few_quanta(
             self.budget.rays, self.replicates, self._algorithm(counted, Part(Seed(self.part.seed.value), 1)), self._pilot_told

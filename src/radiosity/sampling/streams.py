@@ -54,6 +54,9 @@ class Purpose(IntEnum):
     RESIDUE = 6  # where lines begin that send the residue on
     RESIDUE_LINES = 7  # the numbers of those lines
     SEQUENCE = 8  # iterations: sequences after the first, one child each
+    SHADOW_RAYS = 9  # gather: shadow rays
+    PILOT = 10  # gather: cosine lines of the pilot
+    PILOT_SHADOW = 11  # gather: shadow rays of the pilot
     ROUNDING = 2  # iterations: how many lines a patch fires, a child each step; they never meet the other purpose of this number
 
 

@@ -13,6 +13,14 @@ WALKS = {
         "sbert1997",
         ("estimator", "absorption", "coherent"),
     ),
+    "gather": Preset(
+        Method(order="gather"),
+        "Every patch gathers: shadow rays to the lamps, and cosine lines that read the radiosity of the patches they hit. That "
+        "radiosity is solved along the first lines of each patch, which are stored, and corrected by all lines. A pilot shares "
+        "lines out to where they are needed.",
+        "Rooms with some tens of lamps: a fifth to a tenth of the time of random-walk for the same error. No exact books.",
+        "bekaert1999",
+    ),
     "particle-tracing": Preset(
         Method(equation="continuous"),
         "Particles are followed from the lights and go on from the very point that they hit; patches only count. It solves "

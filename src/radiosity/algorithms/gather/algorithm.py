@@ -1,0 +1,223 @@
+"""Gather: every patch fires shadow rays to the lamps, and cosine lines that read the radiosity where they hit.
+
+The first cosine lines of each patch are stored, and the equation among patches is solved along them (`rows`). Later lines read that
+solution. From time to time it is corrected: what all lines so far say, less what they read, is the residual of a system that is
+solved along the stored lines again (iterative refinement; P. Bekaert's thesis, 1999, gathers from a stored solution as a final
+step). So the result tends to the solution by all lines, and the state after N is a function of the seed and N alone.
+"""
+
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import frozen, upload
+from ...errors import MethodError
+from ...sampling.streams import Purpose
+from ..base import AbstractAlgorithm, Swept
+from ..state import Arrays, Sizes
+from .lamps import Lamps
+from .lines import UNITS, Lines
+from .packets import ESCAPED, LOST, Packets
+from .pilot import LINES, Pilot
+from .reading import Reading
+from .rows import Rows
+from .shares import Shares
+from .state import GatherState
+from .tally import GatherTally
+
+SLICE = 1 << 22  # lines of a slice: between slices a run can be interrupted
+TOLERANCE = 3e-3  # of the mean irradiance, in the first correction; later ones take less, as errors do
+
+
+class Gather(AbstractAlgorithm[GatherState]):
+    """Runs shadow rays and cosine lines. ``quanta`` is the number of lines of a replicate."""
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        if self.geometry.some_backs_pass:
+            raise MethodError(
+                f"{self.problem.patches.scene.source}: some backs let lines pass, so what a patch sees is not what sees the patch; "
+                "method gather needs both to be equal: take --method random-walk"
+            )
+        self.packets = Packets(self.geometry, self.replicates, self.method.coherent)
+        self.lamps = Lamps(self.geometry, self.problem, Packets(self.geometry, 1))
+        self.types: Any = self.packets.types
+        self._quanta, self._done = 0, 0
+        self._shares: Shares | None = None
+        self._lines: Lines | None = None
+
+    @property
+    def quanta(self) -> int:
+        return self._quanta
+
+    @property
+    def stage_independent(self) -> bool:
+        return True
+
+    @property
+    def tally(self) -> GatherTally:
+        return GatherTally()
+
+    @property
+    def groups(self) -> int:
+        return self.problem.groups.n_groups
+
+    def quanta_for(self, lines: float) -> int:
+        return max(round((lines - LINES * self.packets.n) / self.replicates), 1)
+
+    def _begin(self) -> None:
+        """Run the pilot, and make the sums."""
+        method, types = self.method, self.types
+        self._shares = Pilot.run(self.geometry, self.problem, self.lamps, method, self.seed).shares
+        purposes = (Purpose.NUMBERS, Purpose.SHADOW_RAYS)
+        self._lines = Lines.of(self.packets, self.lamps, self.problem, method, self.seed, purposes)
+        self._reflectance = Rows.reflectances(self.packets, self.problem.groups.reflectance)
+        self._brought, self._met = (
+            [dr.zeros(kind, self.packets.lanes) for _ in range(self.groups)] for kind in (types.UInt64, types.Int64)
+        )
+        self._reading = Reading.nothing(types.Float, self.packets.lanes, self.groups)
+        self._hits, self._stored = dr.zeros(types.UInt32, self.packets.lanes), 0
+
+    def advance(self, quanta: int, swept: Swept) -> None:
+        told = 0
+        if self._shares is None:
+            self._begin()
+            told = LINES * self.packets.n
+        shares = self._shares
+        assert shares is not None
+        self._quanta = quanta
+        corrections = shares.corrections(quanta)
+        while self._done < quanta:
+            step = max(SLICE * max(dr.thread_count() // 2, 1) // self.replicates, 1)
+            end = min([quanta, self._done + step, *(at for at in corrections if at > self._done)])
+            told += self._trace(shares, end)
+            self._done = end
+            if end in corrections:
+                self._correct(shares)
+            swept(told)
+            told = 0
+
+    def _trace(self, shares: Shares, quanta: int) -> int:
+        """Trace the lines up to N, and return their number."""
+        lines = self._lines
+        assert lines is not None
+        before = shares.counts(self._done) if self._done else np.zeros_like(shares.counts(0))
+        more = shares.counts(quanta) - before
+        if more[1].any():
+            self._add(self._brought, lines.shadow(before[1], more[1]))
+        if more[0].any():
+            storing = self._done < shares.stored_quanta
+            if storing:
+                self._make_room(int((before + more)[0].max()))
+            read = None if storing else self._reading.reflected
+            self._add(self._met, lines.cosine(before[0], more[0], read, self._hits if storing else None))
+        dr.eval(self._brought, self._met)
+        return int((more * self.packets.sizes).sum()) * self.replicates
+
+    def _add(self, sums: list, more: list) -> None:
+        for group, value in enumerate(more):
+            sums[group] = sums[group] + type(sums[group])(value)
+
+    def _make_room(self, stored: int) -> None:
+        """Make room for the hits of as many stored lines of each patch."""
+        wanted = stored * self.packets.lanes
+        if self._stored:
+            self._hits = dr.concat([self._hits, dr.zeros(self.types.UInt32, wanted - dr.width(self._hits))])
+        else:
+            self._hits = dr.zeros(self.types.UInt32, wanted)
+        self._stored = stored
+
+    def _correct(self, shares: Shares) -> None:
+        """Correct the radiosity that lines read."""
+        self._met, self._reading = self._corrected(shares)
+
+    def _corrected(self, shares: Shares) -> tuple[list, Reading]:
+        """Return sums of cosine lines, and what they read, corrected."""
+        types, lines = self.types, self._lines
+        assert lines is not None
+        _, _, place, _ = self.packets.read()
+        cosine, rays = (types.Float64(self.packets.of_packets(each, place)) for each in shares.counts(self._done))
+        irradiance = [
+            types.Float(types.Float64(brought) / (rays * UNITS) + types.Float64(met) / (cosine * lines.unit))
+            for brought, met in zip(self._brought, self._met, strict=True)
+        ]
+        irradiance = [dr.select(cosine > 0, value, 0) for value in irradiance]
+        dr.eval(irradiance)
+        rows = Rows(self.packets, self._hits, self._stored, self._reflectance)
+        grown = max(self._done / shares.stored_quanta, 1.0)
+        tolerance = TOLERANCE * max(self._mean(value) for value in irradiance) / grown**0.5
+        reading, means = self._reading.corrected(rows, irradiance, max(tolerance, 1e-12), first=grown == 1.0)
+        met = [
+            total + types.Int64(dr.round(types.Float64(mean) * cosine * lines.unit))
+            for total, mean in zip(self._met, means, strict=True)
+        ]
+        dr.eval(met)
+        return met, reading
+
+    def _mean(self, values) -> float:
+        """Return the mean of positive values, from whole numbers, so that no order matters."""
+        return float(dr.sum(self.types.UInt64(dr.maximum(values, 0) * 2.0**24))[0]) / 2.0**24 / self.packets.lanes
+
+    # ---- states ----------------------------------------------------------------------------------------------------
+
+    def capture(self) -> GatherState:
+        packets, shares = self.packets, self._shares
+        if shares is None or not self._done:
+            return GatherState.empty(self.sizes, self._quanta)
+        met, reading = self._met, self._reading
+        if self._done < shares.stored_quanta and self._done == self._quanta:
+            met, reading = self._corrected(shares)
+        rows = Rows(packets, self._hits, self._stored, self._reflectance)
+        missed = np.stack([packets.patch_values(np.array(rows.missed(code))) for code in (ESCAPED, LOST)])
+        cosine, rays = (np.repeat(count, packets.sizes)[packets.place].astype(np.uint32) for count in shares.counts(self._done))
+        by_patch = self._by_patch
+        halves = np.stack([by_patch(reading.halves[at : at + self.groups]) for at in (0, self.groups)])
+        return GatherState(
+            sizes=self.sizes,
+            quanta=self._quanta,
+            done=self._done,
+            cosine=cosine,
+            rays=rays,
+            brought=by_patch(self._brought),
+            met=by_patch(met),
+            reflected=by_patch(reading.reflected),
+            halves=halves,
+            first_bias=by_patch(reading.first),
+            bias_left=by_patch(reading.left),
+            missed=missed,
+        )
+
+    def _by_patch(self, columns: list) -> np.ndarray:
+        """Return values of lanes, of each group, as (replicates, n_patches, groups)."""
+        return np.stack([self.packets.patch_values(frozen(one)) for one in columns], axis=-1)
+
+    def _by_lane(self, kind, values: np.ndarray) -> list:
+        """Return the inverse of `_by_patch`."""
+        return [upload(kind, self.packets.lane_values(values[..., group])) for group in range(self.groups)]
+
+    def read(self, arrays: Arrays, sizes: Sizes) -> GatherState:
+        if GatherState.lacking(arrays, sizes):
+            raise MethodError("the solution to go on from lacks the sums of its gather; start anew")
+        return GatherState.read(arrays, sizes)
+
+    def restore(self, state: GatherState) -> None:
+        self._begin()
+        shares, lines, types = self._shares, self._lines, self.types
+        assert shares is not None
+        assert lines is not None
+        self._quanta, self._done = state.quanta, state.done
+        if not state.done:
+            return
+        stored = shares.first_counts(state.done)[0]
+        self._make_room(stored)
+        nothing = np.zeros(self.packets.count, np.int64)
+        again = lines.cosine(nothing, nothing + stored, keep=self._hits)
+        self._brought = self._by_lane(types.UInt64, state.brought)
+        if state.done < shares.stored_quanta:  # lines read nothing yet; what `capture` added is found again
+            self._met = [types.Int64(value) for value in again]
+            return
+        self._met = self._by_lane(types.Int64, state.met)
+        halves = [value for half in state.halves for value in self._by_lane(types.Float, half)]
+        reflected, first, left = (self._by_lane(types.Float, x) for x in (state.reflected, state.first_bias, state.bias_left))
+        self._reading = Reading(reflected, halves, first, left)

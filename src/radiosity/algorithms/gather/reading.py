@@ -1,0 +1,57 @@
+"""The radiosity that cosine lines read where they hit, its correction along stored lines, and its bias."""
+
+from dataclasses import dataclass, replace
+
+import drjit as dr
+
+from .rows import Rows
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """Reflected radiosity of each lane, in shares of the largest emission; a list has an entry for each group of bands.
+
+    The solution along m stored lines has a bias that goes as 1 / m. So it is corrected also along each half of the lines. Errors
+    that are linear in the lines cancel in the mean of both less the whole; what is left is the bias.
+
+    Attributes:
+        reflected: what lines read.
+        halves: what it would be by the first half of the lines, then by the second, less ``reflected``; twice as many entries.
+        first: the bias of irradiance after the first correction.
+        left: what corrections have left of it.
+    """
+
+    reflected: list
+    halves: list
+    first: list
+    left: list
+
+    @staticmethod
+    def nothing(kind, lanes: int, groups: int) -> "Reading":
+        """Return what is read before the first correction: zero."""
+        return Reading(*([dr.zeros(kind, lanes) for _ in range(count * groups)] for count in (1, 2, 1, 1)))
+
+    def corrected(self, rows: Rows, irradiance: list, tolerance: float, *, first: bool) -> tuple["Reading", list]:
+        """Return what lines read from now on, and by how much more of it each lane's lines meet, in the mean over stored lines.
+
+        Args:
+            irradiance: what all lines so far say, of each group.
+            tolerance: see `Rows.solve`.
+            first: it is the first correction.
+        """
+        groups = len(self.reflected)
+        right = [rho * value - read for rho, value, read in zip(rows.reflectance, irradiance, self.reflected, strict=True)]
+        met = [*rows.means(self.halves[:groups]), *rows.means(self.halves[groups:])]
+        rights = [
+            start + rho * mean - half
+            for start, rho, mean, half in zip(right * 2, rows.reflectance * 2, met, self.halves, strict=True)
+        ]
+        dr.eval(right, rights)
+        more, of_halves = rows.solve(right, tolerance, rights)
+        reflected = [value + one for value, one in zip(self.reflected, more, strict=True)]
+        halves = [half + one - whole for half, one, whole in zip(self.halves, of_halves, more * 2, strict=True)]
+        left = rows.means([(a + b) * 0.5 for a, b in zip(halves[:groups], halves[groups:], strict=True)])
+        means = rows.means(more)
+        dr.eval(reflected, halves, left, means)
+        reading = replace(self, reflected=reflected, halves=halves, left=left)
+        return (replace(reading, first=left) if first else reading), means

@@ -1,0 +1,53 @@
+"""Results of a gather, read from its sums."""
+
+import numpy as np
+
+from ...problem.model import Problem
+from ...solution.books import by_difference, exact_sum
+from ..base import AbstractBiasedTally
+from .lines import UNITS, most_read
+from .pilot import LINES
+from .shares import STORED
+from .state import GatherState
+
+
+class GatherTally(AbstractBiasedTally[GatherState]):
+    """Reads means over the lines of each patch: what shadow rays bring, and what cosine lines meet."""
+
+    counts_hits = False
+
+    def lines(self, problem: Problem, state: GatherState) -> int:
+        return len(problem.patches) * LINES + (exact_sum(state.cosine) + exact_sum(state.rays)) * state.sizes.replicates
+
+    def arrivals(self, problem: Problem, state: GatherState) -> np.ndarray:
+        lines = state.cosine.astype(np.int64) + state.rays
+        return lines * state.sizes.replicates  # a patch is measured by the lines that leave it
+
+    def direct(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
+        """Return the part of `irradiance` that shadow rays bring, (replicates, n_patches)."""
+        rays = np.maximum(state.rays, 1).astype(np.float64)
+        return state.brought[..., group] * (problem.patches.area / (rays * UNITS))
+
+    def irradiance(self, problem: Problem, state: GatherState, group: int) -> tuple[np.ndarray, float]:
+        lines = np.maximum(state.cosine, 1).astype(np.float64)
+        met = state.met[..., group] * (problem.patches.area * most_read(problem) / (lines * UNITS))
+        return self.direct(problem, state, group) + met, float(problem.groups.emission[:, group].max())
+
+    def line(self, problem: Problem, state: GatherState, group: int) -> np.ndarray | float:
+        """Return the power that one of a patch's lines brings where it hits the brightest lamp."""
+        return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(state.cosine, 1)
+
+    def bias(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
+        first, left = (np.abs(x[..., group].mean(axis=0, dtype=np.float64)) for x in (state.first_bias, state.bias_left))
+        of_all = np.minimum(state.cosine, STORED) / np.maximum(state.cosine, 1)  # that of the solution by all lines goes as 1 / m
+        return np.maximum(left, first * of_all) * problem.patches.area
+
+    def books(self, problem: Problem, state: GatherState, group: int) -> dict:
+        values, unit = self.irradiance(problem, state, group)
+        received = values.mean(axis=0) * unit
+        rho, own = problem.groups.reflectance[:, group], problem.groups.emission[:, group] * problem.patches.area
+        left = own + rho * received
+        stored = np.maximum(np.minimum(state.cosine, STORED), 1)
+        escaped, lost = (float(left @ (count.mean(axis=0) / stored)) for count in state.missed)
+        return by_difference(float(own.sum()), float(received @ (1 - rho)), escaped, lost)
+
