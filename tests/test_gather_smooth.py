@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
-from replicates import powers
+from replicates import powers, process_of
 from scipy.stats import t
 
 import radiosity as rd
 from radiosity.algorithms.gather.smooth import SmoothTally
 from radiosity.algorithms.gather.tally import GatherTally
+from radiosity.problem.model import Problem
+from radiosity.run.snapshot import Snapshot
 from radiosity.solution.binomial import smoothed
 
 SEEDS = 3
@@ -75,24 +77,33 @@ def test_direct_light_is_smoothed_by_itself(room, monkeypatch):
     assert sum(error(seed) for seed in range(SEEDS)) > 1.03 * apart
 
 
-def test_targets_of_means_do_not_wait_for_the_bias_of_patches(room):
-    """Smoothing keeps the power of surfaces, so it needs no more lines than without it."""
-    small = rd.subdivide(room[0].scene, cells=6)
-    lines = [
-        rd.solve(small, "gather", error=0.01, error_of="mean:floor", seed=1, reconstruction=how).rays
-        for how in ("patches", "smooth")
-    ]
-    assert lines[0] == lines[1]
+def test_errors_of_means_do_not_hold_the_bias_of_patches(room, pairs):
+    """Smoothing keeps the power of surfaces, so the error of a mean is what it was."""
+    patches, problem = room[0], Problem.of(room[0])
+    floor = np.array([patches.scene.names.index("floor")])
+    rows = np.flatnonzero(patches.surface == floor[0])
+    plain, smooth = (
+        Snapshot(problem, process.tally, process.read(one.state, process.sizes), one.replicates)
+        for one in pairs[0]
+        for process in [process_of(one, problem)]
+    )
+    assert smooth.error_of_mean(rows, floor) == pytest.approx(plain.error_of_mean(rows, floor), rel=1e-9)
 
 
-def test_a_tally_reads_each_stage_anew():
+def test_a_tally_reads_each_state_anew():
     """In bands, too: what was kept of one state is not read of another."""
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=3)
-    one, two = (rd.solve(patches, "gather", rays=rays, seed=1, reconstruction="smooth") for rays in (60_000, 600_000))
-    again = rd.solve(patches, "gather", seed=1, quanta=two.quanta, reconstruction="smooth", resume=one)
-    assert (again.irradiance == two.irradiance).all()
-    assert (again.irradiance_standard_error == two.irradiance_standard_error).all()
-    assert len({band.tobytes() for band in two.irradiance.T}) == 3
+    problem, tally, found = Problem.of(patches), SmoothTally(GatherTally()), []
+    for rays in (60_000, 600_000):
+        solution = rd.solve(patches, "gather", rays=rays, seed=1, reconstruction="smooth")
+        algorithm = process_of(solution, problem)
+        state = algorithm.read(solution.state, algorithm.sizes)
+        for group in range(3):
+            values, unit = tally.irradiance(problem, state, group)
+            assert values is tally.irradiance(problem, state, group)[0]
+            found.append(values.mean(axis=0) * unit / patches.area * problem.groups.scale[group])
+            assert found[-1] == pytest.approx(solution.irradiance[:, group], rel=1e-12)
+    assert len({values.tobytes() for values in found}) == 6
 
 
 def test_one_replicate_is_refused_with_the_reason():
