@@ -225,4 +225,3 @@ def _squared(sums, values):
         *(total + value for total, value in zip(sums[:half], values, strict=True)),
         *(total + value * value for total, value in zip(sums[half:], values, strict=True)),
     ]
-

@@ -70,7 +70,9 @@ class Rows:
         count = groups * (1 if halves is None else 3)
         state = (dr.zeros(UInt32, packets.lanes), *(dr.zeros(Float, packets.lanes) for _ in range(count)))
         _, *sums = loop(state, lambda number, *sums: number < stored, body)
-        shares = [dr.opaque(Float, 1 / max(lines, 1)) for lines in (self.stored, self.stored // 2, self.stored - self.stored // 2)]
+        shares = [
+            dr.opaque(Float, 1 / max(lines, 1)) for lines in (self.stored, self.stored // 2, self.stored - self.stored // 2)
+        ]
         return [total * shares[at // groups] for at, total in enumerate(sums)]
 
     def solve(self, right: list, tolerance: float, halves: list | None = None) -> tuple[list, list]:
