@@ -90,6 +90,10 @@ class Run:
     def _stages(self) -> Solution:
         algorithm, target = self._algorithm(self.problem, self.part), 0
         self.algorithm = algorithm
+        self.ladder = self.budget
+        if self.budget.rays is not None and self.budget.error is None:
+            known = algorithm.quanta_for(self.budget.rays)
+            self.ladder = self.budget if known is None else Budget(quanta=known)
         if self.resume is None:
             target = self._first_quanta()
         else:
@@ -135,7 +139,7 @@ class Run:
                 steps = self._climb(target)
                 target = steps[-1]
                 continue
-            target = next_quanta(self.budget, self.replicates, self.rung, at, self.most, replay=replay)
+            target = next_quanta(self.ladder, self.replicates, self.rung, at, self.most, replay=replay)
             steps = [target] if target else []
             if target and large and self.replicates > 1:
                 snapshot.settle()
@@ -247,15 +251,12 @@ class Run:
 
     def _first_quanta(self) -> int:
         """Return N of the first stage: the ladder's first rung, or less where the budget asks for less."""
-        if self.budget.quanta is not None:
-            return min(self.rung, int(self.budget.quanta))
+        if self.ladder.quanta is not None:
+            return min(self.rung, int(self.ladder.quanta))
         if isinstance(self.method, Baseline):
             return self.rung
         if self.budget.rays is None or self.budget.rays >= MANY * self.rung * self.replicates:
             return self.rung
-        known = self.algorithm.quanta_for(self.budget.rays)
-        if known is not None:
-            return min(self.rung, known)
         counted = self.problem.scalar if self.method.machine == "firing" else self.problem
         found = few_quanta(
             self.budget.rays, self.replicates, self._algorithm(counted, Part(Seed(self.part.seed.value), 1)), self._pilot_told

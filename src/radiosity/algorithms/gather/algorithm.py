@@ -28,7 +28,7 @@ from .state import GatherState
 from .tally import GatherTally
 
 SLICE = 1 << 22  # lines of a slice: between slices a run can be interrupted
-TOLERANCE = 3e-3  # of the mean irradiance, in the first correction; later ones take less, as errors do
+TOLERANCE = 1e-2  # of the mean irradiance, in the first correction; later ones take less, as errors do
 
 
 class Gather(AbstractAlgorithm[GatherState]):
@@ -129,6 +129,12 @@ class Gather(AbstractAlgorithm[GatherState]):
             self._hits = dr.zeros(self.types.UInt32, wanted)
         self._stored = stored
 
+    def _rows(self, shares: Shares) -> Rows:
+        _, _, place, _ = self.packets.read()
+        stored = self.packets.of_packets(shares.stored(self._done), place)
+        dr.eval(stored)
+        return Rows(self.packets, self._hits, stored, self._reflectance)
+
     def _correct(self, shares: Shares) -> None:
         """Correct the radiosity that lines read."""
         self._met, self._reading = self._corrected(shares)
@@ -145,7 +151,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         ]
         irradiance = [dr.select(cosine > 0, value, 0) for value in irradiance]
         dr.eval(irradiance)
-        rows = Rows(self.packets, self._hits, self._stored, self._reflectance)
+        rows = self._rows(shares)
         grown = max(self._done / shares.stored_quanta, 1.0)
         tolerance = TOLERANCE * max(self._mean(value) for value in irradiance) / grown**0.5
         reading, means = self._reading.corrected(rows, irradiance, max(tolerance, 1e-12), first=grown == 1.0)
@@ -169,7 +175,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         met, reading = self._met, self._reading
         if self._done < shares.stored_quanta and self._done == self._quanta:
             met, reading = self._corrected(shares)
-        rows = Rows(packets, self._hits, self._stored, self._reflectance)
+        rows = self._rows(shares)
         missed = np.stack([packets.patch_values(np.array(rows.missed(code))) for code in (ESCAPED, LOST)])
         cosine, rays = (np.repeat(count, packets.sizes)[packets.place].astype(np.uint32) for count in shares.counts(self._done))
         by_patch = self._by_patch
@@ -210,10 +216,9 @@ class Gather(AbstractAlgorithm[GatherState]):
         self._quanta, self._done = state.quanta, state.done
         if not state.done:
             return
-        stored = shares.first_counts(state.done)[0]
-        self._make_room(stored)
-        nothing = np.zeros(self.packets.count, np.int64)
-        again = lines.cosine(nothing, nothing + stored, keep=self._hits)
+        stored = shares.stored(state.done)
+        self._make_room(int(stored.max()))
+        again = lines.cosine(np.zeros_like(stored), stored, keep=self._hits)
         self._brought = self._by_lane(types.UInt64, state.brought)
         if state.done < shares.stored_quanta:  # lines read nothing yet; what `capture` added is found again
             self._met = [types.Int64(value) for value in again]

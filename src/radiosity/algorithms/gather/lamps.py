@@ -1,7 +1,7 @@
 """Lamps: the sides of faces that emit, and how likely a shadow ray from a receiver goes to each.
 
-Receivers are taken in clusters of neighbours. A cluster chooses a lamp with a probability in proportion to what the lamp would send
-it without obstacles, bounded from the cluster's box, and to some extent by power alone. It is zero only for a lamp that is
+Receivers are taken in clusters of neighbours. A cluster chooses a lamp with a probability in proportion to what the lamp would
+send it without obstacles, bounded from the cluster's box, and to some extent by power alone. It is zero only for a lamp that is
 behind the cluster's planes, or that the cluster is behind. Where lamps are many, neighbours form a group, which is chosen as
 one; within it, lamps are chosen by power.
 """

@@ -53,7 +53,7 @@ class Pilot:
         shadow = lines.shadow(constant(0), constant(SHADOW), squares=True)
         hits = dr.zeros(types.UInt32, STORED * packets.lanes)
         lamplight = lines.cosine(constant(0), constant(STORED), keep=hits)
-        rows = Rows(packets, hits, STORED, Rows.reflectances(packets, problem.groups.reflectance))
+        rows = Rows(packets, hits, dr.full(types.UInt32, STORED, packets.lanes), Rows.reflectances(packets, problem.groups.reflectance))
         direct = [
             total * (1 / SHADOW) + types.Float(met) * (1 / lines.unit / STORED)
             for total, met in zip(shadow, lamplight, strict=False)
@@ -61,7 +61,7 @@ class Pilot:
         right = [rho * value for rho, value in zip(rows.reflectance, direct, strict=True)]
         dr.eval(right, direct)
         level = max(float(np.mean(np.array(one))) for one in direct)
-        reflected, _ = rows.solve(right, TOLERANCE * max(level, 1e-30))
+        reflected = rows.solve(right, TOLERANCE * max(level, 1e-30))
         cosine = lines.cosine(constant(STORED), constant(READ), read=reflected, squares=True)
         variance = np.stack([_variance(packets, sums, number) for sums, number in ((cosine, READ), (shadow, SHADOW))])
         rho = problem.groups.reflectance.max(axis=1)

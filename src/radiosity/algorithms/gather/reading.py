@@ -7,6 +7,9 @@ import drjit as dr
 from .rows import Rows
 
 
+ROUGHLY = 5.0  # times the tolerance: the bias need not be known as well
+
+
 @dataclass(frozen=True, eq=False)
 class Reading:
     """Reflected radiosity of each lane, in shares of the largest emission; a list has an entry for each group of bands.
@@ -47,7 +50,12 @@ class Reading:
             for start, rho, mean, half in zip(right * 2, rows.reflectance * 2, met, self.halves, strict=True)
         ]
         dr.eval(right, rights)
-        more, of_halves = rows.solve(right, tolerance, rights)
+        more = rows.solve(right, tolerance)
+        of_halves = [
+            one
+            for half in (0, 1)
+            for one in rows.solve(rights[half * groups : (half + 1) * groups], ROUGHLY * tolerance, more, half)
+        ]
         reflected = [value + one for value, one in zip(self.reflected, more, strict=True)]
         halves = [half + one - whole for half, one, whole in zip(self.halves, of_halves, more * 2, strict=True)]
         left = rows.means([(a + b) * 0.5 for a, b in zip(halves[:groups], halves[groups:], strict=True)])

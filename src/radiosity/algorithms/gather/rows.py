@@ -16,6 +16,7 @@ from .packets import Packets
 
 LONGEST = 400  # iterations
 CHECKED = 4  # iterations between two looks at the change
+SLOWEST = 0.98  # largest factor that is believed
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,13 +26,13 @@ class Rows:
     Attributes:
         packets: the lanes.
         hits: UInt32, the place that line k of a lane hits, at k * lanes + lane; see `Lines.cosine`.
-        stored: lines of each patch.
+        stored: UInt32 (lanes,), the stored lines of each lane.
         reflectance: of each group of bands, (lanes,) Float.
     """
 
     packets: Packets
     hits: Any
-    stored: int
+    stored: Any
     reflectance: list
 
     @staticmethod
@@ -44,65 +45,58 @@ class Rows:
         dr.eval(found)
         return found
 
-    def means(self, values: list, halves: list | None = None) -> list:
-        """Return the mean over the stored lines of values where they hit, of each group.
-
-        With ``halves``, two more sets of values, return also the mean of the first of them over the first half of the lines, and
-        of the second over the second half.
-        """
+    def means(self, values: list, half: int | None = None) -> list:
+        """Return the mean over the stored lines of values where they hit, of each group; or over the first or second half."""
         packets, types = self.packets, self.packets.types
         UInt32, Float = types.UInt32, types.Float
         lane, replicate, _, _ = packets.read()
         base, lanes = replicate * packets.width_on_device, dr.opaque(UInt32, packets.lanes)
-        stored, half = dr.opaque(UInt32, self.stored), dr.opaque(UInt32, self.stored // 2)
-        groups = len(values)
+        middle = self.stored >> 1
+        begin, end = {None: (self.stored * 0, self.stored), 0: (self.stored * 0, middle), 1: (middle, self.stored)}[half]
+        share = dr.rcp(Float(dr.maximum(end - begin, 1)))
+        dr.eval(begin, end, share)
 
         def body(number, *sums):
             where = dr.gather(UInt32, self.hits, number * lanes + lane)
             there = where < packets.width_on_device
             met = [dr.gather(Float, value, base + where, there) for value in values]
-            if halves is not None:
-                first = number < half
-                met += [dr.gather(Float, value, base + where, there & first) for value in halves[:groups]]
-                met += [dr.gather(Float, value, base + where, there & ~first) for value in halves[groups:]]
             return (number + 1, *(total + value for total, value in zip(sums, met, strict=True)))
 
-        count = groups * (1 if halves is None else 3)
-        state = (dr.zeros(UInt32, packets.lanes), *(dr.zeros(Float, packets.lanes) for _ in range(count)))
-        _, *sums = loop(state, lambda number, *sums: number < stored, body)
-        shares = [
-            dr.opaque(Float, 1 / max(lines, 1)) for lines in (self.stored, self.stored // 2, self.stored - self.stored // 2)
-        ]
-        return [total * shares[at // groups] for at, total in enumerate(sums)]
+        state = (UInt32(begin), *(dr.zeros(Float, packets.lanes) for _ in values))
+        _, *sums = loop(state, lambda number, *sums: number < end, body)
+        return [total * share for total in sums]
 
-    def solve(self, right: list, tolerance: float, halves: list | None = None) -> tuple[list, list]:
-        """Return x = r + rho F' x of each group, and the solutions of two more sets of right sides along halves of the lines.
+    def solve(self, right: list, tolerance: float, start: list | None = None, half: int | None = None) -> list:
+        """Return x = r + rho F' x of each group, along all stored lines or a half of them.
+
+        Where changes fall by a factor q from one iteration to the next, what is missing is about q / (1 - q) times the last change.
 
         Args:
             right: of each group, (lanes,) Float.
-            tolerance: iterations end once none of them changes a value by more than this.
-            halves: right sides for the first half of the lines, then for the second.
+            tolerance: iterations end once about no more than this is missing anywhere.
+            start: the first iterate; ``right`` by default.
         """
-        groups, several = len(right), halves is not None
-        right = right + (halves or [])
-        rho = self.reflectance * (3 if several else 1)
-        found = list(right)
+        found, before = list(right if start is None else start), np.inf
         for iteration in range(1, LONGEST + 1):
-            met = self.means(found[:groups], found[groups:] if several else None)
-            new = [start + share * value for start, share, value in zip(right, rho, met, strict=True)]
+            met = self.means(found, half)
+            new = [one + share * value for one, share, value in zip(right, self.reflectance, met, strict=True)]
             dr.eval(new)
-            looked = iteration % CHECKED == 0
-            change = max(float(dr.max(dr.abs(a - b))[0]) for a, b in zip(new, found, strict=True)) if looked else np.inf
+            if iteration % CHECKED in (CHECKED - 1, 0):
+                change = max(float(dr.max(dr.abs(a - b))[0]) for a, b in zip(new, found, strict=True))
+                if iteration % CHECKED == CHECKED - 1:
+                    before = change
+                else:
+                    factor = min(change / max(before, 1e-300), SLOWEST)
+                    if change * factor / (1 - factor) <= tolerance:
+                        return new
             found = new
-            if change < tolerance:
-                break
-        return found[:groups], found[groups:]
+        return found
 
     def missed(self, code: int):
         """Return how many stored lines of each lane ended with a code of `packets`, (lanes,) UInt32."""
         packets, UInt32 = self.packets, self.packets.types.UInt32
         lane, lanes = dr.arange(UInt32, packets.lanes), dr.opaque(UInt32, packets.lanes)
-        stored, wanted = dr.opaque(UInt32, self.stored), dr.opaque(UInt32, code)
+        wanted, stored = dr.opaque(UInt32, code), self.stored
 
         def body(number, total):
             where = dr.gather(UInt32, self.hits, number * lanes + lane)

@@ -37,21 +37,26 @@ class Shares:
         """N from which on lines are shared out; below, each patch fires as many as any other, and all cosine lines are stored."""
         return (STORED + FIRST_SHADOW) * self.packets.n
 
-    def first_counts(self, quanta: int) -> tuple[int, int]:
-        """Return how many of the first cosine lines and shadow rays of each patch have been fired at N."""
-        if quanta >= self.stored_quanta:
-            return STORED, FIRST_SHADOW
-        each = quanta / self.packets.n / (STORED + FIRST_SHADOW)
-        return max(LEAST[0], int(STORED * each)), max(LEAST[1], int(FIRST_SHADOW * each))
-
     def counts(self, quanta: int) -> np.ndarray:
-        """Return how many lines of each kind the patches of each packet have fired at N, (2, count) int64. It never falls."""
-        first = np.array(self.first_counts(quanta))[:, None]
-        counts = np.repeat(first, self.packets.count, axis=1)
-        left = quanta - self.stored_quanta
-        if left <= 0:
-            return counts
-        return np.maximum(counts, np.floor(self._scale(left) * self.weights).astype(np.int64))
+        """Return how many cosine lines and shadow rays the patches of each packet have fired at N, (2, count) int64.
+
+        It never falls as N grows.
+        """
+        if quanta <= self.stored_quanta:
+            lines = np.floor(quanta / self.packets.n + self._phases).astype(np.int64)  # of both kinds
+            rays = np.maximum(lines * FIRST_SHADOW // (STORED + FIRST_SHADOW), LEAST[1])
+            return np.stack([np.maximum(lines - rays, LEAST[0]), rays])
+        first = np.array([[STORED], [FIRST_SHADOW]])
+        return np.maximum(first, np.floor(self._scale(quanta - self.stored_quanta) * self.weights).astype(np.int64))
+
+    def stored(self, quanta: int) -> np.ndarray:
+        """Return how many cosine lines of the patches of each packet are stored at N, (count,) int64."""
+        return np.minimum(self.counts(quanta)[0], STORED)
+
+    @property
+    def _phases(self) -> np.ndarray:
+        """Where each packet rounds up, (count,) float64 in [0, 1): evenly spread, so that the number of lines is N."""
+        return np.arange(self.packets.count) * ((5**0.5 - 1) / 2) % 1.0
 
     def lines(self, quanta: int) -> int:
         """Return the number of lines of a replicate at N."""
