@@ -20,8 +20,8 @@ from radiosity.method.options import METHOD
 DECIDING = ("equation", "lines", "order", "estimator", "absorption")  # which process runs a method; numbers have their own suite
 NUMBERS = ("numbers", "scrambling", "randomisation")  # likewise
 ON = {"switch": True, "flag": True, "share": 0.25, "whole": 2}
-OPTIONS = {  # a value of each other option that is not its default; not what changes the speed alone
-    name: list(option.values)[-1] if option.kind == "choice" else ON[option.kind]
+OPTIONS = {  # the values of each other option that are not its default; not what changes the speed alone
+    name: list(option.values)[1:] if option.kind == "choice" else [ON[option.kind]]
     for name, option in METHOD.items()
     if name not in (*DECIDING, *NUMBERS) and not option.tuning
 }
@@ -59,9 +59,10 @@ def varied(axis: str, value: str) -> list[rd.Method]:
             for other in _plain_first(choice):
                 with suppress(rd.MethodError):
                     found.append(replace(method, **{choice: other}))
-        for option, on in OPTIONS.items():
-            with suppress(rd.MethodError):
-                found.append(replace(method, **{option: on}))
+        for option, values in OPTIONS.items():
+            for on in values:
+                with suppress(rd.MethodError):
+                    found.append(replace(method, **{option: on}))
     found += [preset.method for preset in rd.PRESETS.values() if getattr(preset.method, axis) == value]
     return sorted(dict.fromkeys(found), key=str)
 

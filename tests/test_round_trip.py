@@ -249,7 +249,10 @@ METHODS = [*accepted(), *(preset.method for preset in rd.PRESETS.values())]
 def test_methods_come_back_from_what_solutions_say_of_them(solution, tmp_path):
     """Through a file, every method that makes sense, with each option that goes with it, and baselines with each choice."""
     methods = list(dict.fromkeys(METHODS))
-    for option, on in (OPTIONS | {"coherent": True, "numbers": "sobol"}).items():
+    for option, on in [(option, on) for option, values in OPTIONS.items() for on in values] + [
+        ("coherent", True),
+        ("numbers", "sobol"),
+    ]:
         for method in tuple(methods):
             try:
                 methods.append(replace(method, **{option: on}))

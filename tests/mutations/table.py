@@ -1752,4 +1752,47 @@ MISTAKES = (
         ("test_merge.py",),
         "merged bands come from stages that no run climbs",
     ),
+    # ---- smoothed values
+    Mistake(
+        "solution/binomial.py",
+        "mean**2 - variance for",
+        "mean**2 for",
+        ("test_binomial.py",),
+        "noise counts as bias, and little is smoothed",
+    ),
+    Mistake(
+        "solution/binomial.py",
+        "((1 - undone) * size)",
+        "(undone * size)",
+        ("test_binomial.py",),
+        "the bias that was undone is stated, and not the one that is left",
+    ),
+    Mistake(
+        "solution/lattice.py",
+        "both = (back >= 0) & (forth >= 0)",
+        "both = forth >= 0",
+        ("test_lattice.py", "test_binomial.py"),
+        "patches at a rim take others that are not opposite each other",
+    ),
+    Mistake(
+        "solution/lattice.py",
+        "2 * of + patches.is_back",
+        "2 * of",
+        ("test_lattice.py", "test_binomial.py"),
+        "light of fronts is smoothed into backs",
+    ),
+    Mistake(
+        "algorithms/gather/smooth.py",
+        'if self._known.get("state") is not state:',
+        "if not self._known:",
+        ("test_gather_smooth.py",),
+        "the first stage's smoothed values are kept for all stages",
+    ),
+    Mistake(
+        "run/snapshot.py",
+        "self.tally.bias_of_sums(",
+        "self.tally.bias(",
+        ("test_gather_smooth.py",),
+        "targets of means wait for biases that cancel",
+    ),
 )

@@ -152,6 +152,10 @@ class AbstractBiasedTally(AbstractTally[S]):
         Stated standard errors include it.
         """
 
+    def bias_of_sums(self, problem: Problem, state: S, group: int) -> np.ndarray:
+        """Return the part of `bias` that sums over whole surfaces have. Default: all of it."""
+        return self.bias(problem, state, group)
+
 
 class AbstractMeanTally(AbstractBiasedTally[S]):
     """A tally of means over the lines of each patch; patches without lines take those of their face (`unmet`)."""

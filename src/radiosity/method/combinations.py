@@ -108,6 +108,11 @@ def _refuse_options(method, found: str) -> None:
         found != "walks" or method.equation != "continuous" or method.estimator == "gathering"
     ):
         raise MethodError("density estimation needs the points that particles hit: equation continuous, local lines, shooting")
+    if method.reconstruction == "smooth" and found != "gather":
+        raise MethodError(
+            "reconstruction 'smooth' is for values that are means over the lines of each patch: take --order gather; hits are "
+            "smoothed by reconstruction 'local-linear', which needs equation continuous"
+        )
     if method.coherent and (found != "firing" or method.order != "breadth-first" or method.points != "halton"):
         raise MethodError(
             "coherent firing needs strata of the Halton sequence and whole wavefronts: discrete/local/breadth-first/"

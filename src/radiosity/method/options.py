@@ -72,7 +72,8 @@ METHOD = table(
     Option("warm_up", "Regular iterations: begin with incremental ones.", kind="switch", details="Their bias is small."),
     Option(
         "reconstruction",
-        "Particles: patches (hits are counted) or local-linear (planes are fitted to them).",
+        "Particles: patches (hits are counted) or local-linear (planes are fitted to them). Gather: patches or smooth.",
+        details="smooth: values are smoothed over each plane, as far as noise asks for it; it needs 2 replicates or more.",
         values=RECONSTRUCTIONS,
     ),
     Option(

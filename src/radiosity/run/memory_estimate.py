@@ -17,6 +17,7 @@ from .budget import first_stage
 
 FACE = 800  # bytes a face, for the BVH and the hit records
 REACHED = 100  # bytes a cell within a kernel, while planes are fitted; 76 to 100 were measured, and 12 are kept
+SMOOTHED, SMOOTHED_ONE = 650, 80  # bytes a patch, and a patch in a replicate, while values are smoothed; 8 of a group are kept
 TURNS = 12  # bytes a patch in a replicate, and 8 more in each group of bands: what steps in turns keep apart
 PAIR = 24  # bytes a pair of patches that is counted, while counts are merged
 
@@ -64,6 +65,8 @@ def memory_needed(method: Method, patches: Patches, groups: int, replicates: int
     if method.reconstruction == "local-linear":
         first = replicates * first_stage(replicates, n)
         total += REACHED * _cells_reached(patches, min(first, rays or first))
+    if method.reconstruction == "smooth":
+        total += n * (SMOOTHED + replicates * (SMOOTHED_ONE + 8 * groups))
     if method.machine == "matrix":
         total += PAIR * min(replicates * n * (n + 2.0), rays or LIMIT, LIMIT)
     return total

@@ -185,7 +185,7 @@ class Snapshot:
         groups, found = self.problem.groups, []
         for group in range(groups.n_groups):
             _, unit = self.tally.irradiance(self.problem, self.state, group)
-            found.append(np.abs(self.tally.bias(self.problem, self.state, group))[rows].sum() * unit)
+            found.append(np.abs(self.tally.bias_of_sums(self.problem, self.state, group))[rows].sum() * unit)
         return np.array(found)[groups.index] * groups.scale
 
     def margin(self, rows: np.ndarray | slice = slice(None)) -> float:

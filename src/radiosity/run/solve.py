@@ -14,6 +14,7 @@ from ..method import Auto, Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..sampling.streams import Seed
 from ..scene.model import Back, Scene
+from ..solution.binomial import LEAST_REPLICATES
 from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
 from .budget import Budget
@@ -144,6 +145,11 @@ def prepared(
     """Return a checked run that has not begun; arguments and errors are those of `solve`."""
     usual = 1 if isinstance(chosen, Baseline) else 8
     replicates = usual if replicates is None else whole(replicates, "replicates", 1)
+    if isinstance(chosen, Method) and chosen.reconstruction == "smooth" and replicates < LEAST_REPLICATES:
+        raise MethodError(
+            f"reconstruction 'smooth' tells noise from light by comparing replicates; it needs {LEAST_REPLICATES} or more, not "
+            f"{replicates}: give more, or leave reconstruction out"
+        )
     in_all = None if all_replicates is None else whole(all_replicates, "all_replicates", 1)
     first = whole(first_replicate, "first_replicate", 0)
     part = Part(Seed(whole(seed, "seed", 0), first), replicates, in_all)

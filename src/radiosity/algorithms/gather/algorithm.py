@@ -23,6 +23,7 @@ from .pilot import LINES, Pilot
 from .reading import Reading
 from .rows import Rows
 from .shares import Shares
+from .smooth import SmoothTally
 from .state import GatherState
 from .tally import GatherTally
 
@@ -56,8 +57,8 @@ class Gather(AbstractAlgorithm[GatherState]):
         return True
 
     @property
-    def tally(self) -> GatherTally:
-        return GatherTally()
+    def tally(self) -> GatherTally | SmoothTally:
+        return SmoothTally(GatherTally()) if self.method.reconstruction == "smooth" else GatherTally()
 
     @property
     def groups(self) -> int:

@@ -44,7 +44,10 @@ class GatherTally(AbstractBiasedTally[GatherState]):
 
     def books(self, problem: Problem, state: GatherState, group: int) -> dict:
         values, unit = self.irradiance(problem, state, group)
-        received = values.mean(axis=0) * unit
+        return self.books_of(problem, state, group, values.mean(axis=0) * unit)
+
+    def books_of(self, problem: Problem, state: GatherState, group: int, received: np.ndarray) -> dict:
+        """Return the energy balance of the power that patches receive, (n_patches,) W or lm."""
         rho, own = problem.groups.reflectance[:, group], problem.groups.emission[:, group] * problem.patches.area
         left = own + rho * received
         stored = np.maximum(np.minimum(state.cosine, STORED), 1)
