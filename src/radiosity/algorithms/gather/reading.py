@@ -6,7 +6,6 @@ import drjit as dr
 
 from .rows import Rows
 
-
 ROUGHLY = 5.0  # times the tolerance: the bias need not be known as well
 
 
