@@ -1,0 +1,106 @@
+"""References of ``make bench-error``: long runs of several methods, made once and kept in a folder."""
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from error_formulas import squares
+from error_processes import Process, Refused
+from error_scenes import METHODS, Setting
+
+FOLDER = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "radiosity-bench-error"
+SEED = 987_654  # of the first; each method has its own, since one seed means the same numbers
+APART = 1.25  # differences of two methods, in their stated standard errors, above which they disagree
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A file that workers read, and what is known of it.
+
+    Attributes:
+        variance, means_variance: (n_bands,) squares of its own relative error, of patches and of surface means.
+        told: what it is made of, in a line.
+        agrees: its methods differ by what their errors allow.
+    """
+
+    file: Path
+    variance: np.ndarray
+    means_variance: np.ndarray
+    told: str
+    agrees: bool = True
+
+    @property
+    def error(self) -> float:
+        """Its relative standard error, the largest of the bands."""
+        return float(np.sqrt(self.variance.max()))
+
+
+def reference(name: str, setting: Setting, size: dict, folder: Path, share: float = 1.0) -> Reference:
+    """Make what is missing, and put all long runs of a scene together, weighted by the inverse of their variances.
+
+    Args:
+        size: what a worker told of the patches.
+        share: share of the usual number of lines.
+    """
+    own = folder / f"{name}-{size['digest']}"
+    own.mkdir(parents=True, exist_ok=True)
+    if not setting.long:
+        return _exact(own, size)
+    for method, rays in zip(METHODS, setting.long, strict=True):
+        if max(_largest(own, method)[0], 0) < share * rays:
+            _make(name, method, share * rays, own, size)
+    found = {method: file for method in METHODS if (file := _largest(own, method)[1])}
+    if not found:
+        raise Refused("no method made a reference")
+    return _together(own, found)
+
+
+def _make(name: str, method: str, rays: float, own: Path, size: dict) -> None:
+    try:
+        with Process(name, method) as process:
+            if process.ask("describe") != size:
+                raise Refused("its patches are others")
+            told = process.ask("keep", rays=rays, seed=SEED + METHODS.index(method), file=str(own / f"{_slug(method)}-{rays:.0f}.npz"))
+    except Refused as reason:
+        print(f"  no reference by {method}: {str(reason).partition(';')[0]}", flush=True)
+    else:
+        print(f"  reference by {method}: {told['rays']:,} lines, error {told['stated']:.3%}, {told['cpu']:.0f} s of CPU", flush=True)
+
+
+def _slug(method: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "_", method)
+
+
+def _largest(own: Path, method: str) -> tuple[int, Path | None]:
+    """Lines and file of the longest run by a method."""
+    found = [(int(file.stem.rpartition("-")[2]), file) for file in own.glob(f"{_slug(method)}-*.npz") if file.stem[-1].isdigit()]
+    return max(found, default=(-1, None))
+
+
+def _exact(own: Path, size: dict) -> Reference:
+    """A closed furnace: irradiance is 1."""
+    file, none = own / "exact.npz", np.zeros(size["bands"])
+    np.savez(file, irradiance=np.ones((size["patches"], size["bands"])))
+    return Reference(file, none, none, "exact")
+
+
+def _together(own: Path, found: dict[str, Path]) -> Reference:
+    runs = [dict(np.load(file)) for file in found.values()]
+    weights = np.array([1 / run["variance"].max() for run in runs])
+    weights /= weights.sum()
+    mean = sum(weight * run["irradiance"] for weight, run in zip(weights, runs, strict=True))
+    variance, means_variance = (
+        sum(weight**2 * run[key] for weight, run in zip(weights, runs, strict=True)) for key in ("variance", "means_variance")
+    )
+    file = own / "together.npz"
+    np.savez(file, irradiance=mean)
+    told, agrees = [f"{method} {np.sqrt(run['variance'].max()):.3%}" for method, run in zip(found, runs, strict=True)], True
+    for i, one in enumerate(runs):
+        for j, two in enumerate(runs[:i]):
+            both = one["variance"] + two["variance"]
+            apart = float(np.sqrt((squares(one["reflectance"], one["area"], two["irradiance"], one["irradiance"]) / both).max()))
+            told.append(f"{list(found)[j]} to {list(found)[i]} {apart:.2f} standard errors")
+            agrees &= apart < APART
+    return Reference(file, variance, means_variance, "; ".join(told), agrees)
