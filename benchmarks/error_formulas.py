@@ -22,7 +22,7 @@ def squares(reflectance: np.ndarray, area: np.ndarray, values: np.ndarray, truth
 
 
 def surface_means(reflectance: np.ndarray, area: np.ndarray, surface: np.ndarray, irradiance: np.ndarray):
-    """Area of each surface, (n_surfaces,), and the mean of B - E over it, (n_surfaces, n_bands); surfaces without area left out."""
+    """Area of each surface, (n_surfaces,), and the mean of B - E over it, (n_surfaces, n_bands); none for surfaces without area."""
     total = np.bincount(surface, area)
     some = total > 0
     power = [np.bincount(surface, area * band) for band in (reflectance * irradiance).T]
@@ -63,7 +63,7 @@ def time_to(target: float, errors, seconds) -> Time:
     """Return the seconds after which the error stays below the target, by straight lines in logarithms.
 
     Args:
-        errors, seconds: of runs of growing size. The last run above the target and the next one are joined. Where all are above it,
+        errors, seconds: of runs of growing size. The last run above the target and the next one are joined. Where all are above,
             the line through the last two is drawn on; where that one does not fall, the time is unknown.
     """
     errors, seconds = (np.asarray(values, float) for values in (errors, seconds))

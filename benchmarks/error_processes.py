@@ -30,7 +30,6 @@ class Process:
             [sys.executable, WORKER, scene, self.name],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
             text=True,
             env=environment,
         )

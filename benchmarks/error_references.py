@@ -36,6 +36,11 @@ class Reference:
         """Its relative standard error, the largest of the bands."""
         return float(np.sqrt(self.variance.max()))
 
+    @property
+    def means_error(self) -> float:
+        """The relative standard error of its surface means, the largest of the bands."""
+        return float(np.sqrt(self.means_variance.max()))
+
 
 def reference(name: str, setting: Setting, size: dict, folder: Path, share: float = 1.0) -> Reference:
     """Make what is missing, and put all long runs of a scene together, weighted by the inverse of their variances.
@@ -62,11 +67,15 @@ def _make(name: str, method: str, rays: float, own: Path, size: dict) -> None:
         with Process(name, method) as process:
             if process.ask("describe") != size:
                 raise Refused("its patches are others")
-            told = process.ask("keep", rays=rays, seed=SEED + METHODS.index(method), file=str(own / f"{_slug(method)}-{rays:.0f}.npz"))
+            told = process.ask(
+                "keep", rays=rays, seed=SEED + METHODS.index(method), file=str(own / f"{_slug(method)}-{rays:.0f}.npz")
+            )
     except Refused as reason:
         print(f"  no reference by {method}: {str(reason).partition(';')[0]}", flush=True)
     else:
-        print(f"  reference by {method}: {told['rays']:,} lines, error {told['stated']:.3%}, {told['cpu']:.0f} s of CPU", flush=True)
+        print(
+            f"  reference by {method}: {told['rays']:,} lines, error {told['stated']:.3%}, {told['cpu']:.0f} s of CPU", flush=True
+        )
 
 
 def _slug(method: str) -> str:

@@ -1,7 +1,7 @@
 """A process of ``make bench-error``: solves one scene by one method, as often as it is told to.
 
-``python error_worker.py SCENE METHOD`` reads a JSON object a line from standard input and answers each with one. The package is the
-one that PYTHONPATH names. METHOD is a name with choices, such as ``gather/reconstruction=smooth``, or ``photon-loop``.
+``python error_worker.py SCENE METHOD`` reads a JSON object a line from standard input and answers each with one. The package is
+the one that PYTHONPATH names. METHOD is a name with choices, such as ``gather/reconstruction=smooth``, or ``photon-loop``.
 """
 
 import gc
