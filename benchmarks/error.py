@@ -101,15 +101,19 @@ def climb(processes: dict[str, Process], setting: Setting, truth: Reference, cho
     while going:
         runs = {method: [] for method in going}
         for seed in range(1, chosen.seeds + 1):
-            for method in going:
-                runs[method].append(processes[method].ask("measure", rays=rays, seed=seed, reference=str(truth.file)))
+            for method in list(runs):
+                try:
+                    runs[method].append(processes[method].ask("measure", rays=rays, seed=seed, reference=str(truth.file)))
+                except Refused as reason:
+                    print(f"  {method} ends before {rays:,.0f} lines: {reason}", flush=True)
+                    del runs[method]
         for method, told in runs.items():
             ladder = ladders[method]
             ladder.add(told, truth)
             row(method, ladder, sum(run["stated"] ** 2 for run in told) / len(told))
-        going = [method for method in going if not ladders[method].done(min(chosen.targets), chosen.limit)]
+        going = [method for method in runs if not ladders[method].done(min(chosen.targets), chosen.limit)]
         rays *= STEP
-    return ladders
+    return {method: ladder for method, ladder in ladders.items() if ladder.lines}
 
 
 def row(method: str, ladder: Ladder, stated: float) -> None:

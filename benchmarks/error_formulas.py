@@ -22,7 +22,7 @@ def squares(reflectance: np.ndarray, area: np.ndarray, values: np.ndarray, truth
 
 
 def surface_means(reflectance: np.ndarray, area: np.ndarray, surface: np.ndarray, irradiance: np.ndarray):
-    """Area of each surface, (n_surfaces,), and the mean of B - E over it, (n_surfaces, n_bands); none for surfaces without area."""
+    """Areas of surfaces, (n_surfaces,), and means of B - E over them, (n_surfaces, n_bands), without surfaces of no area."""
     total = np.bincount(surface, area)
     some = total > 0
     power = [np.bincount(surface, area * band) for band in (reflectance * irradiance).T]

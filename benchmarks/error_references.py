@@ -101,7 +101,8 @@ def _together(own: Path, found: dict[str, Path]) -> Reference:
     weights /= weights.sum()
     mean = sum(weight * run["irradiance"] for weight, run in zip(weights, runs, strict=True))
     variance, means_variance = (
-        sum(weight**2 * run[key] for weight, run in zip(weights, runs, strict=True)) for key in ("variance", "means_variance")
+        np.sum([weight**2 * run[key] for weight, run in zip(weights, runs, strict=True)], axis=0)
+        for key in ("variance", "means_variance")
     )
     file = own / "together.npz"
     np.savez(file, irradiance=mean)

@@ -35,9 +35,9 @@ class Worker:
         size = {"patches": len(patches), "faces": patches.scene.n_faces, "bands": len(patches.scene.bands)}
         return {**size, "digest": found.hexdigest()[:12]}
 
-    def measure(self, rays: float, seed: int, reference: str | None = None, **choices) -> dict:
+    def measure(self, rays: float, seed: int, reference: str | None = None) -> dict:
         """Solve once: seconds, lines, and squares of errors a band; without a reference only seconds and lines."""
-        took, solution = self._timed(rays, seed, **choices)
+        took, solution = self._timed(rays, seed)
         told = {**took, "rays": solution.rays, "stated": solution.error}
         if reference is None:
             return told
@@ -52,13 +52,15 @@ class Worker:
     def keep(self, rays: float, seed: int, file: str) -> dict:
         """Solve once, and write what a reference is made of."""
         took, solution = self._timed(rays, seed)
+        if not isinstance(solution, rd.Solution) or solution.surface_power is None:
+            raise rd.MethodError(f"{self.name} states no errors, and makes no reference")
         patches = self.patches
         area, means = surface_means(patches.reflectance, patches.area, patches.surface, solution.irradiance)
         variance = squares(
             patches.reflectance, patches.area, solution.irradiance + solution.irradiance_standard_error, solution.irradiance
         )
-        some = np.bincount(patches.surface) > 0
-        reflected = solution.surface_power[1][:, some[: solution.surface_power.shape[2]]] / area[:, None]
+        some = np.bincount(patches.surface, minlength=len(patches.scene.names)) > 0
+        reflected = solution.surface_power[1][:, some] / area[:, None]
         error = reflected.std(axis=0, ddof=1) / np.sqrt(len(reflected))
         part = Path(file).with_suffix(".part.npz")
         np.savez(
@@ -74,7 +76,7 @@ class Worker:
         part.replace(file)
         return {**took, "rays": solution.rays, "stated": solution.error}
 
-    def _timed(self, rays: float, seed: int, **choices):
+    def _timed(self, rays: float, seed: int):
         gc.collect()
         before, begun = os.times(), time.perf_counter()
         if self.name == "photon-loop":
@@ -82,7 +84,7 @@ class Worker:
 
             solution = photons(self.patches, int(rays), seed)
         else:
-            solution = rd.solve(self.patches, self.name, rays=rays, seed=seed, **self.choices, **choices)
+            solution = rd.solve(self.patches, self.name, rays=rays, seed=seed, device="cpu", **self.choices)
         after, wall = os.times(), time.perf_counter() - begun
         cpu = after.user + after.system - before.user - before.system
         return {"cpu": cpu, "wall": wall}, solution
