@@ -8,6 +8,7 @@ no lane waits for longer paths of others: that takes a fifth of the time less.
 from dataclasses import dataclass
 
 import numpy as np
+from error_formulas import squares
 
 import radiosity as rd
 
@@ -17,21 +18,34 @@ NEAR = 1e-5  # metres by which a ray begins in front of what was hit
 
 @dataclass(frozen=True, eq=False)
 class Photons:
-    """What the benchmark reads of a solution: irradiance, (n_patches, 1), and lines; the error is unknown."""
+    """What the benchmark reads of a solution: attributes of `radiosity.Solution`; errors are NaN without replicates."""
 
     irradiance: np.ndarray
+    irradiance_standard_error: np.ndarray
     rays: int
-    error: float = float("nan")
+    error: float
+    surface_power: np.ndarray
 
 
 _rooms: dict[int, "_Room"] = {}
 
 
-def photons(patches: rd.Patches, lines: int, seed: int) -> Photons:
-    """Trace about as many lines; the room is prepared once."""
+def photons(patches: rd.Patches, lines: int, seed: int, replicates: int = 1) -> Photons:
+    """Trace about as many lines, all replicates together; the room is prepared once."""
     if id(patches) not in _rooms:
         _rooms[id(patches)] = _Room(patches)
-    return _rooms[id(patches)].solve(lines, seed)
+    room = _rooms[id(patches)]
+    runs = [room.solve(lines // replicates, seed * replicates + number) for number in range(replicates)]
+    values = np.stack([irradiance for irradiance, _ in runs])
+    mean, error = values.mean(axis=0), np.full_like(values[0], np.nan)
+    if replicates > 1:
+        error = values.std(axis=0, ddof=1) / np.sqrt(replicates)
+    received = np.stack([np.bincount(patches.surface, patches.area * value[:, 0])[:, None] for value in values])
+    reflected = np.stack(
+        [np.bincount(patches.surface, (patches.area * patches.reflectance.T * value.T)[0])[:, None] for value in values]
+    )
+    stated = float(np.sqrt(squares(patches.reflectance, patches.area, mean + error, mean).max()))
+    return Photons(mean, error, sum(count for _, count in runs), stated, np.stack([received, reflected]))
 
 
 class _Room:
@@ -65,8 +79,8 @@ class _Room:
         bound = (patches.area @ patches.reflectance[:, 0]) / patches.area.sum()
         self.path = 1 / (1 - bound)  # lines of a photon, about
 
-    def solve(self, lines: int, seed: int) -> Photons:
-        """Trace photons until each lane has had its share."""
+    def solve(self, lines: int, seed: int) -> tuple[np.ndarray, int]:
+        """Irradiance, (n_patches, 1), and lines, when each lane has had its share of the photons."""
         import drjit as dr
 
         mi = self.mi
@@ -74,7 +88,8 @@ class _Room:
         lanes = min(LANES, count)
         share = -(-count // lanes)
         counters = dr.zeros(mi.UInt32, len(self.patches))
-        random = mi.PCG32(lanes, initstate=seed)
+        state, sequence = mi.sample_tea_32(dr.arange(mi.UInt32, lanes), mi.UInt32(seed))
+        random = mi.PCG32(initstate=mi.UInt64(state), initseq=mi.UInt64(sequence))
         origin, direction = self._emit(random)
         left = dr.full(mi.UInt32, share - 1, lanes)
         dr.while_loop(
@@ -85,7 +100,7 @@ class _Room:
         )
         hits = np.array(counters)
         irradiance = self.power / (lanes * share) * hits / self.patches.area
-        return Photons(irradiance[:, None], int(hits.sum()))
+        return irradiance[:, None], int(hits.sum())
 
     def _bounce(self, counters, random, origin, direction, left, going):
         """One line of each photon, and the next photon where it is absorbed."""

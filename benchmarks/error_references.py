@@ -41,9 +41,14 @@ class Reference:
         """The relative standard error of its surface means, the largest of the bands."""
         return float(np.sqrt(self.means_variance.max()))
 
+    def tell(self, equation: str) -> None:
+        """Print a line."""
+        errors = f"error {self.error:.3%}, of surface means {self.means_error:.3%}"
+        print(f"  reference of the {equation} equation: {errors} ({self.told})", flush=True)
 
-def reference(name: str, setting: Setting, size: dict, folder: Path, share: float = 1.0) -> Reference:
-    """Make what is missing, and put all long runs of a scene together, weighted by the inverse of their variances.
+
+def reference(name: str, setting: Setting, equation: str, size: dict, folder: Path, share: float = 1.0) -> Reference:
+    """Make what is missing, and put all long runs by an equation together, weighted by the inverse of their variances.
 
     Args:
         size: what a worker told of the patches.
@@ -51,31 +56,35 @@ def reference(name: str, setting: Setting, size: dict, folder: Path, share: floa
     """
     own = folder / f"{name}-{size['digest']}"
     own.mkdir(parents=True, exist_ok=True)
-    if not setting.long:
+    if setting.exact:
         return _exact(own, size)
-    for method, rays in zip(METHODS, setting.long, strict=True):
-        if max(_largest(own, method)[0], 0) < share * rays:
-            _make(name, method, share * rays, own, size)
-    found = {method: file for method in METHODS if (file := _largest(own, method)[1])}
+    methods, lines = METHODS[equation], getattr(setting, equation)
+    for number, (method, usual) in enumerate(zip(methods, lines, strict=bool(lines))):
+        if max(_largest(own, method)[0], 0) < share * usual:
+            _make(name, method, share * usual, SEED + number, own, size)
+    found = {method: file for method in methods if (file := _largest(own, method)[1])}
     if not found:
-        raise Refused("no method made a reference")
-    return _together(own, found)
+        raise Refused(f"there is no reference of the {equation} equation")
+    return _together(own / f"{equation}.npz", found)
 
 
-def _make(name: str, method: str, rays: float, own: Path, size: dict) -> None:
+def _make(name: str, method: str, rays: float, seed: int, own: Path, size: dict) -> None:
     try:
         with Process(name, method) as process:
-            if process.ask("describe") != size:
+            if not same(process.ask("describe"), size):
                 raise Refused("its patches are others")
-            told = process.ask(
-                "keep", rays=rays, seed=SEED + METHODS.index(method), file=str(own / f"{_slug(method)}-{rays:.0f}.npz")
-            )
+            told = process.ask("keep", rays=rays, seed=seed, file=str(own / f"{_slug(method)}-{rays:.0f}.npz"))
     except Refused as reason:
         print(f"  no reference by {method}: {str(reason).partition(';')[0]}", flush=True)
     else:
         print(
             f"  reference by {method}: {told['rays']:,} lines, error {told['stated']:.3%}, {told['cpu']:.0f} s of CPU", flush=True
         )
+
+
+def same(one: dict, two: dict) -> bool:
+    """Whether two workers cut the scene alike."""
+    return one["digest"] == two["digest"]
 
 
 def _slug(method: str) -> str:
@@ -95,7 +104,7 @@ def _exact(own: Path, size: dict) -> Reference:
     return Reference(file, none, none, "exact")
 
 
-def _together(own: Path, found: dict[str, Path]) -> Reference:
+def _together(file: Path, found: dict[str, Path]) -> Reference:
     runs = [dict(np.load(file)) for file in found.values()]
     weights = np.array([1 / run["variance"].max() for run in runs])
     weights /= weights.sum()
@@ -104,7 +113,6 @@ def _together(own: Path, found: dict[str, Path]) -> Reference:
         np.sum([weight**2 * run[key] for weight, run in zip(weights, runs, strict=True)], axis=0)
         for key in ("variance", "means_variance")
     )
-    file = own / "together.npz"
     np.savez(file, irradiance=mean)
     told, agrees = [f"{method} {np.sqrt(run['variance'].max()):.3%}" for method, run in zip(found, runs, strict=True)], True
     for i, one in enumerate(runs):

@@ -9,49 +9,51 @@ from history import note
 PART = 1 / 3  # of a target: a reference with a larger error does not tell when the target is reached
 WIDTH = 64
 SECONDS = ("cpu", "wall")
-ERRORS = {"errors": "patches", "means": "surface means"}
-NONE = Time(float("nan"))
+ERRORS = ("patches", "surface means")
 
 
-def tables(ladders: dict, truth: Reference, targets: list[float]) -> None:
-    """Print both tables; ratios are to the first method, or to the old random walk."""
+def tables(ladders: dict, targets: list[float]) -> None:
+    """Print both tables; ratios are to the old random walk, or to the first method."""
     base = OLD if OLD in ladders else next(iter(ladders))
     print(f"  seconds to an error (* extrapolated, < reached by the smallest run); in brackets how many times faster than {base}")
     for target in targets:
-        reason = why_not(truth, target)
-        if reason:
-            print(f"    {target:.2%}: not told, {reason}")
-            continue
-        cpu, wall = (
-            {method: time_to(target, ladder.errors, getattr(ladder, of)) for method, ladder in ladders.items()} for of in SECONDS
-        )
-        for method in ladders:
-            words = [
-                f"{name} {times[method]} ({ratio(times[base], times[method])})" for name, times in (("CPU", cpu), ("wall", wall))
-            ]
-            print(f"    {target:.2%}  {method:<{WIDTH}} " + "   ".join(words))
-    own = {"errors": truth.error, "means": truth.means_error}
+        of_base = times(ladders[base], target)
+        for method, ladder in ladders.items():
+            own = times(ladder, target)
+            words = [f"{of} {own[of]} ({ratio(of_base[of], own[of])})" for of in SECONDS]
+            reason = why_not(ladder.truth, target)
+            print(f"    {target:.2%}  {method:<{WIDTH}} " + (f"not told: {reason}" if reason else "   ".join(words)))
     for number, seconds in enumerate(common(ladders)):
         if not number:
             print(
                 f"  errors after equal CPU time (~ below the reference's own); in brackets how many times smaller than by {base}"
             )
-        found = {
-            of: {method: error_at(seconds, getattr(ladder, of), ladder.cpu) for method, ladder in ladders.items()} for of in own
-        }
-        for method in ladders:
-            words = [f"{ERRORS[of]} {smaller(found[of][base], found[of][method], own[of])}" for of in own]
+        of_base = after(ladders[base], seconds)
+        for method, ladder in ladders.items():
+            own, least = after(ladder, seconds), (ladder.truth.error, ladder.truth.means_error)
+            words = [f"{name} {smaller(*values)}" for name, *values in zip(ERRORS, of_base, own, least, strict=True)]
             print(f"    {seconds:.2f} s  {method:<{WIDTH}} " + "   ".join(words), flush=True)
 
 
-def notes(name: str, ladders: dict, truth: Reference, targets: list[float]) -> None:
+def notes(name: str, ladders: dict, targets: list[float]) -> None:
     """Keep the seconds of CPU and wall for the history."""
     for method, ladder in ladders.items():
         for target in targets:
-            for of in SECONDS:
-                time = NONE if why_not(truth, target) else time_to(target, ladder.errors, getattr(ladder, of))
+            for of, time in times(ladder, target).items():
                 if np.isfinite(time.seconds):
                     note(f"{name} to {target:.2%} by {method}, {of}", time.seconds, "s")
+
+
+def times(ladder, target: float) -> dict[str, Time]:
+    """Seconds of CPU and wall to a target, unknown where the reference cannot tell."""
+    if why_not(ladder.truth, target):
+        return dict.fromkeys(SECONDS, Time(float("nan")))
+    return {of: time_to(target, ladder.errors, getattr(ladder, of)) for of in SECONDS}
+
+
+def after(ladder, seconds: float) -> tuple[float, float]:
+    """Errors of patches and of surface means after some seconds of CPU."""
+    return error_at(seconds, ladder.errors, ladder.cpu), error_at(seconds, ladder.means, ladder.cpu)
 
 
 def why_not(truth: Reference, target: float) -> str:

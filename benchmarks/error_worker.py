@@ -19,6 +19,8 @@ from error_scenes import SETTINGS
 
 import radiosity as rd
 
+LOOP = "photon-loop"
+
 
 class Worker:
     """The patches, and what solves them."""
@@ -28,12 +30,18 @@ class Worker:
         self.name, self.choices = parsed(method)
 
     def describe(self) -> dict:
-        """Size and digest of the patches."""
+        """Size and digest of the patches, and the method's equation."""
         patches, found = self.patches, hashlib.sha256()
         for values in (patches.area, patches.reflectance, patches.emission, patches.centroid, patches.surface):
             found.update(np.ascontiguousarray(values).tobytes())
         size = {"patches": len(patches), "faces": patches.scene.n_faces, "bands": len(patches.scene.bands)}
-        return {**size, "digest": found.hexdigest()[:12]}
+        return {**size, "digest": found.hexdigest()[:12], "equation": self.equation()}
+
+    def equation(self) -> str:
+        """The equation that the method solves."""
+        if self.name == LOOP:
+            return "continuous"
+        return getattr(rd.method.resolve(self.name, **self.choices), "equation", "discrete")
 
     def measure(self, rays: float, seed: int, reference: str | None = None) -> dict:
         """Solve once: seconds, lines, and squares of errors a band; without a reference only seconds and lines."""
@@ -51,14 +59,13 @@ class Worker:
 
     def keep(self, rays: float, seed: int, file: str) -> dict:
         """Solve once, and write what a reference is made of."""
-        took, solution = self._timed(rays, seed)
-        if not isinstance(solution, rd.Solution) or solution.surface_power is None:
-            raise rd.MethodError(f"{self.name} states no errors, and makes no reference")
+        took, solution = self._timed(rays, seed, replicates=8)
         patches = self.patches
         area, means = surface_means(patches.reflectance, patches.area, patches.surface, solution.irradiance)
         variance = squares(
             patches.reflectance, patches.area, solution.irradiance + solution.irradiance_standard_error, solution.irradiance
         )
+        assert solution.surface_power is not None
         some = np.bincount(patches.surface, minlength=len(patches.scene.names)) > 0
         reflected = solution.surface_power[1][:, some] / area[:, None]
         error = reflected.std(axis=0, ddof=1) / np.sqrt(len(reflected))
@@ -76,15 +83,17 @@ class Worker:
         part.replace(file)
         return {**took, "rays": solution.rays, "stated": solution.error}
 
-    def _timed(self, rays: float, seed: int):
+    def _timed(self, rays: float, seed: int, replicates: int | None = None):
         gc.collect()
         before, begun = os.times(), time.perf_counter()
-        if self.name == "photon-loop":
+        if self.name == LOOP:
             from error_photons import photons
 
-            solution = photons(self.patches, int(rays), seed)
+            solution = photons(self.patches, int(rays), seed, replicates or 1)
         else:
-            solution = rd.solve(self.patches, self.name, rays=rays, seed=seed, device="cpu", **self.choices)
+            solution = rd.solve(
+                self.patches, self.name, rays=rays, seed=seed, replicates=replicates, device="cpu", **self.choices
+            )
         after, wall = os.times(), time.perf_counter() - begun
         cpu = after.user + after.system - before.user - before.system
         return {"cpu": cpu, "wall": wall}, solution

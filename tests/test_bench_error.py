@@ -98,7 +98,7 @@ def test_references_are_put_together(tmp_path, monkeypatch, bias, agrees):
         irradiance = 1 + off + error * draw.standard_normal((n, 1))
         its = {"variance": np.array([error**2]), "means_variance": np.array([error**2 / n])}
         np.savez(files[method], irradiance=irradiance, reflectance=np.full((n, 1), 0.5), area=np.ones(n), **its)
-    found = error_references._together(tmp_path, files)
+    found = error_references._together(tmp_path / "discrete.npz", files)
     assert found.agrees is agrees
     assert found.variance == pytest.approx([1 / (1 / 0.01**2 + 1 / 0.02**2)])
     assert found.means_variance == pytest.approx(found.variance / n)
