@@ -107,14 +107,14 @@ def test_references_are_put_together(tmp_path, monkeypatch, bias, agrees):
         assert np.mean((mean - 1) ** 2) == pytest.approx(found.variance[0], rel=0.1)
 
 
-def test_the_photon_loop_agrees_with_a_walk():
+def test_the_photon_loop_agrees_with_particle_tracing():
     """In a process of its own, since it sets Mitsuba's variant: means over surfaces within 5 standard errors of both."""
     code = """
 import numpy as np, radiosity as rd
 from error_photons import photons
 from error_scenes import divided_room
 patches = rd.subdivide(divided_room(0.5, 8), cells=1)
-walk = rd.solve(patches, rays=2_000_000, seed=1)
+walk = rd.solve(patches, "particle-tracing", rays=2_000_000, seed=1)
 runs = [photons(patches, 500_000, seed).irradiance[:, 0] for seed in range(6)]
 area = np.bincount(patches.surface, patches.area)
 means = np.array([np.bincount(patches.surface, patches.area * run) / area for run in runs])
