@@ -3,16 +3,17 @@
 import os
 import re
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
-from error_formulas import squares
+from error_formulas import means_squares, squares, surface_means
 from error_processes import Process, Refused
 from error_scenes import METHODS, Setting
 
 FOLDER = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "radiosity-bench-error"
 SEED = 987_654  # of the first; each method has its own, since one seed means the same numbers
-APART = 1.25  # differences of two methods, in their stated standard errors, above which they disagree
+APART, MEANS_APART = 1.25, 5.0  # differences of two methods in their standard errors, above which they disagree: see `apart`
 
 
 @dataclass(frozen=True)
@@ -115,10 +116,18 @@ def _together(file: Path, found: dict[str, Path]) -> Reference:
     )
     np.savez(file, irradiance=mean)
     told, agrees = [f"{method} {np.sqrt(run['variance'].max()):.3%}" for method, run in zip(found, runs, strict=True)], True
-    for i, one in enumerate(runs):
-        for j, two in enumerate(runs[:i]):
-            both = one["variance"] + two["variance"]
-            apart = float(np.sqrt((squares(one["reflectance"], one["area"], two["irradiance"], one["irradiance"]) / both).max()))
-            told.append(f"{list(found)[j]} to {list(found)[i]} {apart:.2f} standard errors")
-            agrees &= apart < APART
+    for (name, one), (other, two) in combinations(zip(found, runs, strict=True), 2):
+        patches, means = apart(one, two)
+        told.append(f"{name} to {other} {patches:.2f} standard errors, in surface means {means:.2f}")
+        agrees &= patches < APART and means < MEANS_APART
     return Reference(file, variance, means_variance, "; ".join(told), agrees)
+
+
+def apart(one: dict, two: dict) -> tuple[float, float]:
+    """RMS differences of two runs in their standard errors, of patches and of surface means: about 1 where both are right."""
+    reflectance, area = one["reflectance"], one["area"]
+    patches = squares(reflectance, area, two["irradiance"], one["irradiance"]) / (one["variance"] + two["variance"])
+    sizes, means = surface_means(reflectance, area, one["surface"], one["irradiance"])
+    _, others = surface_means(reflectance, area, one["surface"], two["irradiance"])
+    surfaces = means_squares(sizes, others, means) / (one["means_variance"] + two["means_variance"])
+    return float(np.sqrt(patches.max())), float(np.sqrt(surfaces.max()))

@@ -77,6 +77,7 @@ class Worker:
             means_variance=means_squares(area, means + error, means),
             reflectance=patches.reflectance,
             area=patches.area,
+            surface=patches.surface,
             rays=solution.rays,
             cpu=took["cpu"],
         )

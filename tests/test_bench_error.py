@@ -86,9 +86,9 @@ def test_rms_of_noise_is_that_of_the_values():
     assert rms(runs, np.array([0.0])) > 0.022
 
 
-@pytest.mark.parametrize(("bias", "agrees"), [(0.0, True), (0.02, False)])
+@pytest.mark.parametrize(("bias", "agrees"), [(0.0, True), (0.02, False), (0.003, False)])
 def test_references_are_put_together(tmp_path, monkeypatch, bias, agrees):
-    """Two methods whose errors are 1 % and 2 %, where the second may also be biased."""
+    """Two methods whose errors are 1 % and 2 %, where the second may also be biased; a small bias shows in means alone."""
     monkeypatch.syspath_prepend(str(BENCHMARKS))
     import error_references
 
@@ -97,7 +97,8 @@ def test_references_are_put_together(tmp_path, monkeypatch, bias, agrees):
         files[method] = tmp_path / f"{method}.npz"
         irradiance = 1 + off + error * draw.standard_normal((n, 1))
         its = {"variance": np.array([error**2]), "means_variance": np.array([error**2 / n])}
-        np.savez(files[method], irradiance=irradiance, reflectance=np.full((n, 1), 0.5), area=np.ones(n), **its)
+        its |= {"reflectance": np.full((n, 1), 0.5), "area": np.ones(n), "surface": np.zeros(n, int)}
+        np.savez(files[method], irradiance=irradiance, **its)
     found = error_references._together(tmp_path / "discrete.npz", files)
     assert found.agrees is agrees
     assert found.variance == pytest.approx([1 / (1 / 0.01**2 + 1 / 0.02**2)])
