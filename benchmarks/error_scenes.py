@@ -11,7 +11,10 @@ import radiosity as rd
 OLD = "random-walk@59482bb"  # it cannot move
 CONTROL_VARIATE = "stochastic-jacobi-control-variate/estimator=bidirectional"
 # those that make references, by equation
-METHODS = {"discrete": (OLD, CONTROL_VARIATE, "gather"), "continuous": ("particle-tracing@59482bb", "photon-loop")}
+METHODS = {
+    "discrete": (OLD, CONTROL_VARIATE, "gather"),
+    "continuous": ("particle-tracing@59482bb", "particle-tracing/numbers=sobol@59482bb", "photon-loop"),
+}
 CELLS = 16  # along the edges of each wall of the divided room
 WALLS = ("west wall", "east wall", "south wall", "north wall", "floor", "ceiling")
 BOXES = {"tall box": ((0.7, 0.6, 0.1), (1.7, 1.4, 1.3)), "low box": ((2.2, 1.5, 0.1), (3.4, 2.5, 0.8))}
@@ -91,8 +94,8 @@ SETTINGS = {
     "labyrinth-0.9": Setting(_built_in("labyrinth-0.9", cells=8), exact=True, first=2.5e4),
     "labyrinth-lamp-0.5": Setting(lambda: rd.subdivide(labyrinth_with_a_lamp(0.5), cells=8), (2e8, 2e8, 4e8)),
     "labyrinth-lamp-0.9": Setting(lambda: rd.subdivide(labyrinth_with_a_lamp(0.9), cells=8), (2e8, 2e8, 4e8)),
-    "divided-room-0.5": Setting(lambda: rd.subdivide(divided_room(0.5), cells=1), (2e8, 6e8, 4e8), (1.2e9, 2e8)),
-    "divided-room-0.9": Setting(lambda: rd.subdivide(divided_room(0.9), cells=1), (2e8, 6e8, 4e8), (1.2e9, 2e8)),
+    "divided-room-0.5": Setting(lambda: rd.subdivide(divided_room(0.5), cells=1), (2e8, 6e8, 4e8), (1.2e9, 1.2e9, 2e8)),
+    "divided-room-0.9": Setting(lambda: rd.subdivide(divided_room(0.9), cells=1), (2e8, 6e8, 4e8), (1.2e9, 2.2e9, 2e8)),
     "soda": Setting(_built_in(str(STRANGERS / "soda.mgf")), (4e8, 0, 1e9), first=4e5),
     "office2": Setting(_built_in(str(STRANGERS / "office2" / "office2.mgf")), (1e9, 0, 1e9)),
 }
