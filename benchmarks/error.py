@@ -57,7 +57,7 @@ class Ladder:
 
     def done(self, target: float, limit: float) -> bool:
         """Whether the next runs would take too long, or would show nothing about the target."""
-        return self.errors[-1] < 0.8 * target or STEP * self.cpu[-1] > limit
+        return self.errors[-1] < target or STEP * self.cpu[-1] > limit
 
 
 def main() -> None:

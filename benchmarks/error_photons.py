@@ -25,6 +25,7 @@ class Photons:
     rays: int
     error: float
     surface_power: np.ndarray
+    few: np.ndarray
 
 
 _rooms: dict[int, "_Room"] = {}
@@ -45,7 +46,9 @@ def photons(patches: rd.Patches, lines: int, seed: int, replicates: int = 1) -> 
         [np.bincount(patches.surface, (patches.area * patches.reflectance.T * value.T)[0])[:, None] for value in values]
     )
     stated = float(np.sqrt(squares(patches.reflectance, patches.area, mean + error, mean).max()))
-    return Photons(mean, error, sum(count for _, count in runs), stated, np.stack([received, reflected]))
+    return Photons(
+        mean, error, sum(count for _, count in runs), stated, np.stack([received, reflected]), np.zeros(len(patches), bool)
+    )
 
 
 class _Room:

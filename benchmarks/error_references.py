@@ -79,7 +79,7 @@ def _make(name: str, method: str, rays: float, seed: int, own: Path, size: dict)
         print(f"  no reference by {method}: {str(reason).partition(';')[0]}", flush=True)
     else:
         print(
-            f"  reference by {method}: {told['rays']:,} lines, error {told['stated']:.3%}, {told['cpu']:.0f} s of CPU", flush=True
+            f"  reference by {method}: {told['rays']:,} lines, error {told['error']:.3%}, {told['cpu']:.0f} s of CPU", flush=True
         )
 
 
