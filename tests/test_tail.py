@@ -1,5 +1,5 @@
-"""Wavefronts of few lines are handed to the depth-first kernel: the integers are those of whole wavefronts, wherever that begins,
-in every order, on any number of walks a lane, and where a run ends within it.
+"""Wavefronts of few lines, and particles, are followed until they end, by lanes that take one walk after the other. Results are
+those of whole wavefronts, wherever that begins, in every order, at any number of walks a lane, and where a run ends within it.
 """
 
 import pytest
@@ -9,6 +9,8 @@ from states import STAGES, begun, coloured, interrupted, same, whole
 import radiosity as rd
 from radiosity.algorithms.base import Interrupted
 from radiosity.algorithms.firing.orders import breadth_first, depth_first
+from radiosity.algorithms.walks import shooting
+from radiosity.device.backend import choose
 from radiosity.tracing import lanes, refill
 
 ORDERS = ("breadth-first", "well-distributed", "staged", "depth-first")
@@ -119,14 +121,46 @@ def test_lines_are_told_as_they_are_traced(one_band, short, monkeypatch):
 
 def test_bands_keep_whole_wavefronts(walks, monkeypatch):
     handed_over(monkeypatch, ALWAYS)
-    geometry, problem = coloured()
+    _, problem = coloured()
     assert problem.groups.n_groups > 1
     rd.solve(problem.patches, quanta=STAGES[-1], replicates=2)
     assert not walks
 
 
-@pytest.mark.parametrize(("walks", "lanes"), [(1, 2), (2, 2), (1000, 1000), (100_000, 6250)])
+@pytest.mark.parametrize(("walks", "lanes"), [(1, 2), (2, 2), (1000, 1000), (100_000, 1031), (1_000_000, 7813)])
 def test_lanes_for_walks(walks, lanes, monkeypatch):
+    """All walks have a lane, and none more than `MOST`."""
     monkeypatch.setattr(refill, "LEAST", 1024 / refill.dr.thread_count())
-    assert refill.lanes_for(walks, cuda=False) == lanes
-    assert refill.lanes_for(walks, cuda=True) == max(walks, 2)
+    assert refill.lanes_for(choose("cpu").types, walks) == lanes
+    assert walks <= lanes * refill.MOST
+
+
+PARTICLES = (
+    rd.Method(equation="continuous"),
+    rd.Method(equation="continuous", estimator="absorption"),
+    rd.Method(estimator="survival"),
+)
+
+
+@pytest.mark.parametrize("method", PARTICLES, ids=str)
+@pytest.mark.parametrize("gray", [True, False])
+def test_particles_are_followed_from_any_number_on(method, gray, monkeypatch):
+    """Scores and counters are those of particles that are traced segment by segment."""
+    if gray:
+        monkeypatch.setattr(states, "scene_of", lambda method: states.grey())
+    monkeypatch.setattr(shooting, "TAILS", {"cpu": 0})
+    followed, found = [], whole(method)
+    to_the_end = shooting.Walks._to_the_end
+
+    def counted(self, particles, *arguments):
+        followed.append(particles.size)
+        return to_the_end(self, particles, *arguments)
+
+    monkeypatch.setattr(shooting.Walks, "_to_the_end", counted)
+    for tail, least in ((30, 1), (1 << 20, 1), (1 << 20, 1 << 20)):
+        followed.clear()
+        monkeypatch.setattr(shooting, "TAILS", {"cpu": tail})
+        monkeypatch.setattr(refill, "LEAST", least)
+        assert same(whole(method), found)
+        assert 0 < max(followed) <= tail
+    assert max(followed) > 500

@@ -12,15 +12,16 @@ import drjit as dr
 from ..device.launches import shared
 from ..device.recorded import loop
 
-MOST = 16  # walks of a lane: more gain little, and blocks of lanes become few
+MOST = 128  # walks of a lane, where they are many: the more, the shorter the wait for the lane that takes longest
 LEAST = 1024  # lanes for each thread
 CUDA_LEAST = 1 << 20  # lanes on a GPU, which needs so many to be busy
 
 Step = Callable[[list, tuple, Any], tuple[list, tuple, Any]]
 
 
-def lanes_for(walks: int, cuda: bool) -> int:
-    """Return the number of lanes for a number of walks; at least 2, since arrays of one entry would compile kernels of their own."""
+def lanes_for(types, walks: int) -> int:
+    """Return the number of lanes for a number of walks; 2 or more, since arrays of one entry would compile other kernels."""
+    cuda = dr.backend_v(types.UInt32) is dr.JitBackend.CUDA
     least = CUDA_LEAST if cuda else LEAST * dr.thread_count()
     each = min(max(walks // least, 1), MOST)
     return max(-(-walks // each), 2)
@@ -30,11 +31,11 @@ def follow(types, starts: list, walks: int, sums: tuple, step: Step, arrays: Cal
     """Follow walks until all have ended, in one launch.
 
     Lane i follows the walks i, i + lanes, i + 2 lanes, ... one after the other. What walks add to ``arrays`` are whole numbers, so
-    it does not matter which lane follows which walk.
+    the result does not depend on that.
 
     Args:
-        starts: columns, evaluated, of ``walks`` entries or more: the state in which each walk begins.
-        sums: what a lane sums over its walks: where it begins.
+        starts: columns of ``walks`` entries or more: the state in which each walk begins.
+        sums: what each lane sums over its walks, `lanes_for` entries: zeros.
         step: takes columns, sums and the mask of lanes that have a walk; returns the next columns and sums, and which walks go on.
             It is recorded once.
         arrays: returns the arrays that steps write to.
@@ -42,7 +43,7 @@ def follow(types, starts: list, walks: int, sums: tuple, step: Step, arrays: Cal
     Returns:
         The sums of all lanes; not evaluated.
     """
-    u32, lanes = types.UInt32, lanes_for(walks, dr.backend_v(types.UInt32) is dr.JitBackend.CUDA)
+    u32, lanes = types.UInt32, lanes_for(types, walks)
     stride, end = dr.opaque(u32, lanes), dr.opaque(u32, walks)
     dr.eval(starts)
 
