@@ -46,7 +46,7 @@ def test_what_is_not_known_is_told():
 
 def test_the_error_is_that_of_a_solution():
     """`Solution.error` is the relative error of values that are off by their standard errors; black patches do not count."""
-    solution = rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=2), rays=20_000, replicates=4, seed=3)
+    solution = rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=2), "random-walk", rays=20_000, replicates=4, seed=3)
     patches, off = solution.patches, solution.irradiance + solution.irradiance_standard_error
     found = squares(patches.reflectance, patches.area, off, solution.irradiance)
     assert found.shape == (3,)

@@ -5,6 +5,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.algorithms.firing import counters as firing
+from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.device.backend import choose, upload
 from radiosity.problem.quanta import Source, phases, target_counts
 from radiosity.run.budget import first_stage
@@ -113,6 +114,7 @@ def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, shif
     monkeypatch.setattr(lanes, "CHUNK", 2**13 + 3)
     monkeypatch.setattr(lanes, "CORE_CHUNK", 1)
     monkeypatch.setattr(firing, "MUCH", 2**40)
+    monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 2**13, "cuda": 2**13})
     one = rd.solve(cut, "random-walk", quanta=2**18, replicates=3)
     assert not any(b.several for b in took)
     monkeypatch.setattr(firing, "MUCH", 0)
