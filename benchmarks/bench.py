@@ -84,7 +84,7 @@ def whole_run(name: str, scene, **cut) -> None:
             told = []
             begun = time.perf_counter()
             listener = partial(remember, told)
-            solution = rd.solve(patches, rays=10_000_000, replicates=replicates, progress=listener)
+            solution = rd.solve(patches, "random-walk", rays=10_000_000, replicates=replicates, progress=listener)
             first = next(t for t, p in told if p.message == "tracing") - begun
             last, whole = told[-1][0] - begun, time.perf_counter() - begun
             note(f"{name}, {len(patches)} patches, 10^7 lines, {replicates} replicate(s){again}", whole, "s")

@@ -58,11 +58,11 @@ def targets() -> None:
         patches = rd.subdivide(rd.load_scene(name), cells=cells)
         truth = np.ones((len(patches), 1))
         if not name.startswith("labyrinth"):
-            truth = rd.solve(patches, rays=REFERENCE, replicates=32, seed=987).irradiance
+            truth = rd.solve(patches, "random-walk", rays=REFERENCE, replicates=32, seed=987).irradiance
         rows = slice(None) if of is None else patches.surface == patches.scene.names.index(of.removeprefix("surface:"))
         true, errors, lines = (patches.reflectance[rows], truth[rows]), [], []
         for seed in range(RUNS):
-            solution = rd.solve(patches, error=target, error_of=of, seed=seed)
+            solution = rd.solve(patches, "random-walk", error=target, error_of=of, seed=seed)
             errors.append(relative_error(*true, (solution.irradiance - truth)[rows], patches.area[rows]))
             lines.append(solution.rays)
         # a run of as many lines as all these would have its error below this in 95 % of cases: so many lines were needed

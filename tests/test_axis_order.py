@@ -33,6 +33,7 @@ def short(monkeypatch):
         (mixing, "VISITS", 8),
         (multipath, "BATCH", 1),
         (pooling, "BATCH", 1),
+        (breadth_first, "TAILS", {"cpu": 1 << 10, "cuda": 1 << 10}),
     ):
         monkeypatch.setattr(module, name, value)
 

@@ -25,15 +25,15 @@ def test_no_power_is_left_behind_at_five_lines_a_patch():
     patches = rd.subdivide(cube(COLORS, LIGHT), cells=20)
     few = rd.solve(patches, quanta=4_500, replicates=64, numbers="random")
     assert 4 < few.rays / few.replicates / len(patches) < 7
-    many = rd.solve(patches, rays=20_000_000, replicates=8)
+    many = rd.solve(patches, "random-walk", rays=20_000_000, replicates=8)
     assert np.abs(total(few) / total(many) - 1).max() < 0.005
 
 
 def test_each_band_is_its_own_problem():
     patches = rd.subdivide(cube(COLORS, LIGHT), cells=4)
-    together = rd.solve(patches, rays=4_000_000, replicates=16)
+    together = rd.solve(patches, "random-walk", rays=4_000_000, replicates=16)
     for band in range(3):
-        single = rd.solve(rd.subdivide(alone(patches.scene, band), cells=4), rays=4_000_000, replicates=16, seed=9)
+        single = rd.solve(rd.subdivide(alone(patches.scene, band), cells=4), "random-walk", rays=4_000_000, replicates=16, seed=9)
         error = np.hypot(together.irradiance_standard_error[:, band], single.irradiance_standard_error[:, 0])
         z = (together.irradiance[:, band] - single.irradiance[:, 0]) / error
         assert np.abs(z).max() < 6.5  # 96 patches, Student with about 30 degrees of freedom
@@ -41,11 +41,11 @@ def test_each_band_is_its_own_problem():
 
 
 def test_equal_bands_are_computed_once_and_are_the_integers():
-    grey = rd.solve(rd.subdivide(cube(0.5, 1.0), cells=4), quanta=50_000)
+    grey = rd.solve(rd.subdivide(cube(0.5, 1.0), cells=4), "random-walk", quanta=50_000)
     tinted = cube([[0.5, 0.5, 0.5]], [[1.0, 0.25, 0.0]])
     groups = BandGroups.of(rd.subdivide(tinted, cells=4))
     assert groups.n_groups == 1
-    solution = rd.solve(rd.subdivide(tinted, cells=4), quanta=50_000)
+    solution = rd.solve(rd.subdivide(tinted, cells=4), "random-walk", quanta=50_000)
     assert np.array_equal(solution.state["arrivals"], grey.state["arrivals"])
     assert np.allclose(solution.irradiance, grey.irradiance * [1.0, 0.25, 0.0], rtol=1e-12)
 
@@ -89,13 +89,13 @@ def test_lamps_that_differ_by_half_a_percent_stay_apart():
 def test_the_integers_are_those_of_the_largest_band():
     scene = cube(COLORS, LIGHT)
     largest = rd.Scene.from_arrays(scene.vertices, scene.faces, scene.reflectance.max(axis=1), scene.emission.max(axis=1))
-    colored, grey = (rd.solve(rd.subdivide(s, cells=4), quanta=50_000) for s in (scene, largest))
+    colored, grey = (rd.solve(rd.subdivide(s, cells=4), "random-walk", quanta=50_000) for s in (scene, largest))
     assert np.array_equal(colored.state["arrivals"], grey.state["arrivals"])
     assert np.array_equal(colored.state["fired"], grey.state["fired"])
 
 
 def test_books_of_every_band_close():
-    solution = rd.solve(rd.load_scene("cornell-box"), rays=200_000, replicates=3)
+    solution = rd.solve(rd.load_scene("cornell-box"), "random-walk", rays=200_000, replicates=3)
     for band, book in enumerate(solution.books):
         assert book["closes"]
         left = book["emitted"] + book["rounding"]
@@ -112,7 +112,7 @@ def test_threads_do_not_change_band_power():
     try:
         for threads in (1, 2):
             dr.set_thread_count(threads)
-            results.append(rd.solve(patches, quanta=30_000).irradiance)
+            results.append(rd.solve(patches, "random-walk", quanta=30_000).irradiance)
     finally:
         dr.set_thread_count(before)
     assert np.array_equal(*results)

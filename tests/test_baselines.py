@@ -26,13 +26,13 @@ SCHEMES = ("full-matrix", "progressive")
 def room():
     """324 patches, and their solution by random walks (0.07 %)."""
     patches = rd.subdivide(rd.load_scene("room"), cells=3)
-    return patches, rd.solve(patches, rays=60_000_000, seed=99)
+    return patches, rd.solve(patches, "random-walk", rays=60_000_000, seed=99)
 
 
 @pytest.fixture(scope="module")
 def box():
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=4)
-    return patches, rd.solve(patches, rays=60_000_000, seed=99)
+    return patches, rd.solve(patches, "random-walk", rays=60_000_000, seed=99)
 
 
 def error(solution: rd.Solution, reference: rd.Solution) -> float:
@@ -85,7 +85,7 @@ def test_three_surface_enclosure(solver):
 @pytest.mark.parametrize("scene", [pytest.param("room", marks=pytest.mark.slow), "box"])
 def test_full_matrix_of_lines_agrees_with_the_random_walk_within_errors(scene, request):
     patches, _ = request.getfixturevalue(scene)
-    expected = powers(rd.solve(patches, rays=20_000_000, replicates=16, seed=98))
+    expected = powers(rd.solve(patches, "random-walk", rays=20_000_000, replicates=16, seed=98))
     solution = rd.solve(patches, rd.Baseline(factors="lines"), replicates=16)
     received = solution.state["received"][..., 0]
     found = np.stack([np.bincount(patches.surface, row) for row in received])
@@ -129,7 +129,7 @@ def test_errors_fall_with_samples_and_with_patches_for_hemicubes(room):
     errors = [error(rd.solve(patches, rd.Baseline(samples=samples)), reference) for samples in (4, 32, 256)]
     assert errors[0] > 1.5 * errors[1] > 2 * errors[2]
     coarse, fine = (
-        error(rd.solve(cut, "progressive-refinement", resolution=128), rd.solve(cut, rays=30_000_000))
+        error(rd.solve(cut, "progressive-refinement", resolution=128), rd.solve(cut, "random-walk", rays=30_000_000))
         for cut in (rd.subdivide(patches.scene, cells=cells) for cells in (2, 8))
     )
     assert fine < 0.6 * coarse  # near patches get farther away in patch sizes, except those that touch
@@ -167,7 +167,7 @@ def test_backs_that_let_light_pass():
     scene = rd.load_scene("room")
     scene = replace(scene, back=np.full_like(scene.back, int(rd.Back.PASSES)))
     patches = rd.subdivide(scene, cells=3)
-    reference = rd.solve(patches, rays=20_000_000)
+    reference = rd.solve(patches, "random-walk", rays=20_000_000)
     assert error(rd.solve(patches, rd.Baseline("progressive", samples=64)), reference) < 0.04
     assert error(rd.solve(patches, rd.Baseline(samples=64)), reference) < 0.04
     with pytest.raises(rd.MethodError, match="no reciprocity to restore"):
@@ -360,7 +360,7 @@ def cove():
     walls = box((0, 0, 0), (1, 1, 1), inward=True)
     scene = join([("walls", 0.6, 0.0, walls), ("lamp", 0.3, 10.0, lamp)], source="cove", backs={"lamp": 0.3})
     patches = rd.subdivide(scene, cells=8)
-    return patches, rd.solve(patches, rays=20_000_000)
+    return patches, rd.solve(patches, "random-walk", rays=20_000_000)
 
 
 @pytest.mark.parametrize("name", ["hierarchical", "hierarchical-error-control", "full-matrix"])
@@ -383,7 +383,7 @@ def test_lines_of_baselines_are_not_counted_in_32_bits(room, monkeypatch):
         assert rd.solve(patches, name).status == "complete"
     assert rd.solve(patches, "hierarchical", rays=10**10).status == "complete"
     with pytest.raises(rd.MethodError, match="counters full"):
-        rd.solve(patches, rays=100_000)
+        rd.solve(patches, "random-walk", rays=100_000)
 
 
 def test_rays_and_seconds_stop_shots_early(room):

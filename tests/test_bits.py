@@ -5,6 +5,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.algorithms.firing import counters as firing
+from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.device.backend import choose, upload
 from radiosity.problem.quanta import Source, phases, target_counts
 from radiosity.run.budget import first_stage
@@ -63,7 +64,7 @@ def test_quanta_replay_a_run_bit_for_bit():
         patches = rd.subdivide(rd.load_scene(scene), cells=5)
         for budget in ({"seconds": 0.5}, {"error": 0.02}, {"rays": 14_000_000}):
             first = rd.solve(patches, replicates=2, **budget)
-            again = rd.solve(patches, replicates=2, quanta=first.quanta)
+            again = rd.solve(patches, "random-walk", replicates=2, quanta=first.quanta)
             assert np.array_equal(first.irradiance, again.irradiance)
             assert np.array_equal(first.irradiance_standard_error, again.irradiance_standard_error)
     assert first.quanta > first_stage(2, len(patches))  # several stages were replayed
@@ -71,7 +72,7 @@ def test_quanta_replay_a_run_bit_for_bit():
 
 def test_coherent_firing_traces_the_same_lines():
     patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
-    plain = rd.solve(patches, quanta=8_000_000, replicates=1)
+    plain = rd.solve(patches, "random-walk", quanta=8_000_000, replicates=1)
     coherent = rd.solve(patches, quanta=8_000_000, replicates=1, coherent=True)
     difference = np.abs(plain.state["arrivals"].astype(np.int64) - coherent.state["arrivals"].astype(np.int64)).sum()
     assert difference < 1e-5 * plain.rays  # ties alone
@@ -88,11 +89,11 @@ def test_launches_may_end_anywhere(monkeypatch, colored):
     reflectance = [[0.5, 0.4, 0.2]] * 3 + [[0.1, 0.3, 0.6]] * 3 if colored else 0.5
     cut = rd.subdivide(cube(reflectance, emission), cells=1)
     for quanta in (2**14, 2**14 + 1, 2**14 + 2, 2**15 - 1, 2**15 + 1):
-        whole = rd.solve(cut, quanta=quanta, replicates=1)
+        whole = rd.solve(cut, "random-walk", quanta=quanta, replicates=1)
         with monkeypatch.context() as patched:
             patched.setattr(lanes, "CHUNK", 2**14)
             patched.setattr(lanes, "CORE_CHUNK", 1)
-            parts = rd.solve(cut, quanta=quanta, replicates=1)
+            parts = rd.solve(cut, "random-walk", quanta=quanta, replicates=1)
         assert all(book["closes"] for book in (*whole.books, *parts.books))
         assert all(np.array_equal(parts.state[key], whole.state[key]) for key in whole.state)
         assert parts.state["fired"].sum() == parts.state["arrivals"].sum() + parts.state["missed"].sum()
@@ -113,12 +114,13 @@ def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, shif
     monkeypatch.setattr(lanes, "CHUNK", 2**13 + 3)
     monkeypatch.setattr(lanes, "CORE_CHUNK", 1)
     monkeypatch.setattr(firing, "MUCH", 2**40)
-    one = rd.solve(cut, quanta=2**18, replicates=3)
+    monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 2**13, "cuda": 2**13})
+    one = rd.solve(cut, "random-walk", quanta=2**18, replicates=3)
     assert not any(b.several for b in took)
     monkeypatch.setattr(firing, "MUCH", 0)
     monkeypatch.setattr(firing, "SHIFTS", (shift,))
     monkeypatch.setattr(lanes, "fullest", lambda lines, taken: max(taken.items()))
-    several = rd.solve(cut, quanta=2**18, replicates=3)
+    several = rd.solve(cut, "random-walk", quanta=2**18, replicates=3)
     assert sum(b.several and int(b.each[0]) == 2**shift for b in took) > 5
     assert equal(several.state.values(), one.state.values())
 

@@ -101,8 +101,8 @@ def test_a_first_stage_is_not_lost(coloured, tmp_path, always):
         rd.image.render(kept, tmp_path / "x.png")
     again = tmp_path / "again.npz"
     kept.export(again)
-    more = rd.solve(coloured, resume=rd.load_solution(again), quanta=3 << 18, replicates=2)
-    assert_same(more, rd.solve(coloured, quanta=3 << 18, replicates=2))
+    more = rd.solve(coloured, "random-walk", resume=rd.load_solution(again), quanta=3 << 18, replicates=2)
+    assert_same(more, rd.solve(coloured, "random-walk", quanta=3 << 18, replicates=2))
 
 
 def test_few_shots_of_progressive_refinement_are_kept(grey, tmp_path, always):
@@ -115,7 +115,7 @@ def test_few_shots_of_progressive_refinement_are_kept(grey, tmp_path, always):
 
 def test_later_checkpoints_hold_the_last_complete_stage(coloured, tmp_path, always):
     options = {"quanta": 3 << 19, "replicates": 2}
-    first = rd.solve(coloured, quanta=1 << 19, replicates=2)
+    first = rd.solve(coloured, "random-walk", quanta=1 << 19, replicates=2)
     kept = stopped(coloured, "random-walk", tmp_path / "run.npz", 50, **options)
     assert kept.quanta == 1 << 19
     assert np.array_equal(kept.irradiance, first.irradiance)
@@ -129,9 +129,9 @@ def test_ctrl_c_before_the_first_stage_leaves_a_checkpoint(grey, tmp_path):
 
     kept = tmp_path / "run.npz"
     with pytest.raises(KeyboardInterrupt):
-        rd.solve(grey, quanta=1 << 20, replicates=2, progress=listen, checkpoint=kept)
-    found = rd.solve(grey, quanta=1 << 20, replicates=2, resume=rd.load_solution(kept))
-    assert_same(found, rd.solve(grey, quanta=1 << 20, replicates=2))
+        rd.solve(grey, "random-walk", quanta=1 << 20, replicates=2, progress=listen, checkpoint=kept)
+    found = rd.solve(grey, "random-walk", quanta=1 << 20, replicates=2, resume=rd.load_solution(kept))
+    assert_same(found, rd.solve(grey, "random-walk", quanta=1 << 20, replicates=2))
 
 
 @pytest.mark.parametrize("budget", [{"quanta": 700_001}, {"rays": 1_500_000}, {"rays": 20_000}, {"error": 0.05}], ids=str)
@@ -173,7 +173,7 @@ def test_what_cannot_be_resumed_says_so(grey, tmp_path, method):
     ids=str,
 )
 def test_what_differs_is_named(grey, change, options, reason):
-    before = rd.solve(grey, quanta=1 << 10, replicates=2, device="cpu")
+    before = rd.solve(grey, "random-walk", quanta=1 << 10, replicates=2, device="cpu")
     facts = dict(before.provenance)
     for name, value in change.items():
         facts[name] = {**facts[name], **value} if isinstance(value, dict) else value
@@ -194,7 +194,7 @@ def test_other_bands_are_another_scene(grey):
         names=scene.names,
         bands=["a", "b"],
     )
-    before = rd.solve(rd.subdivide(twice, cells=2), quanta=1 << 10, replicates=2)
+    before = rd.solve(rd.subdivide(twice, cells=2), "random-walk", quanta=1 << 10, replicates=2)
     other = rd.Scene.from_arrays(
         scene.vertices,
         scene.faces,
@@ -205,7 +205,7 @@ def test_other_bands_are_another_scene(grey):
         bands=["a", "c"],
     )
     with pytest.raises(rd.MethodError, match="scene"):
-        rd.solve(rd.subdivide(other, cells=2), quanta=1 << 11, replicates=2, resume=before)
+        rd.solve(rd.subdivide(other, cells=2), "random-walk", quanta=1 << 11, replicates=2, resume=before)
 
 
 @pytest.mark.parametrize(
@@ -216,14 +216,14 @@ def test_a_bad_place_is_found_before_the_run(grey, tmp_path, monkeypatch, path, 
     (tmp_path / "file").write_text("")
     (tmp_path / "folder.npz").mkdir()
     with pytest.raises(rd.OutputError, match=reason):
-        rd.solve(grey, quanta=10, checkpoint=tmp_path / path, progress=lambda state: pytest.fail("it ran"))
+        rd.solve(grey, "random-walk", quanta=10, checkpoint=tmp_path / path, progress=lambda state: pytest.fail("it ran"))
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "folder.npz"]
 
 
 @pytest.mark.parametrize("every", [-1, np.nan, "5", True])
 def test_intervals_are_seconds(grey, tmp_path, every):
     with pytest.raises(rd.MethodError, match="checkpoint_every is"):
-        rd.solve(grey, quanta=10, checkpoint=tmp_path / "a.npz", checkpoint_every=every)
+        rd.solve(grey, "random-walk", quanta=10, checkpoint=tmp_path / "a.npz", checkpoint_every=every)
 
 
 def test_writing_takes_a_thirtieth_of_the_time(coloured, tmp_path, monkeypatch):
@@ -241,7 +241,7 @@ def test_writing_takes_a_thirtieth_of_the_time(coloured, tmp_path, monkeypatch):
 
     monkeypatch.setattr(checkpoints, "time", Clock)
     monkeypatch.setattr(checkpoints, "save", slow)
-    solution = rd.solve(coloured, quanta=10, replicates=1)
+    solution = rd.solve(coloured, "random-walk", quanta=10, replicates=1)
     keeper = Checkpoint(tmp_path / "a.npz", 10)
     for _ in range(1000):
         now[0] += 1
@@ -255,7 +255,9 @@ def test_a_large_state_waits_for_its_first_checkpoint(grey, tmp_path, monkeypatc
     now, written = [0.0], []
     monkeypatch.setattr(checkpoints.time, "monotonic", lambda: now[0])
     monkeypatch.setattr(checkpoints, "save", lambda *_, **__: written.append(now[0]))
-    large = replace(rd.solve(grey, quanta=10, replicates=1), state={"counts": np.broadcast_to(np.uint8(0), (10**9,))})
+    large = replace(
+        rd.solve(grey, "random-walk", quanta=10, replicates=1), state={"counts": np.broadcast_to(np.uint8(0), (10**9,))}
+    )
     keeper = Checkpoint(tmp_path / "a.npz", 10)
     for _ in range(1000):
         now[0] += 1
@@ -305,7 +307,7 @@ def test_leftovers_of_killed_processes_are_removed(grey, tmp_path):
     )
     for path in (left, other, alive):
         path.write_bytes(b"half")
-    rd.solve(grey, quanta=10, replicates=1).save(tmp_path / "run.npz")
+    rd.solve(grey, "random-walk", quanta=10, replicates=1).save(tmp_path / "run.npz")
     assert not left.exists()
     assert other.exists()
     assert alive.exists()

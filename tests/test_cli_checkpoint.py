@@ -85,7 +85,7 @@ def test_short_runs_write_none(capsys, tmp_path, written):
 
 def test_an_earlier_one_is_pointed_at_and_a_resumed_one_removed(capsys, tmp_path):
     kept, output = tmp_path / "a.checkpoint.npz", tmp_path / "a.npz"
-    rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), quanta=1000, replicates=2).save(kept)
+    rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), "random-walk", quanta=1000, replicates=2).save(kept)
     status, _, err = run(capsys, *RUN, "-o", output)
     assert status == 0
     assert f"--resume {kept} goes on from" in err
@@ -175,9 +175,9 @@ def test_signals_leave_the_state(tmp_path, number, status):
     assert found.status == "interrupted"
     lines = found.state["fired"].sum()
     cut = found.patches
-    more = rd.solve(cut, quanta=max(int(found.state["quanta"]), 1 << 19), replicates=2, resume=found)
+    more = rd.solve(cut, "random-walk", quanta=max(int(found.state["quanta"]), 1 << 19), replicates=2, resume=found)
     assert more.rays >= lines > 0
-    assert np.array_equal(more.irradiance, rd.solve(cut, quanta=more.quanta, replicates=2).irradiance)
+    assert np.array_equal(more.irradiance, rd.solve(cut, "random-walk", quanta=more.quanta, replicates=2).irradiance)
 
 
 @pytest.mark.parametrize("numbers", [(signal.SIGHUP,), (signal.SIGHUP, signal.SIGHUP), (signal.SIGTERM, signal.SIGHUP)], ids=str)
@@ -218,7 +218,13 @@ def test_sigterm_outside_of_a_run(tmp_path):
 def test_a_library_leaves_sigterm_alone():
     before = signal.getsignal(signal.SIGTERM)
     seen = []
-    rd.solve(rd.load_scene("room"), quanta=10, replicates=1, progress=lambda state: seen.append(signal.getsignal(signal.SIGTERM)))
+    rd.solve(
+        rd.load_scene("room"),
+        "random-walk",
+        quanta=10,
+        replicates=1,
+        progress=lambda state: seen.append(signal.getsignal(signal.SIGTERM)),
+    )
     assert set(seen) == {before}
 
 
@@ -248,7 +254,7 @@ def interruptible():
 
 def test_an_interruption_while_outputs_are_written_names_the_checkpoint(capsys, monkeypatch, tmp_path, soon, interruptible):
     kept, output = tmp_path / "a.checkpoint.npz", tmp_path / "a.csv"
-    whole = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), quanta=300_000, replicates=2)
+    whole = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), "random-walk", quanta=300_000, replicates=2)
     with monkeypatch.context() as patch:
         patch.setattr(rd.Solution, "export", lambda *_, **__: signal.raise_signal(signal.SIGINT))
         status, _, err = run(capsys, *RUN, "-o", output)
@@ -299,8 +305,8 @@ def test_a_disk_that_is_full_in_the_end(tmp_path, when):
         assert "there was no place for the solution either; make room, and solve the scene again" in done.stderr
         return
     assert f"go on with --resume {kept}" in done.stderr
-    found = rd.solve(rd.load_solution(kept).patches, quanta=300_000, replicates=2, resume=rd.load_solution(kept))
-    whole = rd.solve(found.patches, quanta=300_000, replicates=2)
+    found = rd.solve(rd.load_solution(kept).patches, "random-walk", quanta=300_000, replicates=2, resume=rd.load_solution(kept))
+    whole = rd.solve(found.patches, "random-walk", quanta=300_000, replicates=2)
     assert np.array_equal(found.irradiance, whole.irradiance)
 
 

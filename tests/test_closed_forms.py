@@ -54,7 +54,7 @@ def test_furnace_error_falls_with_lines_and_halton_beats_random():
 @pytest.mark.parametrize("reflectance", [0.2, 0.8])
 @pytest.mark.parametrize("build", [cube, sphere])
 def test_uniform_enclosure(build, reflectance):
-    solution = rd.solve(rd.subdivide(build(reflectance, 2.0), cells=2), rays=1_000_000, replicates=16)
+    solution = rd.solve(rd.subdivide(build(reflectance, 2.0), cells=2), "random-walk", rays=1_000_000, replicates=16)
     exact = 2.0 / (1 - reflectance)
     means = replicate_means(solution)
     error = means.std(ddof=1) / 4

@@ -83,7 +83,7 @@ def received(solution) -> dict[str, float]:
 @pytest.mark.parametrize("name", VARIANTS)
 def test_both_sides_of_a_wall_get_their_light(name):
     """Of the light of the wall across: two parallel squares at their width (Howell C-11). Nothing is lost on backs."""
-    solution = rd.solve(rd.subdivide(two_rooms(**VARIANTS[name]), cells=1), rays=60_000)
+    solution = rd.solve(rd.subdivide(two_rooms(**VARIANTS[name]), cells=1), "random-walk", rays=60_000)
     taken = received(solution)
     for side in ("L/east", "R/west"):
         assert taken[side] == pytest.approx(parallel(1, 1), abs=0.005)
@@ -335,14 +335,14 @@ def plates(gap: float, size: float = 1.0) -> rd.Scene:
 def test_plates_too_near_to_see_each_other_are_told_by_name(gap):
     message = f"1 pair of faces do not see each other .*'hot' and 'cold' are {gap:.0e}".replace("e-07", "e-07 m apart")
     with pytest.warns(rd.RadiosityWarning, match=message):
-        rd.solve(rd.subdivide(plates(gap), cells=1), rays=2000)
+        rd.solve(rd.subdivide(plates(gap), cells=1), "random-walk", rays=2000)
     (text,) = [f.message for f in check(plates(gap)).findings if f.kind == "too near"]
     assert "'cold', 'hot'" in text
 
 
 def test_plates_that_single_precision_holds_apart_see_each_other():
     for gap in (1e-6, 1e-5):
-        solution = rd.solve(rd.subdivide(plates(gap), cells=1), rays=20_000)  # warnings are errors here
+        solution = rd.solve(rd.subdivide(plates(gap), cells=1), "random-walk", rays=20_000)  # warnings are errors here
         assert solution.irradiance[1, 0] > 0.999
         assert not [f for f in check(plates(gap)).findings if f.kind in ("too near", "duplicates")]
 
@@ -365,14 +365,14 @@ def test_a_mat_in_the_floor_is_reported_and_a_lamp_there_is_told_of():
     assert finding.severity == "warning"
     assert "lie on another face and radiate to the same side" in finding.message
     assert "'floor', 'mat'" in finding.message
-    solution = rd.solve(rd.subdivide(lamp_on_floor(0), cells=1), rays=100_000)  # warnings are errors here
+    solution = rd.solve(rd.subdivide(lamp_on_floor(0), cells=1), "random-walk", rays=100_000)  # warnings are errors here
     raised = lamp_on_floor(0)
     raised.vertices[4:8, 2] = 1e-5
-    above = rd.solve(rd.subdivide(raised, cells=1), rays=100_000)
+    above = rd.solve(rd.subdivide(raised, cells=1), "random-walk", rays=100_000)
     assert received(solution)["mat"] == pytest.approx(received(above)["mat"], rel=1e-3)
     assert received(solution)["floor"] == pytest.approx(received(above)["floor"], rel=1e-3)
     with pytest.warns(rd.RadiosityWarning, match="1 faces .first: face 1. lie on another face .*'floor', 'mat'"):
-        rd.solve(rd.subdivide(lamp_on_floor(1.0), cells=1), rays=2000)
+        rd.solve(rd.subdivide(lamp_on_floor(1.0), cells=1), "random-walk", rays=2000)
 
 
 def test_a_doubled_lamp_is_told_of():
@@ -380,7 +380,7 @@ def test_a_doubled_lamp_is_told_of():
     lamp = (room.emission > 0).any(axis=1)
     doubled = room.take(np.concatenate([np.arange(room.n_faces), np.flatnonzero(lamp)]))
     with pytest.warns(rd.RadiosityWarning, match=f"{lamp.sum()} faces .* lie on another face and radiate to the same side"):
-        rd.solve(rd.subdivide(doubled, cells=1), rays=20_000)
+        rd.solve(rd.subdivide(doubled, cells=1), "random-walk", rays=20_000)
 
 
 def test_a_doubled_lamp_that_shines_from_its_back_is_told_of():
@@ -399,7 +399,7 @@ def test_a_doubled_lamp_that_shines_from_its_back_is_told_of():
         names=["floor", "lamp"],
     )
     with pytest.warns(rd.RadiosityWarning, match="1 faces .first: face 1. lie on another face .*'floor', 'lamp'"):
-        rd.solve(rd.subdivide(scene, cells=1), rays=2000)
+        rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=2000)
 
 
 @pytest.mark.parametrize(("below", "above"), [(0, 0), (0, 1), (1, 0), (1, 1)], ids=str)

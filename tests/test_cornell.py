@@ -45,7 +45,7 @@ def test_dense_solve_on_the_same_patches(random):
             matrix = np.eye(n) - patches.reflectance[:, band, None] * factors
             dense[i, :, band] = np.linalg.solve(matrix, patches.emission[:, band])
     mean, error = dense.mean(axis=0), dense.std(axis=0, ddof=1) / np.sqrt(batches)
-    solution = rd.solve(patches, rays=10_000_000, replicates=8)
+    solution = rd.solve(patches, "random-walk", rays=10_000_000, replicates=8)
     both = np.hypot(error, solution.standard_error)
     known = both > 0
     z = (solution.radiosity - mean)[known] / both[known]
@@ -126,7 +126,7 @@ def test_difference_from_the_path_tracer_falls_with_the_patch_size():
     differences = []
     for k in (2, 4, 8, 16):
         patches = rd.subdivide(scene, cells=k)
-        solution = rd.solve(patches, rays=8_000_000, replicates=8)
+        solution = rd.solve(patches, "random-walk", rays=8_000_000, replicates=8)
         column, row, inverted = patches.place
         middle = np.where(scene.is_quad[patches.face], 0.5, np.where(inverted, 2 / 3, 1 / 3))
         cell = cells.number(

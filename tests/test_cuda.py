@@ -44,14 +44,14 @@ def test_integers_do_not_depend_on_order(furnace, order):
 
 
 def test_integers_do_not_depend_on_stages(furnace):
-    first = rd.solve(furnace, replicates=2, quanta=70_001, device="cuda")
-    resumed = rd.solve(furnace, replicates=2, quanta=300_007, device="cuda", resume=first)
-    once = rd.solve(furnace, replicates=2, quanta=300_007, device="cuda")
+    first = rd.solve(furnace, "random-walk", replicates=2, quanta=70_001, device="cuda")
+    resumed = rd.solve(furnace, "random-walk", replicates=2, quanta=300_007, device="cuda", resume=first)
+    once = rd.solve(furnace, "random-walk", replicates=2, quanta=300_007, device="cuda")
     assert np.array_equal(resumed.state["arrivals"], once.state["arrivals"])
 
 
 def test_bands_repeat_to_the_bit():
-    one, other = (rd.solve(rd.load_scene("cornell-box"), rays=3_000_000, device="cuda") for _ in range(2))
+    one, other = (rd.solve(rd.load_scene("cornell-box"), "random-walk", rays=3_000_000, device="cuda") for _ in range(2))
     assert np.array_equal(one.irradiance, other.irradiance)
 
 
@@ -67,8 +67,8 @@ def test_every_method_in_the_furnace(furnace, method):
 def test_agrees_with_the_processor(name):
     """Also where bands differ. Other seeds, so that errors are independent."""
     patches = rd.subdivide(rd.load_scene(name))
-    one = powers(rd.solve(patches, rays=20_000_000, replicates=REPLICATES, device="cuda", seed=1))
-    other = powers(rd.solve(patches, rays=20_000_000, replicates=REPLICATES, device="cpu", seed=2))
+    one = powers(rd.solve(patches, "random-walk", rays=20_000_000, replicates=REPLICATES, device="cuda", seed=1))
+    other = powers(rd.solve(patches, "random-walk", rays=20_000_000, replicates=REPLICATES, device="cpu", seed=2))
     seen = other.min(axis=0) > 0.2 * other.mean(axis=0)  # many arrivals in each replicate, so that means are near normal
     assert seen.sum() > 5
     assert np.abs(difference(one, other))[seen].max() < critical(REPLICATES, int(seen.sum()))

@@ -79,7 +79,7 @@ def test_display_mesh_covers_every_surface_with_fewer_polygons():
 def test_blocks_are_merged_where_values_are_even(two_sided):
     square = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]], 0.5, 1.0, two_sided=two_sided)
     patches = rd.subdivide(square, cells=8)
-    solution = rd.solve(patches, rays=1000, replicates=1)
+    solution = rd.solve(patches, "random-walk", rays=1000, replicates=1)
     mesh = display_mesh.build(patches)
     flat = np.ones((len(mesh.vertices), 1))
     assert len(density_mesh.merged(solution, mesh, flat)[1]) == 1 + two_sided

@@ -136,7 +136,7 @@ def test_other_seeds_and_scenes_compile_no_new_kernel():
     def kernels(scene, seed):
         with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
             dr.kernel_history_clear()
-            rd.solve(rd.subdivide(rd.load_scene(scene), cells=3), quanta=3000, replicates=2, seed=seed)
+            rd.solve(rd.subdivide(rd.load_scene(scene), cells=3), "random-walk", quanta=3000, replicates=2, seed=seed)
             return {entry["hash"] for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT}
 
     first = kernels("room", 1)
@@ -194,9 +194,9 @@ def test_blocks_are_set_for_a_launch_and_set_back():
 
 def test_results_do_not_need_a_size_of_blocks(monkeypatch):
     patches = rd.subdivide(rd.load_scene("room"), cells=2)
-    with_blocks = rd.solve(patches, quanta=2**17, replicates=2).state
+    with_blocks = rd.solve(patches, "random-walk", quanta=2**17, replicates=2).state
     monkeypatch.setattr(blocks, "_functions", lambda: None)
-    without = rd.solve(patches, quanta=2**17, replicates=2).state
+    without = rd.solve(patches, "random-walk", quanta=2**17, replicates=2).state
     assert all(np.array_equal(with_blocks[key], without[key]) for key in with_blocks)
 
 

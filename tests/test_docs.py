@@ -46,7 +46,7 @@ def test_parts_of_a_run_are_merged_as_the_page_shows(tmp_path, monkeypatch):
     names: dict = {"__name__": "parts"}
     (block,) = blocks(DOCS / "long-runs.md")
     exec(compile(block, "long-runs.md", "exec"), names)
-    whole = rd.solve(names["solution"].patches, quanta=2**18, replicates=8)
+    whole = rd.solve(names["solution"].patches, "random-walk", quanta=2**18, replicates=8)
     assert np.array_equal(names["solution"].irradiance_standard_error, whole.irradiance_standard_error)
 
 
@@ -118,7 +118,7 @@ def test_the_reference_names_everything_public():
 
 def test_the_page_of_promises_names_the_arrays_of_a_file(tmp_path):
     """Every key of a solution's file, and no other; those of the run and of textures are no promise."""
-    rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=1), rays=10_000).save(tmp_path / "box.npz")
+    rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=1), "random-walk", rays=10_000).save(tmp_path / "box.npz")
     with np.load(tmp_path / "box.npz") as file:
         kept = {key for key in file.files if not key.startswith(("state_", "reflectance_paint_", "emission_paint_"))}
         assert json.loads(str(file["meta"])).keys() == promised("meta")

@@ -120,7 +120,7 @@ def test_pictures_are_exported(tmp_path):
 @pytest.mark.parametrize("first", ["radiosity.solution.loading", "radiosity.hooks"])
 def test_a_solution_exports_in_a_process_that_did_not_import_the_exporters(tmp_path, first):
     """Its folder is below theirs, so it reaches them by a hook; importing any part of the package fills that."""
-    rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=10_000).save(tmp_path / "a.npz")
+    rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), "random-walk", rays=10_000).save(tmp_path / "a.npz")
     code = (
         f"import sys, {first}\nfrom radiosity.solution.loading import load_solution\n"
         "solution = load_solution('a.npz')\nassert 'radiosity.image' not in sys.modules\n"

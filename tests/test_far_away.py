@@ -89,7 +89,7 @@ def test_a_stray_object_at_a_thousand_kilometres_leaves_millimetres_apart():
     quads = [*quads, *walls, far]
     scene = rd.Scene.from_arrays(np.concatenate(quads), np.arange(20).reshape(5, 4), 0.0, [1.0, 0, 0, 0, 0])
     assert scene.n_faces == 5
-    solution = rd.solve(rd.subdivide(scene, cells=1), rays=200_000)
+    solution = rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=200_000)
     assert solution.irradiance[1, 0] == pytest.approx(parallel(1, 1), abs=5 * solution.irradiance_standard_error[1, 0] + 1e-4)
 
 
@@ -114,7 +114,7 @@ def test_check_and_pictures_do_not_see_a_stray_object(room):
     camera = rd.Camera((3, 0.5, 1.5), (3, 3.5, 1.2), (0, 0, 1), 60.0, 24, 16) if not room.cameras else room.cameras[0]
     pictures = []
     for scene in (room, beside):
-        solution = rd.solve(rd.subdivide(scene, cells=3), rays=100_000, seed=1)
+        solution = rd.solve(rd.subdivide(scene, cells=3), "random-walk", rays=100_000, seed=1)
         pictures.append(render(solution, camera=replace(camera, width=24, height=16), scale=0.01).astype(int))
     assert np.abs(pictures[1] - pictures[0]).mean() < 1
     assert np.ptp(pictures[0]) > 50
@@ -139,13 +139,13 @@ def test_the_centre_is_the_median_of_area():
 
 def test_a_run_from_before_lines_began_elsewhere_is_not_gone_on_with(room):
     patches = rd.subdivide(room, cells=1)
-    before = rd.solve(patches, quanta=64, replicates=2)
+    before = rd.solve(patches, "random-walk", quanta=64, replicates=2)
     old = replace(before, provenance={k: v for k, v in before.provenance.items() if k != "tracing"})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rd.RadiosityWarning)
-        rd.solve(patches, quanta=128, replicates=2, resume=before)
+        rd.solve(patches, "random-walk", quanta=128, replicates=2, resume=before)
         with pytest.raises(rd.MethodError, match="cannot go on from that solution: tracing"):
-            rd.solve(patches, quanta=128, replicates=2, resume=old)
+            rd.solve(patches, "random-walk", quanta=128, replicates=2, resume=old)
 
 
 def test_what_is_no_larger_than_an_ulp_where_it_lies_is_told_by_name(room):
@@ -153,7 +153,7 @@ def test_what_is_no_larger_than_an_ulp_where_it_lies_is_told_by_name(room):
     far = with_quads(room, "pebble", [quad((1000 * KILOMETRE, 0, 0), (1, 0, 0), (0, 1, 0))])
     message = "1 face .*'pebble'.* is hardly larger than what single precision holds apart .*begin 0.954 m in front"
     with pytest.warns(rd.RadiosityWarning, match=message):
-        rd.solve(rd.subdivide(far, cells=1), rays=20_000)
+        rd.solve(rd.subdivide(far, cells=1), "random-walk", rays=20_000)
     (text,) = [f.message for f in check(far).findings if f.kind == "too small"]
     assert "'pebble'" in text
 

@@ -101,7 +101,7 @@ def test_no_hit_is_bounded_by_that_of_one_line():
 @pytest.fixture(scope="module")
 def blind() -> rd.Solution:
     """No line lands: the sensor takes 3e-6 of them."""
-    return rd.solve(squares(10.0), quanta=1000)
+    return rd.solve(squares(10.0), "random-walk", quanta=1000)
 
 
 def test_where_no_line_landed_at_all_the_power_of_one_is_known(blind):
@@ -214,7 +214,7 @@ def test_rare_lines_of_another_colour_have_their_own_power(replicates):
     scene = rd.Scene.from_arrays(
         vertices, faces, np.full((4, 2), 0.0), emission, surface=np.arange(4), names=list("abcd"), bands=("red", "blue")
     )
-    solution = rd.solve(rd.subdivide(scene, cells=1), quanta=40, replicates=replicates)
+    solution = rd.solve(rd.subdivide(scene, cells=1), "random-walk", quanta=40, replicates=replicates)
     assert solution.arrivals[3] > intervals.FEW
     quantum = 1.01 / 40 / replicates
     here = (solution.arrivals == 0) | (solution.irradiance[:, 0] == 0)
@@ -321,7 +321,7 @@ def held(closed, quanta: int, runs: int) -> np.ndarray:
     """Shares of runs in which the intervals of the sensor, as a patch and as a surface, hold the truth."""
     (patches, truth), found = closed, []
     for seed in range(runs):
-        solution = rd.solve(patches, quanta=quanta, seed=seed)
+        solution = rd.solve(patches, "random-walk", quanta=quanta, seed=seed)
         found.append(
             [
                 low[-1, 0] <= truth <= high[-1, 0]

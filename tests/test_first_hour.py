@@ -25,12 +25,12 @@ SUFFIXES = (".npz", ".glb", ".ply", ".vtp", ".csv", ".png", ".exr")
 @pytest.fixture(scope="module")
 def box():
     """Of the Cornell box, in three bands."""
-    return rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=2), rays=50_000)
+    return rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=2), "random-walk", rays=50_000)
 
 
 @pytest.fixture(scope="module")
 def room():
-    return rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), rays=50_000)
+    return rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), "random-walk", rays=50_000)
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def photometric():
     scene = rd.Scene.from_arrays(
         corners, [(0, 1, 2, 3), (4, 5, 6, 7)], [0.5, 0.0], [0.0, 100.0], surface=[0, 1], names=["floor", "lamp"], photometric=True
     )
-    return rd.solve(rd.subdivide(scene, cells=2), rays=20_000)
+    return rd.solve(rd.subdivide(scene, cells=2), "random-walk", rays=20_000)
 
 
 # ---- folders -------------------------------------------------------------------------------------------------------------
@@ -175,14 +175,14 @@ def test_what_is_not_known_is_not_shown(room):
     assert len(repr(none).splitlines()) == 5
     assert "unknown (no stage is complete yet)" in repr(none)
     assert "<table>" not in none._repr_html_()
-    single = rd.solve(room.patches, rays=5_000, replicates=1)
+    single = rd.solve(room.patches, "random-walk", rays=5_000, replicates=1)
     assert "±" not in repr(single)
 
 
 def test_markup_in_names_is_shown_as_it_is():
     corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1]]
     scene = rd.Scene.from_arrays(corners, [[0, 1, 2], [5, 4, 3]], 0.5, 1.0, names=["<b>x</b>"])
-    shown = rd.solve(rd.subdivide(scene, cells=1), rays=5_000)._repr_html_()
+    shown = rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=5_000)._repr_html_()
     assert "&lt;b&gt;x&lt;/b&gt;" in shown
 
 
@@ -305,7 +305,7 @@ def test_warnings_that_lose_nothing_are_warnings_where_they_may_be():
 
 def test_a_mean_reaches_its_error_sooner_than_patches():
     patches = rd.subdivide(rd.load_scene("room"), cells=4)
-    mean = rd.solve(patches, error=0.01, error_of="mean:tall box")
+    mean = rd.solve(patches, "random-walk", error=0.01, error_of="mean:tall box")
     row = next(row for row in mean.surface_table() if row["surface"] == "tall box")
     assert row["interval"] <= 0.01  # half the interval of 95 % is what it goes by
     assert row["error"] > 0.01  # of the patches
@@ -314,7 +314,7 @@ def test_a_mean_reaches_its_error_sooner_than_patches():
     several = Target.of(patches, "mean:*box")
     assert several.surfaces.tolist() == [patches.scene.names.index("low box"), patches.scene.names.index("tall box")]
     with pytest.raises(rd.MethodError, match=r"mean:NAME.*such as surface:"):
-        rd.solve(patches, error=0.01, error_of="middle:floor")
+        rd.solve(patches, "random-walk", error=0.01, error_of="middle:floor")
 
 
 def test_the_command_takes_the_error_of_a_mean(capsys):
@@ -329,7 +329,7 @@ def test_the_studio_shows_colour():
     scene = rd.load_scene("studio")
     patches = rd.subdivide(scene)
     assert patches.area == pytest.approx(np.where(patches.area > 0.009, 0.01, patches.area))
-    solution = rd.solve(rd.subdivide(scene, cells=1), rays=50_000)
+    solution = rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=50_000)
     pixels = rd.image.render(solution, width=60).astype(float)
     assert np.ptp(pixels, axis=2).max() > 100
     assert 60 < pixels.mean() < 190

@@ -80,7 +80,7 @@ def test_a_lamp_that_is_not_there_shines_all_the_same(load, bsdf):
 
 
 def test_all_that_an_open_lamp_emits_is_absorbed_by_the_walls(load):
-    solution = rd.solve(rd.subdivide(load(room() + lamp()), cells=4), rays=100_000, seed=1)
+    solution = rd.solve(rd.subdivide(load(room() + lamp()), cells=4), "random-walk", rays=100_000, seed=1)
     patches = solution.patches
     taken = ((1 - patches.reflectance) * solution.irradiance * patches.area[:, None])[patches.reflectance[:, 0] > 0].sum()
     assert taken == pytest.approx(2 * np.pi * 1.0, rel=1e-3)  # radiance 2 from 1 m²; a black lamp keeps a tenth of it
@@ -106,7 +106,7 @@ def test_a_wall_behind_an_open_lamp_is_lit_through_it(load):
     """From the side that it emits to, and where both lie in one plane."""
     bright = {}
     for name, inside in {"behind": lamp(height=0.9), "in one plane": lamp(height=1), "hidden": lamp(height=0.9, bsdf="")}.items():
-        solution = rd.solve(rd.subdivide(load(room() + inside), cells=4), rays=60_000, seed=2)
+        solution = rd.solve(rd.subdivide(load(room() + inside), cells=4), "random-walk", rays=60_000, seed=2)
         ceiling = np.flatnonzero(solution.patches.surface == solution.patches.scene.names.index("ceiling"))
         middle = ceiling[(np.abs(solution.patches.centroid[ceiling, :2]) < 0.5).all(axis=1)]
         bright[name] = solution.irradiance[middle].mean()
@@ -140,7 +140,7 @@ def test_pictures_show_an_open_lamp_from_its_front(load):
 
 def test_open_lamps_are_kept_in_files_and_checked(load, tmp_path):
     scene = load(room() + lamp())
-    solution = rd.solve(rd.subdivide(scene, cells=2), rays=10_000)
+    solution = rd.solve(rd.subdivide(scene, cells=2), "random-walk", rays=10_000)
     solution.save(tmp_path / "box.npz")
     assert (rd.load_solution(tmp_path / "box.npz").patches.scene.back == scene.back).all()
     report = check(scene)

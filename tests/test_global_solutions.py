@@ -90,7 +90,7 @@ def references():
     """Solutions by local lines, an order of magnitude more exact."""
     cut = {"room": rd.subdivide(rd.load_scene("room"), cells=3)}
     cut |= {back.name: rd.subdivide(opening(back), cells=2) for back in (rd.Back.RADIATES, rd.Back.PASSES)}
-    return {name: rd.solve(patches, rays=8_000_000, replicates=16, seed=9) for name, patches in cut.items()}
+    return {name: rd.solve(patches, "random-walk", rays=8_000_000, replicates=16, seed=9) for name, patches in cut.items()}
 
 
 @pytest.mark.parametrize("name", ["room", "RADIATES", "PASSES"])
@@ -102,7 +102,7 @@ def test_like_local_lines(references, method, name):
 def test_light_goes_one_way_through_a_back_that_lets_it_pass():
     """The receiver sees the sheet's front, and gets the emitter's light through the sheet."""
     patches = rd.subdivide(stack(rd.Back.PASSES), cells=3)
-    reference = rd.solve(patches, rays=2_000_000, replicates=16, seed=9)
+    reference = rd.solve(patches, "random-walk", rays=2_000_000, replicates=16, seed=9)
     for lines in ("global", "spans"):
         for order in ("multipath", "regular"):
             same(rd.solve(patches, rd.Method(lines=lines, order=order), rays=1_000_000, replicates=16), reference)

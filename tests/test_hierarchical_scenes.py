@@ -22,7 +22,7 @@ def walked(request):
     """Patches and their radiosity, within 0.3 %."""
     name, size = request.param
     patches = rd.subdivide(rd.load_scene(name), size=size, powers_of_two=True)
-    solution = rd.solve(patches, rays=4_000_000, replicates=4, seed=5)
+    solution = rd.solve(patches, "random-walk", rays=4_000_000, replicates=4, seed=5)
     assert solution.error < 0.004
     return patches, solution.radiosity
 
@@ -78,7 +78,7 @@ def screens() -> rd.Scene:
 def test_backs_that_radiate_pass_and_absorb(geometry_of):
     patches = rd.subdivide(screens(), size=0.5, powers_of_two=True)
     assert len(np.unique(patches.face[patches.is_back])) == 1
-    walk = rd.solve(patches, rays=4_000_000, replicates=4, seed=5)
+    walk = rd.solve(patches, "random-walk", rays=4_000_000, replicates=4, seed=5)
     for refinement in REFINEMENTS:
         result = solve_hierarchical(patches, geometry_of(patches), Hierarchical(1e-5, refinement, rays=64))
         assert difference(patches, result.radiosity, walk.radiosity) < 0.02

@@ -68,7 +68,7 @@ def test_copies_end_in_equal_integers(name, monkeypatch):
 
         with monkeypatch.context() as patched:
             patched.setattr("radiosity.algorithms.firing.counters.hit_tally", remembered)
-            took.append((kinds, rd.solve(patches, quanta=40_000, replicates=2).state))
+            took.append((kinds, rd.solve(patches, "random-walk", quanta=40_000, replicates=2).state))
     (all_copied, one), (none, two), (full, three), (some, four) = took
     assert set(all_copied) == {hit_tally.Copied}
     assert set(none) == set(full) == {hit_tally.Atomic}

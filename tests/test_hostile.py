@@ -152,7 +152,7 @@ def test_coincident_triangles(count):
     triangle = 0.5 * SQUARE[:3] + [0.2, 0.2, 0.5]
     one = with_more(triangle, [[0, 1, 2]], two_sided=np.arange(7) == 6)
     many = with_more(triangle, np.tile([0, 1, 2], (count, 1)), two_sided=np.arange(6 + count) >= 6)
-    first, second = (rd.solve(rd.subdivide(scene, cells=1), rays=40_000, replicates=8) for scene in (one, many))
+    first, second = (rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=40_000, replicates=8) for scene in (one, many))
     walls = slice(0, 6)
     apart = np.abs(first.radiosity[walls] - second.radiosity[walls])
     assert (apart <= FAR * np.hypot(first.standard_error[walls], second.standard_error[walls])).all()
@@ -192,7 +192,7 @@ def test_what_almost_all_is_reflected_of_loses_by_rounding_and_tells():
     """B is 1000. Power below a quantum that a patch owes at the end is not fired: the books show it as rounding."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rd.RadiosityWarning)
-        solution = rd.solve(rd.subdivide(furnace(0.999), cells=2), quanta=20, replicates=8)
+        solution = rd.solve(rd.subdivide(furnace(0.999), cells=2), "random-walk", quanta=20, replicates=8)
     (book,) = solution.books
     told = FAR * solution.error + abs(book["rounding"]) / book["emitted"]
     assert told < 0.2

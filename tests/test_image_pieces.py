@@ -46,9 +46,9 @@ def test_pictures(result, request):
 
 def test_solutions(request):
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=2)
-    whole = rd.solve(patches, quanta=5000, replicates=3)
+    whole = rd.solve(patches, "random-walk", quanta=5000, replicates=3)
     request.getfixturevalue("short")
-    again = rd.solve(patches, quanta=5000, replicates=3)
+    again = rd.solve(patches, "random-walk", quanta=5000, replicates=3)
     for name in ("irradiance", "irradiance_standard_error", "arrivals", "surface_power"):
         np.testing.assert_allclose(getattr(again, name), getattr(whole, name), rtol=1e-12, err_msg=name)
     assert again.error == pytest.approx(whole.error, rel=1e-12)

@@ -53,7 +53,7 @@ def test_coverage_of_four_scenes(name, lines):
         case, truth = cases.maze(name), cases.ones(cases.maze(name))
     else:
         case = cases.plates() if name == "plates" else cases.room(3)
-        truth = rd.solve(case.patches, rays=600_000_000, replicates=64, seed=987).radiosity[:, 0]
+        truth = rd.solve(case.patches, "random-walk", rays=600_000_000, replicates=64, seed=987).radiosity[:, 0]
     found = coverage(arm(rd.Method()), case, truth, 1, lines=lines, seeds=200, visited=VISITED)
     for level, (share, _) in zip(LEVELS, found.covered, strict=True):
         if level in NOMINAL:
@@ -64,7 +64,7 @@ def test_coverage_of_four_scenes(name, lines):
 def dim():
     """The room with many small patches and few lines."""
     patches = rd.subdivide(rd.load_scene("room"), cells=12)
-    return rd.solve(patches, rays=60_000), rd.solve(patches, rays=40_000_000, seed=5).irradiance
+    return rd.solve(patches, "random-walk", rays=60_000), rd.solve(patches, "random-walk", rays=40_000_000, seed=5).irradiance
 
 
 def test_no_line_is_no_certain_zero(dim):
@@ -108,7 +108,7 @@ def test_all_replicates_equal_by_luck_is_no_certainty():
 
 
 def test_without_replicates_intervals_are_unknown():
-    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), rays=100_000, replicates=1)
+    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), "random-walk", rays=100_000, replicates=1)
     for ends in (solution.interval(quantity="irradiance"), solution.surface_interval(), solution.scene_interval()):
         assert np.isnan(ends).all()
     assert "unknown" in solution.report()
@@ -117,7 +117,7 @@ def test_without_replicates_intervals_are_unknown():
 def test_surfaces_have_the_error_of_their_own_means():
     """Not that of patches that are taken for independent: in a maze one shift moves them all."""
     patches = rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=1)
-    solutions = [rd.solve(patches, quanta=4096, seed=seed) for seed in range(60)]
+    solutions = [rd.solve(patches, "random-walk", quanta=4096, seed=seed) for seed in range(60)]
     inside = []
     for solution in solutions:
         low, high = solution.surface_interval(0.9, "radiosity")
@@ -129,7 +129,7 @@ def test_surfaces_have_the_error_of_their_own_means():
 
 
 def test_saved_intervals_are_read_again(tmp_path):
-    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), rays=100_000)
+    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), "random-walk", rays=100_000)
     solution.save(tmp_path / "a.npz")
     again = rd.load_solution(tmp_path / "a.npz")
     assert np.array_equal(again.surface_interval(), solution.surface_interval())
@@ -138,7 +138,7 @@ def test_saved_intervals_are_read_again(tmp_path):
 
 @pytest.mark.parametrize(("level", "quantity"), [(0.0, "radiosity"), (1.0, "radiosity"), (95, "radiosity"), (0.9, "emission")])
 def test_levels_and_quantities_that_make_no_sense(level, quantity):
-    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=20_000)
+    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), "random-walk", rays=20_000)
     with pytest.raises(rd.MethodError, match=r"level|quantity"):
         solution.interval(level, quantity)
 
@@ -172,7 +172,7 @@ def errors_at(patches: rd.Patches, truth: np.ndarray, target: float, runs: int) 
     size = np.sqrt((weight * (truth - patches.emission) ** 2).sum(axis=0))
     found = []
     for seed in range(runs):
-        solution = rd.solve(patches, error=target, seed=seed)
+        solution = rd.solve(patches, "random-walk", error=target, seed=seed)
         assert solution.status == "complete"
         found.append((np.sqrt((weight * (solution.radiosity - truth) ** 2).sum(axis=0)) / size).max())
     return np.array(found)
@@ -199,7 +199,7 @@ def test_target_errors_of_three_scenes(name, target):
     patches = rd.subdivide(rd.load_scene(name), cells=1 if name.startswith("labyrinth") else 3)
     truth = np.ones((len(patches), 1))
     if not name.startswith("labyrinth"):
-        truth = rd.solve(patches, rays=1_600_000_000, replicates=32, seed=987).radiosity
+        truth = rd.solve(patches, "random-walk", rays=1_600_000_000, replicates=32, seed=987).radiosity
     errors = errors_at(patches, truth, target, 100)
     assert (errors <= target).mean() >= SURE - 0.03  # one and a half standard deviations of a hundred runs
     assert np.quantile(errors, 0.95) > target / DOUBLING
@@ -207,10 +207,10 @@ def test_target_errors_of_three_scenes(name, target):
 
 def test_a_surface_reaches_its_error():
     patches = rd.subdivide(rd.load_scene("room"), cells=4)
-    solution = rd.solve(patches, error=0.004, error_of="surface:*box")
+    solution = rd.solve(patches, "random-walk", error=0.004, error_of="surface:*box")
     rows = {row["surface"]: row["error"] for row in solution.surface_table()}
     assert max(rows["tall box"], rows["low box"]) < 0.008
-    usual = rd.solve(patches, error=0.004)
+    usual = rd.solve(patches, "random-walk", error=0.004)
     assert solution.rays > 1.5 * usual.rays  # boxes are small and dim
     assert solution.provenance["budget"] == {"error": 0.004, "error_of": "surface:*box"}
 
@@ -245,19 +245,19 @@ def test_a_target_means_the_surface_of_that_name_or_else_a_pattern(asked, found)
 @pytest.mark.parametrize("name", ["floor", "surface:", "surface:flor", "patch:3"])
 def test_surfaces_that_are_not_there(name):
     with pytest.raises(rd.MethodError, match=r"floor|surface:NAME"):
-        rd.solve(rd.load_scene("room"), error=0.1, error_of=name)
+        rd.solve(rd.load_scene("room"), "random-walk", error=0.1, error_of=name)
 
 
 def test_a_surface_without_an_error_to_reach():
     with pytest.raises(rd.MethodError, match="give the error, too"):
-        rd.solve(rd.load_scene("room"), rays=10_000, error_of="surface:floor")
+        rd.solve(rd.load_scene("room"), "random-walk", rays=10_000, error_of="surface:floor")
 
 
 def test_coloured_runs_that_stopped_between_two_rungs_replay():
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=2)
-    solution = rd.solve(patches, error=0.0018)
+    solution = rd.solve(patches, "random-walk", error=0.0018)
     assert solution.quanta & (solution.quanta - 1)
-    again = rd.solve(patches, quanta=solution.quanta)
+    again = rd.solve(patches, "random-walk", quanta=solution.quanta)
     assert np.array_equal(solution.irradiance, again.irradiance)
 
 

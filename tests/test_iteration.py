@@ -56,7 +56,7 @@ def reference():
     """Patches and the power that their surfaces receive, (replicates, n_surfaces)."""
     scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
     cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
-    return {name: (p, powers(rd.solve(p, rays=8_000_000, replicates=16))) for name, p in cut.items()}
+    return {name: (p, powers(rd.solve(p, "random-walk", rays=8_000_000, replicates=16))) for name, p in cut.items()}
 
 
 @pytest.mark.parametrize("name", VARIANTS)

@@ -30,14 +30,14 @@ CONSISTENT = ("regular", "regular, both ends", "regular, control variate", "regu
 def room():
     """Few patches with unlike reflectances, an opening, and the power that surfaces receive."""
     patches = rd.subdivide(open_room(), cells=1)
-    return patches, powers(rd.solve(patches, rays=32_000_000, replicates=16)).mean(axis=0)
+    return patches, powers(rd.solve(patches, "random-walk", rays=32_000_000, replicates=16)).mean(axis=0)
 
 
 @pytest.fixture(scope="module")
 def lit():
     """A closed cube whose sides all emit, and differ in what they reflect: power that comes back matters from the start."""
     patches = rd.subdivide(cube([[0.95], [0.1], [0.9], [0.2], [0.9], [0.1]], [[1.0], [0.1], [0.2], [0.5], [0.1], [2.0]]), cells=1)
-    return patches, powers(rd.solve(patches, rays=32_000_000, replicates=16)).mean(axis=0)
+    return patches, powers(rd.solve(patches, "random-walk", rays=32_000_000, replicates=16)).mean(axis=0)
 
 
 def statistic(scene, name: str, quanta: int, runs: int = RUNS) -> tuple[float, float]:

@@ -84,7 +84,7 @@ solution.save(path)
 )
 def test_a_kill_while_a_checkpoint_is_written(tmp_path, moment):
     path, cut = tmp_path / "run.npz", rd.subdivide(rd.load_scene("room"), cells=1)
-    rd.solve(cut, quanta=1000, replicates=2).save(path)
+    rd.solve(cut, "random-walk", quanta=1000, replicates=2).save(path)
     done = subprocess.run([sys.executable, "-c", DYING, moment, path], capture_output=True, text=True)
     assert done.returncode == -signal.SIGKILL, done.stderr
     assert rd.load_solution(path).quanta == (2000 if moment == "before its name is on the disk" else 1000)

@@ -139,7 +139,7 @@ def test_place_and_size_do_not_matter():
             surface=scene.surface,
             names=scene.names,
         )
-        patches[scale] = rd.solve(rd.subdivide(moved, cells=3), rays=500_000)
+        patches[scale] = rd.solve(rd.subdivide(moved, cells=3), "random-walk", rays=500_000)
     for solution in patches.values():
         assert solution.escaped[0] == 0
         z = (solution.radiosity - patches[1.0].radiosity)[solution.arrivals > 0]

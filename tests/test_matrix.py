@@ -81,7 +81,7 @@ def reference():
     """Patches and the power that their surfaces receive, (replicates, n_surfaces)."""
     scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
     cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
-    return {name: (p, powers(rd.solve(p, rays=8_000_000, replicates=16))) for name, p in cut.items()}
+    return {name: (p, powers(rd.solve(p, "random-walk", rays=8_000_000, replicates=16))) for name, p in cut.items()}
 
 
 def test_both_ways_is_reciprocal_and_better():
@@ -127,7 +127,7 @@ def test_what_was_counted_solves_for_other_light(lines):
     cut = rd.subdivide(other, cells=2)
     assert np.allclose(cut.area, patches.area)
     (found,) = pairs.solve(cut.emission, cut.reflectance)
-    wanted = rd.solve(cut, rays=8_000_000, replicates=16, seed=4)
+    wanted = rd.solve(cut, "random-walk", rays=8_000_000, replicates=16, seed=4)
     values, reference = found.power / cut.area, wanted.irradiance[:, 0]
     error = np.hypot(values.std(axis=0, ddof=1) / 4, wanted.irradiance_standard_error[:, 0])
     off = np.abs(values.mean(axis=0) - reference)
@@ -146,7 +146,7 @@ def test_colours_share_the_factors():
     scene = cube(colors, light)
     patches = rd.subdivide(scene, cells=4)
     together = rd.solve(patches, rd.Method(order="matrix"), rays=1_000_000, replicates=16)
-    firing = rd.solve(patches, rays=4_000_000, replicates=16)
+    firing = rd.solve(patches, "random-walk", rays=4_000_000, replicates=16)
     z = (together.irradiance - firing.irradiance) / np.hypot(together.irradiance_standard_error, firing.irradiance_standard_error)
     assert np.abs(z).max() < 6.5
     assert 0.7 < np.sqrt(np.mean(z**2)) < 1.4
@@ -185,7 +185,7 @@ def test_backs_that_let_lines_pass_are_counted_one_way(lines):
     scene = rd.load_scene("room")
     patches = rd.subdivide(replace(scene, back=np.full_like(scene.back, int(rd.Back.PASSES))), cells=3)
     solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=4_000_000, replicates=16)
-    expected = powers(rd.solve(patches, rays=4_000_000, replicates=16))
+    expected = powers(rd.solve(patches, "random-walk", rays=4_000_000, replicates=16))
     assert np.abs(difference(powers(solution, tally=MatrixTally(False, directed=True)), expected)).max() < 6.0
 
 

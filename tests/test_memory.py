@@ -97,7 +97,7 @@ def test_the_environment_may_say_how_much(monkeypatch, text, bytes_):
 def test_a_senseless_limit_is_refused(monkeypatch, text):
     monkeypatch.setenv(memory.VARIABLE, text)
     with pytest.raises(rd.MethodError, match="RADIOSITY_MEMORY is"):
-        rd.solve(rd.load_scene("room"), quanta=10)
+        rd.solve(rd.load_scene("room"), "random-walk", quanta=10)
 
 
 @pytest.mark.parametrize(("size", "bytes_"), [("8G", 8 * GIB), (1000, 1000), (1e17, 1e17), ("none", math.inf)])

@@ -173,7 +173,7 @@ def test_fresh_processes_solve_parts(tmp_path):
     paths = [tmp_path / f"{first}.npz" for first in (0, 2)]
     for first, path in zip((0, 2), paths, strict=True):
         subprocess.run([sys.executable, "-c", code, str(first), str(path)], check=True)
-    whole = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), quanta=5000, replicates=4, seed=1)
+    whole = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), "random-walk", quanta=5000, replicates=4, seed=1)
     assert_same(rd.merge(map(rd.load_solution, paths)), whole)
 
 
@@ -183,7 +183,7 @@ def test_one_solution_is_itself(grey):
 
 
 def test_a_whole_run_says_nothing_of_parts(grey):
-    whole = rd.solve(grey, quanta=ONE, replicates=2, first_replicate=0, all_replicates=2)
+    whole = rd.solve(grey, "random-walk", quanta=ONE, replicates=2, first_replicate=0, all_replicates=2)
     assert not {"first_replicate", "all_replicates"} & set(whole.provenance)
 
 
@@ -317,7 +317,7 @@ def test_damaged_states_are_refused(coloured, damage):
 @pytest.mark.parametrize("given", [[], [1], None, "one"], ids=str)
 def test_what_is_no_solution_is_refused(grey, given):
     with pytest.raises(rd.MethodError, match="merge"):
-        rd.merge(rd.solve(grey, quanta=64) if given == "one" else given)
+        rd.merge(rd.solve(grey, "random-walk", quanta=64) if given == "one" else given)
 
 
 @pytest.mark.parametrize("name", ["firing", "continuous", "regular", "multipath", "local matrix"])

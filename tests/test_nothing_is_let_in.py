@@ -218,7 +218,7 @@ def test_archives_that_unpack_to_very_much(tmp_path):
 
 
 def test_compressed_solutions_are_still_read(tmp_path):
-    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=4), rays=20_000)
+    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=4), "random-walk", rays=20_000)
     solution.save(tmp_path / "a.npz")
     with np.load(tmp_path / "a.npz") as file:
         np.savez_compressed(tmp_path / "b.npz", **file)
@@ -227,7 +227,7 @@ def test_compressed_solutions_are_still_read(tmp_path):
 
 def test_characters_that_are_none(tmp_path):
     """Numpy takes any four bytes for a character; Python fails on it much later, when a name is printed."""
-    rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=2_000).save(tmp_path / "a.npz")
+    rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), "random-walk", rays=2_000).save(tmp_path / "a.npz")
     with np.load(tmp_path / "a.npz") as file:
         arrays = dict(file)
     codes = np.frombuffer(arrays["meta"].tobytes(), np.uint32).copy()

@@ -258,7 +258,7 @@ def test_old_files_repeat_and_are_linear(tmp_path):
         0.95,
         paint.samplers,
     )
-    solution = rd.solve(rd.subdivide(replace(light, reflectance_paint=both), cells=2), quanta=1000)
+    solution = rd.solve(rd.subdivide(replace(light, reflectance_paint=both), cells=2), "random-walk", quanta=1000)
     solution.save(tmp_path / "new.npz")
     with np.load(tmp_path / "new.npz") as file:
         arrays = {name: file[name] for name in file.files}

@@ -46,7 +46,9 @@ def test_mean_and_error_are_those_of_the_whole(small, random, shape):
 
 
 def solved(replicates: int):
-    return rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=3), quanta=4096, replicates=replicates, seed=3)
+    return rd.solve(
+        rd.subdivide(rd.load_scene("cornell-box"), cells=3), "random-walk", quanta=4096, replicates=replicates, seed=3
+    )
 
 
 @pytest.mark.parametrize("replicates", [1, 4])
@@ -67,10 +69,10 @@ def test_reading_results_takes_little_more_memory_than_they_do(name, cells, repl
     """Bytes a patch, of NumPy's arrays alone, results included: 51 and 98; without pieces 93 and 162."""
     patches = rd.subdivide(rd.load_scene(name), cells=cells)
     assert len(patches) > 200_000
-    rd.solve(patches, quanta=1 << 15, replicates=replicates)  # what patches keep
+    rd.solve(patches, "random-walk", quanta=1 << 15, replicates=replicates)  # what patches keep
     tracemalloc.start()
     try:
-        rd.solve(patches, quanta=1 << 15, replicates=replicates)
+        rd.solve(patches, "random-walk", quanta=1 << 15, replicates=replicates)
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()

@@ -60,7 +60,7 @@ def test_another_order_drops_the_warm_up(coloured):
 
 
 def test_going_on_by_another_method_names_what_differs(coloured):
-    solution = rd.solve(coloured, rays=100_000)
+    solution = rd.solve(coloured, "random-walk", rays=100_000)
     with pytest.raises(rd.MethodError, match=r"numbers \(halton then, sobol now\)") as raised:
         rd.solve(coloured, rays=200_000, numbers="sobol", resume=solution)
     assert "{" not in str(raised.value)

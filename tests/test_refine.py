@@ -61,7 +61,7 @@ def test_estimates_have_no_bias(random):
 
 def test_a_furnace_has_no_discretisation_error():
     """Its solution is one everywhere on any mesh: all change is noise, and the check says so."""
-    found = rd.refine_check(rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1), rays=2_000_000)
+    found = rd.refine_check(rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1), "random-walk", rays=2_000_000)
     apart = found.change / found.change_error
     assert np.mean(apart**2) < 2.5  # of Student's squares with seven degrees and more: 1.4 or less
     assert np.abs(found.change).max() > 0
@@ -72,7 +72,9 @@ def test_a_furnace_has_no_discretisation_error():
 
 
 def test_errors_of_the_room_fall_with_the_patches():
-    rows = [rd.refine_check(rd.subdivide(rd.load_scene("room"), cells=k), rays=3_000_000).table()[0] for k in (2, 6)]
+    rows = [
+        rd.refine_check(rd.subdivide(rd.load_scene("room"), cells=k), "random-walk", rays=3_000_000).table()[0] for k in (2, 6)
+    ]
     assert rows[1]["within"] < 0.6 * rows[0]["within"]  # 0.44 where it falls with h^0.75
     assert rows[1]["discretisation"] < rows[0]["discretisation"]
     assert rows[1]["sampling"] < 0.3 * rows[1]["discretisation"]
@@ -82,10 +84,10 @@ def test_it_finds_the_known_error_of_a_mesh():
     """Against a mesh of four times as many cells along each edge."""
     coarse = rd.subdivide(rd.load_scene("room"), cells=1)
     finest = rd.subdivide(rd.load_scene("room"), cells=8)
-    truth = rd.solve(finest, rays=20_000_000).radiosity
+    truth = rd.solve(finest, "random-walk", rays=20_000_000).radiosity
     of = parents(finest, coarse)
     mean = np.bincount(of, finest.area * truth[:, 0]) / coarse.area
-    found = rd.refine_check(coarse, rays=4_000_000)
+    found = rd.refine_check(coarse, "random-walk", rays=4_000_000)
     exact = np.sqrt(coarse.area @ (mean - found.coarse.radiosity[:, 0]) ** 2)
     stated = np.sqrt(coarse.area @ np.maximum(found.square_of_means[:, 0], 0))
     assert 0.5 < stated / exact < 2
@@ -96,7 +98,7 @@ def test_it_finds_the_known_error_of_a_mesh():
 def test_of_runs_whose_last_stage_was_left_unfinished(monkeypatch):
     """Time is up within a second stage: what the first one left is read."""
     monkeypatch.setattr(run, "PATIENCE", -1e9)
-    found = rd.refine_check(rd.subdivide(rd.load_scene("room"), cells=2), seconds=60)
+    found = rd.refine_check(rd.subdivide(rd.load_scene("room"), cells=2), "random-walk", seconds=60)
     assert found.coarse.status == "complete"
     assert 0 < found.coarse.seconds < 30
     assert np.isfinite(found.change_error).all()
@@ -128,7 +130,7 @@ def test_what_no_line_tells_is_a_question_mark(quanta, known):
     scene = rd.Scene.from_arrays(
         corners, np.arange(12).reshape(3, 4), [0, 0.2, 0.5], [1.0, 0, 0], surface=range(3), names=["lamp", "far", "never"]
     )
-    found = rd.refine_check(rd.subdivide(scene, cells=1), quanta=quanta, replicates=2)
+    found = rd.refine_check(rd.subdivide(scene, cells=1), "random-walk", quanta=quanta, replicates=2)
     assert (found.coarse.arrivals[1] > 0) == known
     text, rows = found.report(), {row["surface"]: row for row in found.table()}
     assert "nan" not in text

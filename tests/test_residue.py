@@ -235,13 +235,13 @@ def test_results_are_equal_in_any_order_and_stages_and_on_any_threads(numbers):
 @pytest.mark.parametrize(("make_patches", "half"), [(lambda: cavity(gap=0.1), 5_000), (opened, 2**19)], ids=["grey", "coloured"])
 def test_a_saved_run_goes_on_to_the_bits_of_one(make_patches, half, tmp_path):
     patches, quanta = make_patches(), half
-    whole = rd.solve(patches, quanta=2 * quanta, replicates=2)
-    rd.solve(patches, quanta=quanta, replicates=2).save(tmp_path / "half.npz")
+    whole = rd.solve(patches, "random-walk", quanta=2 * quanta, replicates=2)
+    rd.solve(patches, "random-walk", quanta=quanta, replicates=2).save(tmp_path / "half.npz")
     half = rd.load_solution(tmp_path / "half.npz")
-    again = rd.solve(patches, quanta=quanta, replicates=2, resume=half)
+    again = rd.solve(patches, "random-walk", quanta=quanta, replicates=2, resume=half)
     assert np.array_equal(again.irradiance, half.irradiance)
     assert again.rays == half.rays
-    later = rd.solve(patches, quanta=2 * quanta, replicates=2, resume=half)
+    later = rd.solve(patches, "random-walk", quanta=2 * quanta, replicates=2, resume=half)
     assert np.array_equal(later.irradiance, whole.irradiance)
     assert np.array_equal(later.surface_power, whole.surface_power)
     assert later.books == whole.books
@@ -275,7 +275,7 @@ def test_energy_is_kept_but_for_walks_that_end_by_chance():
 @pytest.mark.parametrize("rays", [40_000, 400_000, 2_000_000])
 def test_residue_lines_count_as_rays(rays):
     patches = rd.subdivide(rd.load_scene("room"), cells=8)
-    solution = rd.solve(patches, rays=rays, seed=2)
+    solution = rd.solve(patches, "random-walk", rays=rays, seed=2)
     assert solution.rays == pytest.approx(rays, rel=0.05)
     fired = solution.state["fired"].sum()
     assert fired < solution.rays < 1.12 * fired
@@ -302,7 +302,7 @@ def test_intermediate_stages_send_nothing(monkeypatch):
 def test_negative_irradiance_is_kept_and_told_everywhere(tmp_path):
     """A patch that the residue alone reached may be below zero: that is what makes the mean right."""
     patches = rd.subdivide(rd.load_scene("room"), cells=8)
-    solution = rd.solve(patches, quanta=100, seed=1)
+    solution = rd.solve(patches, "random-walk", quanta=100, seed=1)
     assert solution.irradiance.min() < 0
     assert (solution.arrivals[(solution.irradiance < 0)[:, 0]] < 8).all()
     low, high = solution.interval(quantity="irradiance")

@@ -77,7 +77,7 @@ def test_targets_hold(reflectance, target):
     patches, runs = cavity(reflectance, 0.001, 24), 100
     true = []
     for seed in range(runs):
-        found = rd.solve(patches, error=target, seed=seed).irradiance[:, 0] - 1
+        found = rd.solve(patches, "random-walk", error=target, seed=seed).irradiance[:, 0] - 1
         true.append(np.sqrt(patches.area @ found**2 / patches.area.sum()))
     share = float(np.mean(np.array(true) <= target))
     print(reflectance, target, share)

@@ -83,7 +83,7 @@ def is_default(field, value) -> bool:
 
 @pytest.fixture(scope="module")
 def solution() -> rd.Solution:
-    return rd.solve(rd.subdivide(everything(), size=2.5), quanta=2000, replicates=3, seed=2**40)
+    return rd.solve(rd.subdivide(everything(), size=2.5), "random-walk", quanta=2000, replicates=3, seed=2**40)
 
 
 def test_no_field_has_its_default(solution):

@@ -82,7 +82,7 @@ def metres(report: Report) -> np.ndarray:
 def test_powers_of_two_leave_every_bit(load, name, exponent):
     scene, scale = load(name), 2.0**exponent
     other = placed(scene, scale)
-    one, two = rd.solve(scene, rays=LINES), rd.solve(other, rays=LINES)
+    one, two = rd.solve(scene, "random-walk", rays=LINES), rd.solve(other, "random-walk", rays=LINES)
     for field in ("radiosity", "standard_error", "irradiance", "irradiance_standard_error", "arrivals"):
         assert np.array_equal(getattr(one, field), getattr(two, field), equal_nan=True), field
     assert (one.rays, one.quanta, one.error) == (two.rays, two.quanta, two.error)
@@ -107,7 +107,7 @@ def test_powers_of_two_leave_every_bit(load, name, exponent):
 def test_scaled_turned_and_moved(load, name, scale, move):
     scene = load(name)
     other = placed(scene, scale, rotation(int(abs(move[0]))), move)
-    one, two = rd.solve(scene, rays=LINES), rd.solve(other, rays=LINES)
+    one, two = rd.solve(scene, "random-walk", rays=LINES), rd.solve(other, "random-walk", rays=LINES)
     assert np.array_equal(one.patches.columns, two.patches.columns)
     assert np.array_equal(one.patches.rows, two.patches.rows)
     assert two.patches.area.sum() == pytest.approx(scale**2 * one.patches.area.sum(), rel=1e-9)

@@ -73,7 +73,7 @@ def test_a_run_goes_on_from_a_file_of_either_name(patches, tmp_path):
     other = rd.solve(patches, quanta=300, replicates=2, numbers="scrambled-halton")
     assert np.array_equal(one.irradiance, other.irradiance)
     with pytest.raises(rd.MethodError, match="numbers \\(scrambled-halton then, halton now\\)"):
-        rd.solve(patches, quanta=300, replicates=2, resume=before)
+        rd.solve(patches, "random-walk", quanta=300, replicates=2, resume=before)
 
 
 @pytest.mark.parametrize(

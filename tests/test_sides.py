@@ -58,7 +58,7 @@ def rows_of(solution) -> dict[str, dict]:
 
 def test_a_two_sided_room_has_the_table_of_a_one_sided_one(room):
     """Of all lines none reaches the outside, so means, powers, areas and intervals are those of a room without one."""
-    two, one = rd.solve(room(), rays=60_000), rd.solve(room(ONE_SIDED), rays=60_000)
+    two, one = rd.solve(room(), "random-walk", rays=60_000), rd.solve(room(ONE_SIDED), "random-walk", rays=60_000)
     inside, usual = rows_of(two), rows_of(one)
     assert len(two.patches) == 2 * len(one.patches) - 4
     for name, area in AREAS.items():
@@ -82,16 +82,21 @@ def test_a_two_sided_room_has_the_table_of_a_one_sided_one(room):
 
 
 def test_walls_that_look_outward_show_their_backs(room):
-    rows = rows_of(rd.solve(room(outward=("floor", "east")), rays=60_000))
+    rows = rows_of(rd.solve(room(outward=("floor", "east")), "random-walk", rays=60_000))
     assert [rows[name]["side"] for name in AREAS] == ["back", "front", "front", "front", "front", "back"]
-    assert rows["floor"]["irradiance"] == pytest.approx(rows_of(rd.solve(room(), rays=60_000))["floor"]["irradiance"], rel=0.05)
+    assert rows["floor"]["irradiance"] == pytest.approx(
+        rows_of(rd.solve(room(), "random-walk", rays=60_000))["floor"]["irradiance"], rel=0.05
+    )
 
 
 def test_a_surface_wound_both_ways_shows_the_lit_side_of_each_face(room):
-    solution = rd.solve(room(outward=("floor", "east"), one=True), rays=60_000)
+    solution = rd.solve(room(outward=("floor", "east"), one=True), "random-walk", rays=60_000)
     rows = rows_of(solution)
     assert (rows["room"]["side"], rows["room"]["area"], rows["room"]["dark"]) == ("lit", 94, 94)
-    mean = sum(row["received"] for row in rows_of(rd.solve(room(), rays=60_000)).values() if row["surface"] != "lamp") / 94
+    mean = (
+        sum(row["received"] for row in rows_of(rd.solve(room(), "random-walk", rays=60_000)).values() if row["surface"] != "lamp")
+        / 94
+    )
     assert rows["room"]["irradiance"] == pytest.approx(mean, rel=0.02)
     assert solution.sides.left_out.sum() == 24
 
@@ -110,7 +115,7 @@ def test_a_sheet_lit_from_both_sides_has_two_rows(room, tmp_path):
         names=[*scene.names, "top"],
         back=[*scene.back, 1],
     )
-    solution = rd.solve(rd.subdivide(both, cells=2), rays=100_000)
+    solution = rd.solve(rd.subdivide(both, cells=2), "random-walk", rays=100_000)
     top, under = (row for row in solution.surface_table() if row["surface"] == "top")
     assert (top["side"], under["side"]) == ("front", "back")
     assert top["area"] == under["area"] == 1
@@ -154,7 +159,7 @@ def test_dark_parts_of_a_surface_that_is_lit_on_both_sides(room, outward, joined
     """An STL of a whole room is one surface. A table top in it, or a wall that stands on its floor, does not bring the outside of
     the room into the table: what lines received is the same whichever way its walls are wound."""
     sheet = [(0, 0, 0), (5, 4, 0), (5, 4, 3), (0, 0, 3)] if joined else SHEET
-    solution = rd.solve(with_sheet(room, 2, sheet, [(0, 1, 2, 3)], outward=outward), rays=60_000)
+    solution = rd.solve(with_sheet(room, 2, sheet, [(0, 1, 2, 3)], outward=outward), "random-walk", rays=60_000)
     front, back = (row for row in solution.surface_table() if row["surface"] == "room/paint")
     size = 3 * 41**0.5 if joined else 6
     turned = sum(AREAS[name] for name in outward)
@@ -193,7 +198,7 @@ def test_dim_faces_that_few_lines_reach_are_not_dark(room):
 
 def test_a_surface_that_no_line_reached_has_one_row(room):
     """Where few lines reached one side, none on the other one says nothing: both have a row."""
-    solution = rd.solve(room(), quanta=1, replicates=2)
+    solution = rd.solve(room(), "random-walk", quanta=1, replicates=2)
     rows = solution.surface_table()
     unmet = [row for row in rows if row["side"] == "both"]
     assert unmet
@@ -212,7 +217,7 @@ def test_a_surface_that_no_line_reached_has_one_row(room):
 
 
 def test_a_dark_side_that_emits_keeps_its_row(room):
-    rows = rd.solve(room('[[surface]]\nname = "floor/paint"\nemission = 3\n'), rays=60_000).surface_table()
+    rows = rd.solve(room('[[surface]]\nname = "floor/paint"\nemission = 3\n'), "random-walk", rays=60_000).surface_table()
     floor = [row for row in rows if row["surface"] == "floor/paint"]
     assert [(row["side"], row["emitted"]) for row in floor] == [("front", pytest.approx(60)), ("back", pytest.approx(60))]
     assert floor[1]["net"] == pytest.approx(60)
@@ -220,7 +225,7 @@ def test_a_dark_side_that_emits_keeps_its_row(room):
 
 
 def test_net_power_has_an_error_and_an_interval(room):
-    solution = rd.solve(room(ONE_SIDED), rays=60_000)
+    solution = rd.solve(room(ONE_SIDED), "random-walk", rays=60_000)
     rows = rows_of(solution)
     absorbed = (solution.surface_power[0] - solution.surface_power[1])[:, :, 0]
     for i, name in enumerate([*AREAS, "lamp"]):
@@ -237,10 +242,10 @@ def test_net_power_has_an_error_and_an_interval(room):
 def test_net_power_covers_the_truth(room):
     """The intervals of 20 runs hold the value of a long one: 17 or fewer of 20 have a probability of 8 %, twice that is rare."""
     patches = room(ONE_SIDED, cells=1)
-    truth = rows_of(rd.solve(patches, rays=4_000_000, seed=99))["floor"]["net"]
+    truth = rows_of(rd.solve(patches, "random-walk", rays=4_000_000, seed=99))["floor"]["net"]
     held = [
         row["net low"] < truth < row["net high"]
-        for row in (rows_of(rd.solve(patches, rays=5_000, seed=seed))["floor"] for seed in range(20))
+        for row in (rows_of(rd.solve(patches, "random-walk", rays=5_000, seed=seed))["floor"] for seed in range(20))
     ]
     assert sum(held) >= 17
 
@@ -256,7 +261,7 @@ def test_tables_on_disk_and_the_methods_that_count_no_lines(room, tmp_path):
         ("ceiling/paint", "front", 20),
     ]
     assert {"dark [m²]", "net [W]", "net error [W]", "net low [W]", "net high [W]"} <= set(rows[0])
-    lined = rd.solve(room(cells=1), rays=60_000)
+    lined = rd.solve(room(cells=1), "random-walk", rays=60_000)
     lined.export(tmp_path / "b.csv")
     with (tmp_path / "b.csv").open(encoding="utf-8") as file:
         patches = list(csv.DictReader(file))
@@ -284,7 +289,7 @@ def test_check_tells_of_walls_of_two_sides_and_how_to_make_them_one_sided(room, 
     assert not any("leave the scene" in text for text in leaks)  # what begins outside is no leak
     advised = '[[surface]]\nname = "floor/paint"\nflip = true\n' + ONE_SIDED
     assert not told(extra=advised, outward=("floor",))  # what it says helps
-    solution = rd.solve(room(advised, outward=("floor",)), rays=60_000)
+    solution = rd.solve(room(advised, outward=("floor",)), "random-walk", rays=60_000)
     assert solution.books[0]["lost"] < 0.02 * solution.books[0]["emitted"]  # on the lamp's back alone
     assert rows_of(solution)["floor"]["irradiance"] > 0
     assert run(["check", str(tmp_path / "room.toml")]) == 0

@@ -23,28 +23,28 @@ def patches():
 
 @pytest.fixture(scope="module")
 def solution(patches):
-    return rd.solve(patches, rays=1_000_000)
+    return rd.solve(patches, "random-walk", rays=1_000_000)
 
 
 @pytest.mark.parametrize("rays", [100_000, 1_000_000, 7_654_321])
 @pytest.mark.parametrize("replicates", [1, 8])
 def test_rays_are_met_within_five_percent(patches, rays, replicates):
-    assert abs(rd.solve(patches, rays=rays, replicates=replicates).rays / rays - 1) < 0.05
+    assert abs(rd.solve(patches, "random-walk", rays=rays, replicates=replicates).rays / rays - 1) < 0.05
 
 
 def test_few_rays_warn(patches):
     with pytest.warns(rd.RadiosityWarning, match="replicates .* quanta"):
-        rd.solve(patches, rays=500)
+        rd.solve(patches, "random-walk", rays=500)
 
 
 def test_error_target_is_reached(patches):
-    solution = rd.solve(patches, error=0.01)
+    solution = rd.solve(patches, "random-walk", error=0.01)
     assert 0.004 < solution.error <= 0.01
     assert solution.status == "complete"
 
 
 def test_seconds_are_kept_roughly(patches):
-    solution = rd.solve(patches, seconds=1.0)
+    solution = rd.solve(patches, "random-walk", seconds=1.0)
     assert solution.seconds < 10  # a slow machine may compile for long; the loop itself stops in time
     assert solution.rays > 0
 
@@ -69,7 +69,7 @@ def test_error_bars_cover_the_truth():
     labyrinth = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
     inside = {0.90: 0, 0.99: 0}
     for seed in range(30):
-        solved = rd.solve(labyrinth, quanta=8_000, seed=seed)
+        solved = rd.solve(labyrinth, "random-walk", quanta=8_000, seed=seed)
         t = np.abs((solved.radiosity - 1) / solved.standard_error)
         for level in inside:
             inside[level] += (t < stats.t.ppf(0.5 + level / 2, 7)).mean() / 30
@@ -78,14 +78,14 @@ def test_error_bars_cover_the_truth():
 
 
 def test_one_replicate_has_no_error(patches):
-    solution = rd.solve(patches, rays=100_000, replicates=1)
+    solution = rd.solve(patches, "random-walk", rays=100_000, replicates=1)
     assert np.isnan(solution.error)
     assert np.isnan(solution.irradiance_standard_error).all()
     assert "unknown" in solution.report()
 
 
 def test_black_scene_has_known_radiosity_and_an_error_of_irradiance():
-    solution = rd.solve(rd.subdivide(cube(0.0, 1.0), cells=3), error=0.05)
+    solution = rd.solve(rd.subdivide(cube(0.0, 1.0), cells=3), "random-walk", error=0.05)
     assert np.array_equal(solution.radiosity, solution.patches.emission)
     assert not solution.standard_error.any()
     assert 0 < solution.error <= 0.05
@@ -123,22 +123,22 @@ def test_senseless_choices_are_refused(patches, choices, message):
 
 def test_unknown_device_is_refused(patches):
     with pytest.raises(rd.DeviceError, match="'abacus' does not exist"):
-        rd.solve(patches, rays=1000, device="abacus")
+        rd.solve(patches, "random-walk", rays=1000, device="abacus")
 
 
 def test_a_scene_without_light_is_refused():
     with pytest.raises(rd.SceneError, match="no surface emits"):
-        rd.solve(cube(0.5, 0.0), rays=1000)
+        rd.solve(cube(0.5, 0.0), "random-walk", rays=1000)
 
 
 def test_solve_wants_a_scene():
     with pytest.raises(rd.MethodError, match="load_scene"):
-        rd.solve("room", rays=1000)
+        rd.solve("room", "random-walk", rays=1000)
 
 
 def test_progress_is_told(patches):
     told = []
-    solution = rd.solve(patches, rays=3_000_000, progress=told.append)
+    solution = rd.solve(patches, "random-walk", rays=3_000_000, progress=told.append)
     assert told[0].message == "compiling"
     rays = [p.rays for p in told]
     assert rays == sorted(rays)
@@ -160,19 +160,23 @@ def test_interruption_returns_the_last_complete_stage(patches, order):
     assert signal.getsignal(signal.SIGINT) is before
     assert solution.status == "interrupted"
     assert 0 < solution.rays < 1e9
-    assert np.array_equal(solution.irradiance, rd.solve(patches, quanta=solution.quanta, replicates=2).irradiance)
+    assert np.array_equal(solution.irradiance, rd.solve(patches, "random-walk", quanta=solution.quanta, replicates=2).irradiance)
 
 
 def test_interruption_before_the_first_stage_is_a_keyboard_interrupt(patches):
     with pytest.raises(KeyboardInterrupt):
         rd.solve(
-            patches, rays=1e9, replicates=2, progress=lambda p: p.message == "tracing" and os.kill(os.getpid(), signal.SIGINT)
+            patches,
+            "random-walk",
+            rays=1e9,
+            replicates=2,
+            progress=lambda p: p.message == "tracing" and os.kill(os.getpid(), signal.SIGINT),
         )
 
 
 def test_solve_runs_outside_the_main_thread(patches):
     found = []
-    thread = threading.Thread(target=lambda: found.append(rd.solve(patches, rays=50_000)))
+    thread = threading.Thread(target=lambda: found.append(rd.solve(patches, "random-walk", rays=50_000)))
     thread.start()
     thread.join()
     assert found[0].status == "complete"
@@ -230,7 +234,7 @@ def test_unwritable_solution(solution, tmp_path):
 def test_an_interrupted_run_goes_on_to_the_same_bits(scene, tmp_path):
     """Stopped after every few sweeps, saved, loaded and resumed: the result is that of one run."""
     cut = rd.subdivide(rd.load_scene(scene), cells=4)
-    whole = rd.solve(cut, quanta=2_500_000, replicates=2)
+    whole = rd.solve(cut, "random-walk", quanta=2_500_000, replicates=2)
     part, stops = None, 0
     while True:
         calls = []
@@ -240,7 +244,7 @@ def test_an_interrupted_run_goes_on_to_the_same_bits(scene, tmp_path):
             if len(calls) >= 3 and (progress.stage >= 1 or not first):
                 os.kill(os.getpid(), signal.SIGINT)
 
-        part = rd.solve(cut, quanta=2_500_000, replicates=2, progress=listen if stops < 4 else None, resume=part)
+        part = rd.solve(cut, "random-walk", quanta=2_500_000, replicates=2, progress=listen if stops < 4 else None, resume=part)
         part.save(tmp_path / "part.npz")
         part = rd.load_solution(tmp_path / "part.npz")
         if part.status == "complete":
@@ -253,41 +257,42 @@ def test_an_interrupted_run_goes_on_to_the_same_bits(scene, tmp_path):
 
 
 def test_more_rays_go_on_from_a_solution(patches, solution):
-    more = rd.solve(patches, rays=4_000_000, resume=solution)
+    more = rd.solve(patches, "random-walk", rays=4_000_000, resume=solution)
     assert abs(more.rays / 4_000_000 - 1) < 0.05
-    assert np.array_equal(more.irradiance, rd.solve(patches, quanta=more.quanta).irradiance)
+    assert np.array_equal(more.irradiance, rd.solve(patches, "random-walk", quanta=more.quanta).irradiance)
 
 
 def test_going_on_with_something_else_is_refused(patches, solution):
     with pytest.raises(rd.MethodError, match=r"seed \(0 then, 1 now\)"):
-        rd.solve(patches, rays=4_000_000, resume=solution, seed=1)
+        rd.solve(patches, "random-walk", rays=4_000_000, resume=solution, seed=1)
     with pytest.raises(rd.MethodError, match=r"numbers \(halton then, random now\)"):
         rd.solve(patches, rays=4_000_000, resume=solution, numbers="random")
     with pytest.raises(rd.MethodError, match="patches"):
-        rd.solve(rd.subdivide(patches.scene, cells=2), rays=4_000_000, resume=solution)
+        rd.solve(rd.subdivide(patches.scene, cells=2), "random-walk", rays=4_000_000, resume=solution)
     columns = patches.columns.copy()
     columns[[0, 1]], rows = [1, 25], patches.rows.copy()
     rows[[0, 1]] = [25, 1]
     with pytest.raises(rd.MethodError, match="cut"):
-        rd.solve(rd.Patches(patches.scene, columns, rows), rays=4_000_000, resume=solution)
+        rd.solve(rd.Patches(patches.scene, columns, rows), "random-walk", rays=4_000_000, resume=solution)
     with pytest.raises(rd.MethodError, match="takes a Solution"):
-        rd.solve(patches, rays=4_000_000, resume="room.npz")
+        rd.solve(patches, "random-walk", rays=4_000_000, resume="room.npz")
     with pytest.raises(rd.MethodError, match="scene"):
         rd.solve(
             rd.subdivide(rd.load_scene("labyrinth"), cells=1),
+            "random-walk",
             rays=10**6,
-            resume=rd.solve(rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=1), rays=10**6),
+            resume=rd.solve(rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=1), "random-walk", rays=10**6),
         )
 
 
 def test_a_coloured_run_goes_on_from_a_rung_only():
     cut = rd.subdivide(rd.load_scene("cornell-box"), cells=2)
-    done = rd.solve(cut, rays=2_000_000, replicates=2)
+    done = rd.solve(cut, "random-walk", rays=2_000_000, replicates=2)
     with pytest.raises(rd.MethodError, match="no power of two"):
-        rd.solve(cut, rays=20_000_000, replicates=2, resume=done)
-    rung = rd.solve(cut, quanta=2**19, replicates=2)
-    more = rd.solve(cut, quanta=3 * 2**18, replicates=2, resume=rung)
-    assert np.array_equal(more.irradiance, rd.solve(cut, quanta=3 * 2**18, replicates=2).irradiance)
+        rd.solve(cut, "random-walk", rays=20_000_000, replicates=2, resume=done)
+    rung = rd.solve(cut, "random-walk", quanta=2**19, replicates=2)
+    more = rd.solve(cut, "random-walk", quanta=3 * 2**18, replicates=2, resume=rung)
+    assert np.array_equal(more.irradiance, rd.solve(cut, "random-walk", quanta=3 * 2**18, replicates=2).irradiance)
 
 
 def test_numpy_numbers_may_be_saved(patches, tmp_path):
@@ -298,7 +303,7 @@ def test_numpy_numbers_may_be_saved(patches, tmp_path):
 
 def test_nothing_received_is_no_error_to_wait_for():
     plate = rd.Scene.from_arrays([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)], 0.5, 1.0)
-    solution = rd.solve(plate, error=0.1)
+    solution = rd.solve(plate, "random-walk", error=0.1)
     assert solution.status == "complete"
     assert "nan" not in solution.report()
     assert solution.escaped[0] == pytest.approx(1.0, rel=1e-4)
@@ -310,18 +315,18 @@ def test_what_counters_cannot_hold_is_refused(patches, monkeypatch):
     monkeypatch.setattr(run, "FULL", 1e5)
     monkeypatch.setattr(budget, "FULL", 1e5)
     with pytest.raises(rd.MethodError, match="counters full"):
-        rd.solve(patches, quanta=10**6, replicates=1)
+        rd.solve(patches, "random-walk", quanta=10**6, replicates=1)
     monkeypatch.setattr(run, "FULL", 5e6)
     monkeypatch.setattr(budget, "FULL", 5e6)
-    stopped = rd.solve(patches, quanta=10**7, replicates=1)
+    stopped = rd.solve(patches, "random-walk", quanta=10**7, replicates=1)
     assert "counters full" in stopped.status
     assert stopped.quanta < 10**7
 
 
 def test_too_large_an_emission_is_our_error():
     with pytest.raises(rd.SceneError, match=r"below 1e\+30"):
-        rd.solve(cube(0.5, 1e308), rays=1000)
+        rd.solve(cube(0.5, 1e308), "random-walk", rays=1000)
 
 
 def test_seconds_of_all_legs_are_added(patches, solution):
-    assert rd.solve(patches, rays=2_000_000, resume=solution).seconds > solution.seconds
+    assert rd.solve(patches, "random-walk", rays=2_000_000, resume=solution).seconds > solution.seconds

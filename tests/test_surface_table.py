@@ -99,6 +99,6 @@ def test_a_report_of_many_surfaces_is_cut_off():
         surface=range(count),
         names=[f"s{i}" for i in range(count)],
     )
-    lines = rd.solve(rd.subdivide(scene, cells=1), quanta=100, replicates=2).report().splitlines()
+    lines = rd.solve(rd.subdivide(scene, cells=1), "random-walk", quanta=100, replicates=2).report().splitlines()
     end = lines.index("... and 5 more surfaces (export a .csv for all)")
     assert [line.split()[0] for line in lines[end - MOST_ROWS : end]] == [f"s{i}" for i in reversed(range(5, count))]

@@ -172,11 +172,11 @@ def off(solution: rd.Solution, truth: float) -> float:
 def test_a_target_that_no_line_tells_of_goes_on():
     """The first stage has one line for the sensor; 12 seeds all come within a quarter, which 95 % of runs are to."""
     patches, truth = sensor()
-    first = rd.solve(patches, quanta=QUICK // 8)
+    first = rd.solve(patches, "random-walk", quanta=QUICK // 8)
     assert first.arrivals[1] < 5
     errors = []
     for seed in range(12):
-        solution = rd.solve(patches, error=0.25, error_of="surface:sensor", seed=seed)
+        solution = rd.solve(patches, "random-walk", error=0.25, error_of="surface:sensor", seed=seed)
         assert solution.status == "complete"
         assert solution.arrivals[1] >= FEW
         errors.append(off(solution, truth))
@@ -253,7 +253,7 @@ def test_what_is_known_of_an_error_is_how_many_lines_landed_on_its_surface():
     )
     patches = rd.subdivide(screen, cells=1)
     with pytest.warns(rd.RadiosityWarning, match="surface:sensor was not reached") as told:
-        solution = rd.solve(patches, error=0.01, error_of="surface:sensor", rays=QUICK)
+        solution = rd.solve(patches, "random-walk", error=0.01, error_of="surface:sensor", rays=QUICK)
     landed = int(solution.arrivals[1])
     assert landed < FEW
     assert solution.arrivals[2] > 100
@@ -264,8 +264,8 @@ def test_what_is_known_of_an_error_is_how_many_lines_landed_on_its_surface():
 @pytest.mark.usefixtures("quick")
 def test_a_limit_does_not_keep_a_run_from_ending_sooner():
     patches = rd.subdivide(rd.load_scene("room"), cells=2)
-    alone = rd.solve(patches, error=0.05)
-    limited = rd.solve(patches, error=0.05, rays=50_000_000, seconds=1000)
+    alone = rd.solve(patches, "random-walk", error=0.05)
+    limited = rd.solve(patches, "random-walk", error=0.05, rays=50_000_000, seconds=1000)
     assert limited.status == "complete"
     assert np.array_equal(limited.irradiance, alone.irradiance)
 
@@ -274,10 +274,10 @@ def test_a_limit_does_not_keep_a_run_from_ending_sooner():
 def test_a_run_that_did_not_reach_its_error_goes_on():
     patches, _ = sensor()
     with pytest.warns(rd.RadiosityWarning, match="cannot be told yet"):
-        short = rd.solve(patches, error=0.25, error_of="surface:sensor", rays=20_000)
-    long = rd.solve(patches, error=0.25, error_of="surface:sensor", resume=short)
+        short = rd.solve(patches, "random-walk", error=0.25, error_of="surface:sensor", rays=20_000)
+    long = rd.solve(patches, "random-walk", error=0.25, error_of="surface:sensor", resume=short)
     assert long.status == "complete"
-    assert np.array_equal(long.irradiance, rd.solve(patches, quanta=long.quanta).irradiance)
+    assert np.array_equal(long.irradiance, rd.solve(patches, "random-walk", quanta=long.quanta).irradiance)
 
 
 @pytest.mark.usefixtures("quick")
@@ -285,7 +285,7 @@ def test_coloured_runs_end_at_their_limit():
     """Their last stage lies between two powers of two, and no other run begins that the limit has no room for."""
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=2)
     with pytest.warns(rd.RadiosityWarning, match="was not reached"):
-        solution = rd.solve(patches, error=0.001, rays=300_000)
+        solution = rd.solve(patches, "random-walk", error=0.001, rays=300_000)
     assert solution.status == "not reached"
     assert 150_000 < solution.rays < 330_000
 
@@ -296,7 +296,7 @@ def test_full_counters_end_a_run_to_an_error(monkeypatch):
         monkeypatch.setattr(module, "FULL", 5_000.0)
     patches, _ = sensor()
     with pytest.warns(rd.RadiosityWarning, match="counters are full: take more replicates"):
-        solution = rd.solve(patches, error=0.1, error_of="surface:sensor")
+        solution = rd.solve(patches, "random-walk", error=0.1, error_of="surface:sensor")
     assert solution.status == "not reached"
 
 
@@ -310,7 +310,7 @@ def test_an_interrupted_run_to_an_error_is_no_complete_one():
         if progress.stage == 1:
             os.kill(os.getpid(), signal.SIGINT)
 
-    solution = rd.solve(patches, error=1e-3, error_of="surface:sensor", progress=stop)
+    solution = rd.solve(patches, "random-walk", error=1e-3, error_of="surface:sensor", progress=stop)
     assert solution.status == "interrupted"
 
 
@@ -318,7 +318,7 @@ def test_lights_that_nothing_lies_before():
     """Beside a lamp nothing is lit, and a run to an error ends at once; in front of it, or at its back, something is."""
     plate = plates([1.0, 2.0])
     assert nothing_before_lights(plate)
-    assert rd.solve(plate, error=0.1).status == "complete"
+    assert rd.solve(plate, "random-walk", error=0.1).status == "complete"
     assert not nothing_before_lights(sensor()[0])
     corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, -1), (1, 0, -1), (0, 1, -1)]
     both = rd.Scene.from_arrays(corners, [(0, 1, 2), (3, 4, 5)], 0.5, [1.0, 0.0], two_sided=True)

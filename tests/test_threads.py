@@ -74,7 +74,7 @@ def in_thread(function):
 
 DOORS = {
     "solve": lambda p: quick(p),
-    "refine_check": lambda p: rd.refine_check(p, quanta=64, replicates=2),
+    "refine_check": lambda p: rd.refine_check(p, "random-walk", quanta=64, replicates=2),
     "first_hits": lambda p: first_hits(p.scene, np.full((4, 3), 0.5), np.eye(3)[[0, 1, 2, 0]]),
     "render": lambda p: render(quick(p), width=4, height=4),
     "leaks": lambda p: follow(p.scene, np.zeros((2, p.scene.n_faces)), walks=64),

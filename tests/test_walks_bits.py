@@ -67,7 +67,7 @@ def test_a_continuous_walk_leaves_from_where_it_landed():
     assert np.abs((one.irradiance - two.irradiance) / error).max() > 20
     fine = rd.subdivide(scene, cells=8)
     parents = np.repeat(np.arange(len(patches)), 64)
-    exact = rd.solve(fine, rays=20_000_000, replicates=8).irradiance[:, 0]
+    exact = rd.solve(fine, "random-walk", rays=20_000_000, replicates=8).irradiance[:, 0]
     mean = np.bincount(parents, exact * fine.area) / patches.area
     assert np.average(np.abs(one.irradiance[:, 0] / mean - 1), weights=patches.area) < 0.02
     assert np.average(np.abs(two.irradiance[:, 0] / mean - 1), weights=patches.area) > 0.03

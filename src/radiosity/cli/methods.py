@@ -13,9 +13,12 @@ def methods(name: str | None = None, /) -> int:
     """
     from ..errors import MethodError
     from ..method import BASELINES, PRESETS
+    from ..method.auto import ABOUT as ABOUT_AUTO
+    from ..method.auto import NAME as AUTO
     from ..method.options import BASELINE, METHOD
 
     known = PRESETS | BASELINES
+    names = [AUTO, *known]
     axes = [option.name for option in (METHOD | BASELINE).values() if option.kind == "choice"]
     if name is None:
         _list()
@@ -23,8 +26,10 @@ def methods(name: str | None = None, /) -> int:
         _axis(name)
     elif name in known:
         _explain(name)
+    elif name == AUTO:
+        print(ABOUT_AUTO)
     else:
-        raise MethodError(f"method '{name}' does not exist; known are {', '.join(known)}; and the axes {', '.join(axes)}")
+        raise MethodError(f"method '{name}' does not exist; known are {', '.join(names)}; and the axes {', '.join(axes)}")
     return 0
 
 
@@ -33,6 +38,7 @@ def _list() -> None:
     from rich.table import Table
 
     from ..method import BASELINES, PRESETS
+    from ..method.auto import ABOUT
     from ..method.model import AXES
 
     table = Table(box=None, pad_edge=False)
@@ -45,6 +51,7 @@ def _list() -> None:
         table.add_row(name, *axes, more, f"{_family(fields['author'])} {fields['year']}")
     console = Console(highlight=False, width=1000)
     console.print(table)
+    print(f"\n{ABOUT}")
     print("\nBaselines, which form the matrix (docs/baselines.md):")
     table = Table(box=None, pad_edge=False)
     for head in ("method", "scheme", "choices", "from"):

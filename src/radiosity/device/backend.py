@@ -110,6 +110,19 @@ def upload(dtype, values: np.ndarray):
     return result
 
 
+def small(dtype, values):
+    """Copy a few numbers to a Dr.Jit array of type ``dtype``, without a wait; only gathers may read it.
+
+    Dr.Jit copies what it takes from a list at once, while `upload` waits for all kernels that were launched. A gather does not
+    read past the end. A zero follows the numbers, since arrays of one entry would compile kernels of their own.
+
+    Raises:
+        RecordedError: a loop is being recorded.
+    """
+    not_recorded("an array is uploaded")
+    return dtype([*np.ravel(values).tolist(), 0])
+
+
 def frozen(array) -> np.ndarray:
     """Return the present values of a Dr.Jit array on the host, without a copy where it lies in host memory.
 

@@ -8,6 +8,7 @@ import os
 import re
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -69,8 +70,13 @@ def prepare() -> Library:
     path = os.environ.get(VARIABLE)
     if path is None:
         return Library(Path("libLLVM"), major, "found by Dr.Jit")
-    origins = {str(candidate): origin for candidate, origin in _candidates()} if path == POINTED else {}
-    return Library(Path(path), major, origins.get(path, VARIABLE))
+    return Library(Path(path), major, _origin(path) if path == POINTED else VARIABLE)
+
+
+@cache
+def _origin(path: str) -> str:
+    """Return where a library was found; to look through the folders takes milliseconds, and runs ask again and again."""
+    return next((origin for candidate, origin in _candidates() if str(candidate) == path), VARIABLE)
 
 
 def find() -> Library:

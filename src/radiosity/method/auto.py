@@ -3,6 +3,10 @@
 from dataclasses import dataclass
 
 NAME = "auto"
+ABOUT = (
+    "auto, the default, chooses gather, random-walk or a control variate for each scene, by a pilot of a few lines; "
+    "the report says which and why (docs/choosing.md)"
+)
 FALLBACK = "random-walk"  # what choices on the axes are put into
 
 

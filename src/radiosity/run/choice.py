@@ -1,9 +1,9 @@
 """The choice of a method for a scene: ``method="auto"``.
 
 A pilot traces a few lines of every patch (`algorithms.gather.pilot`). It tells the variance of the lines of a gather, and a rough
-solution, from which the errors of a random walk and of iterations with a control variate follow. The least error for equal work is
-taken, by a table of costs; no clock is read. So the choice is a function of the scene, the seed and the budget in lines or quanta,
-and quanta replay it.
+solution, from which the errors of a random walk and of iterations with a control variate follow. The least error for equal work
+is taken, by a table of costs; no clock is read. So the choice is a function of the scene, the seed and the budget in lines or
+quanta, and quanta replay it.
 """
 
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..algorithms.gather import pilot
-from ..algorithms.gather.lamps import CLUSTER, Lamps
+from ..algorithms.gather.chances import CLUSTER, Chances
 from ..device.backend import choose
 from ..errors import MethodError
 from ..method import Method
@@ -35,7 +35,7 @@ METHODS = {  # and what it takes besides its name
 COSTS = {"gather": 1.1, FALLBACK: 1.0, CONTROL: 1.8}
 MEASURED = {"gather": 0.75, FALLBACK: 1.1, CONTROL: 1.2}
 ENOUGH = 48  # lines of a patch: with fewer, the pilot would take too much of them
-ENTRY = 10.0  # lines: the work of one entry of the table of clusters and lamps
+ENTRY = 4.0  # lines: the work of one entry of the table of clusters and lamps
 MOST = 0.3  # of the lines: the work of the pilot
 UNKNOWN = 3e7  # lines: the work of a pilot that is done where seconds or an error are asked for
 
@@ -73,7 +73,7 @@ def choice_for(patches: Patches, budget: Budget, part: Part, device: str, resume
     geometry = Geometry(patches, choose(device))
     geometry.prepare()
     method = PRESETS["gather"].method
-    errors = predicted(problem, pilot.Pilot.of(geometry, problem, Lamps.of(geometry, problem), method, part.seed))
+    errors = predicted(problem, pilot.Pilot.of(geometry, problem, Chances.of(geometry, problem), method, part.seed))
     best = min(errors, key=lambda name: errors[name])
     shown = ", ".join(f"{name} {errors[name] / errors[best]:.3g}" for name in sorted(errors, key=lambda name: errors[name]))
     counted = 0 if best == "gather" else pilot.LINES * n

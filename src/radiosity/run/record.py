@@ -1,6 +1,7 @@
 """What the solutions of a run have in common, and how one is made of a snapshot."""
 
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 
 from ..algorithms.state import AbstractState
@@ -54,7 +55,7 @@ class Record:
             "tracing": TRACING,
             "budget": self.budget,
             **({} if self.choice is None else {"auto": self.choice}),
-            "versions": {name: version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
+            "versions": {name: _version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }
 
     def solution(self, snapshot: Snapshot, status: str, state: AbstractState, seconds: float) -> Solution:
@@ -82,3 +83,9 @@ class Record:
             snapshot.surface_power,
             snapshot.side_power,
         )
+
+
+@cache
+def _version(name: str) -> str:
+    """Return the version of an installed package; to read it from its files takes milliseconds."""
+    return version(name)

@@ -58,8 +58,8 @@ def solve(
         method: a preset's name, a `Method` or a `Baseline`; or "auto", which takes gather, random-walk or an iteration with a
             control variate, as a pilot of the scene says (`Solution.provenance` holds which, and why). A run that goes on keeps
             the method of its solution.
-        choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. "auto" with choices is
-            random-walk with them. Without ``warm_up`` another order or other lines than the method's drop its warm-up.
+        choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. "auto" with choices
+            is random-walk with them. Without ``warm_up`` another order or other lines than the method's drop its warm-up.
         rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
             scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run bit

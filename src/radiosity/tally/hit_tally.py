@@ -10,7 +10,7 @@ from typing import Any
 import drjit as dr
 
 SHARED = 2  # lines a counter, above which copies are faster
-DENSE = 4  # lines a counter, above which nearly all patches are hit, and flags are of no use
+DENSE = 4  # lines a counter, above which atomic additions wait for each other: a GPU then adds in other ways
 MOST = 6 << 20  # largest size of a copy, in bytes: larger ones gain little
 WORDS = 4  # words of a packet of counts and powers
 

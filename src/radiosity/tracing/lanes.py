@@ -54,7 +54,8 @@ class Wavefront:
             counts = target_counts(numbers) - before if self.counts is None else dr.gather(types.UInt32, self.counts, at)
             counts = dr.select(inside, counts, 0)
             dr.schedule(counts, before)
-            lines, *lanes = sums(types, counts, *(lanes_of(counts, shift) for shift in shifts))
+            whole = self.size <= PIECE and not shifts  # then the number of lines is known: the host does not wait for it
+            lines, *lanes = (self.total,) if whole else sums(types, counts, *(lanes_of(counts, shift) for shift in shifts))
             if not lines:
                 continue
             shift, total = fullest(lines, {0: lines, **dict(zip(shifts, lanes, strict=True))})

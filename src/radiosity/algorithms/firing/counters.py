@@ -18,12 +18,12 @@ from ...problem.quanta import phases
 from ...sampling.streams import Seed
 from ...tally.bands import BandTally
 from ...tally.hit_counts import HitCounts
-from ...tally.hit_tally import DENSE, AbstractHitTally, hit_tally
+from ...tally.hit_tally import AbstractHitTally, hit_tally
 from ...tracing.geometry import Geometry
 from ...tracing.lanes import PIECE, Batch, Launch, Wavefront, boxes_for, sums
 from ...tracing.line_tracer import LineTracer
 
-MANY = 4  # where at least one in 4 patches was hit, all are looked through
+MANY = 4  # after wavefronts of at least a line for 4 patches, all patches are looked through, and no flags are kept
 FEW = 1 << 13  # up to this many lines, the host sorts the slots that they hit: that is faster than to look through all flags
 # 8, 4 or 2 lines of a lane, in wavefronts of 250 000 lines a thread, once as many lines have been fired
 SHIFTS, MUCH = (3, 2, 1), 250_000
@@ -89,9 +89,7 @@ class FiringCounters:
             numbers = np.unique(self.landed)
             numbers = upload(types.UInt32, _not_alone(numbers[numbers < self.total], self.total))
         elif not self.everywhere:
-            touched = dr.reshape(types.Bool, self.hits.touched, self.total, shrink=True)  # no copy
-            if MANY * sums(types, dr.select(touched, types.UInt32(1), types.UInt32(0)))[0] < self.total:
-                numbers = dr.compress(touched)
+            numbers = dr.compress(dr.reshape(types.Bool, self.hits.touched, self.total, shrink=True))  # no copy of the flags
         if self.landed is None:
             self.hits.forget_touched()
         self.everywhere, self.landed = False, None
@@ -180,7 +178,8 @@ class FiringCounters:
         """Trace all lines of a wavefront and count their hits."""
         types = self.types
         bits = self.tracer.numbers.bits_for(largest)
-        few, everywhere = wavefront.total <= FEW, wavefront.total > DENSE * self.total
+        few = wavefront.total <= FEW
+        everywhere = not few and MANY * wavefront.total >= self.total
         tally, landed = hit_tally(self.hits, wavefront.total, flags=not few and not everywhere), []
         for batch in self.batches(wavefront, () if few else self._shifts(wavefront)):
             boxes = boxes_for(types, batch.counts) if self.coherent else None

@@ -1,9 +1,9 @@
 """Gather: every patch fires shadow rays to the lamps, and cosine lines that read the radiosity where they hit.
 
-The first cosine lines of each patch are stored, and the equation among patches is solved along them (`rows`). Later lines read that
-solution. From time to time it is corrected: what all lines so far say, less what they read, is the residual of a system that is
-solved along the stored lines again (iterative refinement; P. Bekaert's thesis, 1999, gathers from a stored solution as a final
-step). So the result tends to the solution by all lines, and the state after N is a function of the seed and N alone.
+The first cosine lines of each patch are stored, and the equation among patches is solved along them (`rows`). Later lines read
+that solution. From time to time it is corrected: what all lines so far say, less what they read, is the residual of a system that
+is solved along the stored lines again (iterative refinement). So the result tends to the solution by all lines, and the state
+after N is a function of the seed and N alone.
 """
 
 from typing import Any
@@ -16,7 +16,7 @@ from ...errors import MethodError
 from ...sampling.streams import Purpose
 from ..base import AbstractAlgorithm, Swept
 from ..state import Arrays, Sizes
-from .lamps import Lamps
+from .chances import Chances
 from .lines import UNITS, Lines
 from .packets import ESCAPED, LOST, Packets
 from .pilot import LINES, Pilot
@@ -38,11 +38,11 @@ class Gather(AbstractAlgorithm[GatherState]):
         super().__init__(*arguments)
         if self.geometry.some_backs_pass:
             raise MethodError(
-                f"{self.problem.patches.scene.source}: some backs let lines pass, so what a patch sees is not what sees the patch; "
-                "method gather needs both to be equal: take --method random-walk"
+                f"{self.problem.patches.scene.source}: some backs let lines pass, so what a patch sees is not what sees the "
+                "patch; method gather needs both to be equal: take --method random-walk"
             )
         self.packets = Packets(self.geometry, self.replicates, self.method.coherent)
-        self.lamps = Lamps.of(self.geometry, self.problem)
+        self.chances = Chances.of(self.geometry, self.problem)
         self.types: Any = self.packets.types
         self._quanta, self._done = 0, 0
         self._shares: Shares | None = None
@@ -70,9 +70,9 @@ class Gather(AbstractAlgorithm[GatherState]):
     def _begin(self) -> None:
         """Run the pilot, and make the sums."""
         method, types = self.method, self.types
-        self._shares = Pilot.of(self.geometry, self.problem, self.lamps, method, self.seed).shares
+        self._shares = Pilot.of(self.geometry, self.problem, self.chances, method, self.seed).shares
         purposes = (Purpose.NUMBERS, Purpose.SHADOW_RAYS)
-        self._lines = Lines.of(self.packets, self.lamps, self.problem, method, self.seed, purposes)
+        self._lines = Lines.of(self.packets, self.chances, self.problem, method, self.seed, purposes)
         self._reflectance = Rows.reflectances(self.packets, self.problem.groups.reflectance)
         self._brought, self._met = (
             [dr.zeros(kind, self.packets.lanes) for _ in range(self.groups)] for kind in (types.UInt64, types.Int64)

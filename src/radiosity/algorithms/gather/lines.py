@@ -22,7 +22,8 @@ from ...sampling.streams import Seed, stream
 from ...tracing.faces import COLUMN_BITS, QUAD
 from ...tracing.hits import first_hit, patch_of
 from ...tracing.ray_generation import MASK, Frame, before, place_number, position
-from .lamps import NONE, Lamps
+from .chances import Chances
+from .lamps import NONE
 from .packets import Packets
 
 KERNEL = 1 / 3  # of the density of shadow rays: above this kernel, cosine lines count
@@ -35,7 +36,7 @@ class Lines:
 
     Attributes:
         packets: the lanes.
-        lamps: what shadow rays go to.
+        chances: of lamps that shadow rays go to.
         numbers: the points of the unit cube.
         by_patch: each patch moves them by a shift of its own.
         keys: randomisation of the replicates, for cosine lines and for shadow rays.
@@ -44,7 +45,7 @@ class Lines:
     """
 
     packets: Packets
-    lamps: Lamps
+    chances: Chances
     numbers: AbstractNumbers
     by_patch: bool
     keys: tuple[Any, Any]
@@ -52,7 +53,7 @@ class Lines:
     most: float
 
     @staticmethod
-    def of(packets: Packets, lamps: Lamps, problem: Problem, method: Method, seed: Seed | int, purposes) -> "Lines":
+    def of(packets: Packets, chances: Chances, problem: Problem, method: Method, seed: Seed | int, purposes) -> "Lines":
         """Make the lines of a run.
 
         Args:
@@ -67,8 +68,10 @@ class Lines:
             keys.append(upload(types.UInt32, np.array(drawn, np.uint32)))
         shares = emission / np.maximum(emission.max(axis=0), 1e-300)
         columns = [upload(types.Float, np.append(column, [0, 0]).astype(np.float32)) for column in shares.T]
-        lamps.prepare()
-        return Lines(packets, lamps, numbers, method.randomisation == "by-patch", (keys[0], keys[1]), columns, most_read(problem))
+        chances.prepare()
+        return Lines(
+            packets, chances, numbers, method.randomisation == "by-patch", (keys[0], keys[1]), columns, most_read(problem)
+        )
 
     @property
     def groups(self) -> int:
@@ -102,7 +105,7 @@ class Lines:
         record = self._record(patch)
         points = self._points(self.keys[0], replicate, record, patch, start, int((done + counts).max()))
         frame, position_of = self._frame(record)
-        normal, row = frame.normal * frame.side, self.lamps.row(place)
+        normal, row = frame.normal * frame.side, self.chances.row(place)
         base, lanes, scale = replicate * packets.width_on_device, dr.opaque(UInt32, packets.lanes), dr.opaque(Float, self.unit)
         dr.eval(start, count, row, base)
 
@@ -111,11 +114,11 @@ class Lines:
             origin, direction = frame.leave(*position_of(u), u)
             hit = first_hit(geometry, origin, direction, coherent=packets.coherent)
             met = patch_of(geometry, hit, packets.n + 1, packets.n)
-            lamp = dr.gather(UInt32, self.lamps.lamp_of_patch, met)
+            lamp = dr.gather(UInt32, self.chances.lamps.lamp_of_patch, met)
             lit = lamp != NONE
-            facing = dr.gather(types.Array3f, self.lamps.normals, lamp, lit)
+            facing = dr.gather(types.Array3f, self.chances.lamps.normals, lamp, lit)
             kernel = dr.dot(normal, direction) * -dr.dot(facing, direction) * (1 / np.pi)
-            density = self.lamps.density_of(row, lamp, lit)
+            density = self.chances.density_of(row, lamp, lit)
             counted = lit & (kernel > KERNEL * density * hit.distance * hit.distance)
             values = [dr.gather(Float, column, met, counted) for column in self.emission]
             where = dr.gather(UInt32, packets.place_on_device, met)
@@ -145,14 +148,14 @@ class Lines:
         record = self._record(patch)
         points = self._points(self.keys[1], replicate, record, patch, start, int((done + counts).max()))
         frame, position_of = self._frame(record)
-        normal, row = frame.normal * frame.side, self.lamps.row(place)
+        normal, row = frame.normal * frame.side, self.chances.row(place)
         dr.eval(start, count, row)
 
         def body(number, *sums):
             u = points(number)
             s, t = position_of(u)
             origin = before(frame.origin + frame.first * s + frame.second * t, normal, frame.offset)
-            lamp, density = self.lamps.choose(row, u[4])
+            lamp, density = self.chances.choose(row, u[4])
             end, facing, first, cells = self._point_of(lamp, u)
             way = end - origin
             square = dr.squared_norm(way)
@@ -175,7 +178,7 @@ class Lines:
     def _point_of(self, lamp, u):
         """Return a point of a lamp, the lamp's normal, its first patch and their number; called in a kernel."""
         types = self.types
-        face, counts, first, cells = dr.gather(types.Array4u, self.lamps.records, lamp)
+        face, counts, first, cells = dr.gather(types.Array4u, self.chances.lamps.records, lamp)
         frame = Frame.of(self.packets.geometry, face)
         a, b = triangle(u[0], u[1])
         quad = (counts & QUAD) != 0

@@ -62,7 +62,8 @@ class Packets:
         patches = self.patches
         low, high = patches.centroid.min(axis=0), patches.centroid.max(axis=0)
         cells = ((patches.centroid - low) / max((high - low).max(), 1e-300) * 65535).astype(np.uint64)
-        curve = sum(_spread(cells[:, axis]) << np.uint64(axis) for axis in range(3))
+        x, y, z = (_spread(column) for column in cells.T)
+        curve = x | y << np.uint64(1) | z << np.uint64(2)
         facing = np.round(patches.normal * 50).astype(np.int64) + 64
         order = np.lexsort((curve, (facing[:, 0] * 128 + facing[:, 1]) * 128 + facing[:, 2]))
         return np.append(order, np.repeat(order[-1:], self.width - self.n))

@@ -13,7 +13,7 @@ from ...method import Method
 from ...problem.model import Problem
 from ...sampling.streams import Purpose, Seed
 from ...tracing.geometry import Geometry
-from .lamps import Lamps
+from .chances import Chances
 from .lines import Lines
 from .packets import Packets
 from .rows import Rows
@@ -40,7 +40,7 @@ class Pilot:
     irradiance: np.ndarray
 
     @staticmethod
-    def of(geometry: Geometry, problem: Problem, lamps: Lamps, method: Method, seed: Seed | int) -> "Pilot":
+    def of(geometry: Geometry, problem: Problem, chances: Chances, method: Method, seed: Seed | int) -> "Pilot":
         """Return the pilot of a scene and seed; it is run once.
 
         Args:
@@ -48,18 +48,18 @@ class Pilot:
         """
         key = ("pilot", method.points, method.randomisation, Seed.of(seed).value)
         if key not in geometry.made:
-            geometry.made[key] = Pilot.run(geometry, problem, lamps, method, seed)
+            geometry.made[key] = Pilot.run(geometry, problem, chances, method, seed)
         return geometry.made[key]
 
     @staticmethod
-    def run(geometry: Geometry, problem: Problem, lamps: Lamps, method: Method, seed: Seed | int) -> "Pilot":
+    def run(geometry: Geometry, problem: Problem, chances: Chances, method: Method, seed: Seed | int) -> "Pilot":
         """Trace `LINES` lines of each patch.
 
         Args:
             method: its numbers and their randomisation.
         """
         packets = Packets(geometry, 1)
-        lines = Lines.of(packets, lamps, problem, method, Seed(Seed.of(seed).value), (Purpose.PILOT, Purpose.PILOT_SHADOW))
+        lines = Lines.of(packets, chances, problem, method, Seed(Seed.of(seed).value), (Purpose.PILOT, Purpose.PILOT_SHADOW))
         types, groups = packets.types, lines.groups
         constant = lambda value: np.full(packets.count, value)  # noqa: E731
         shadow = lines.shadow(constant(0), constant(SHADOW), squares=True)

@@ -7,7 +7,6 @@ import numpy as np
 
 from .rows import Rows
 
-
 ROUGHLY = 5.0  # times the tolerance: the bias need not be known as well
 
 

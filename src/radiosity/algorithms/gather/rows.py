@@ -72,8 +72,8 @@ class Rows:
         """Return x = r + rho F' x of each group, along all stored lines or a half of them.
 
         A Jacobi iteration takes longest for the even part of the light. So after some, a multiple of the reflectance is added,
-        which makes the power of all areas balance. Where changes fall by a factor q from one iteration to the next, what is missing
-        is about q / (1 - q) times the last change.
+        which makes the power of all areas balance. Where changes fall by a factor q from one iteration to the next, what is
+        missing is about q / (1 - q) times the last change.
 
         Args:
             right: of each group, (lanes,) Float.

@@ -21,8 +21,8 @@ class GatherState(AbstractState):
         met: (replicates, n_patches, groups) int64, sums of cosine lines.
         reflected: (replicates, n_patches, groups) float32, the radiosity that lines read, in shares of the largest emission.
         halves: (2, replicates, n_patches, groups) float32, by how much that differs along each half of the stored lines.
-        first_bias, bias_left: (replicates, n_patches, groups) float32, the bias of irradiance after the first correction and after
-            the last one, in shares of the largest emission.
+        first_bias, bias_left: (replicates, n_patches, groups) float32, the bias of irradiance after the first correction and
+            after the last one, in shares of the largest emission.
         missed: (2, replicates, n_patches) uint32, stored lines that escaped and were lost.
     """
 

@@ -6,6 +6,8 @@ scenes, too: exactly where nothing is missed, and else with the error of these l
 stochastic algorithms for radiosity", thesis, K. U. Leuven 1999; docs/iterations.md.)
 """
 
+from typing import Any
+
 import drjit as dr
 import numpy as np
 
@@ -31,6 +33,7 @@ class Control:
         self.beta = np.zeros((replicates, exchange.groups))
         self.missed = np.zeros((2, replicates, n), np.int64)
         self.probed = np.zeros((replicates, n), np.int64)
+        self._kept: Any = None  # `kept` on the device
 
     def probe(self, lines: int) -> int:
         """Fire ``lines`` of each replicate, evenly over all area and at least one a patch, to count which are missed."""
@@ -43,6 +46,7 @@ class Control:
         fired = exchange.shoot(counts, ends=ends)
         seen = np.array(exchange.patches(exchange.shooter.received)).reshape(replicates, exchange.n, groups)[..., 0]
         self.missed += [seen % LINE, seen >> BITS]
+        self._kept = None
         self.probed += np.array(counts, np.int64).reshape(replicates, exchange.n)
         return fired
 
@@ -53,11 +57,13 @@ class Control:
     def constant(self):
         """Return the power A_i beta / Phi of the constant on each patch, (total * groups,) Float64."""
         exchange = self.exchange
-        return upload(exchange.types.Float64, self.beta[:, None, :] * exchange.areas[:, None])
+        return exchange.by_group(self.beta) * exchange.by_patch(exchange.area)
 
     def received(self):
         """Return the power f_i A_i beta / Phi that patches receive of the constant, (total * groups,) Float64."""
-        return self.constant() * self.exchange.by_patch(upload(self.exchange.types.Float64, self.kept()))
+        if self._kept is None:
+            self._kept = upload(self.exchange.types.Float64, self.kept())
+        return self.constant() * self.exchange.by_patch(self._kept)
 
     def adapt(self, power) -> None:
         """Take the area-weighted median of the radiosity, where the lines' power, sum A |B - beta|, is least."""
@@ -75,6 +81,7 @@ class Control:
     def restore(self, state: ControlState) -> None:
         """Set the numbers to captured ones."""
         self.beta, self.missed, self.probed = state.beta.copy(), state.probe_missed.copy(), state.probed.copy()
+        self._kept = None
 
 
 def kept(missed: np.ndarray, probed: np.ndarray) -> np.ndarray:

@@ -5,10 +5,12 @@ floor(C_i + r) - floor(C_(i-1) + r) lines, where C_i is the sum of expectations 
 numbers next to c_i, and its mean is c_i.
 """
 
+from collections.abc import Callable
+
 import drjit as dr
 import numpy as np
 
-from ...device.backend import upload
+from ...device.backend import frozen, small, upload
 from ...method import Method
 from ...problem.model import Problem
 from ...problem.quanta import Source
@@ -33,6 +35,7 @@ class Exchange:
         area: (total,) Float64, share of each patch in the area of all.
         rho: (total * groups,) Float64, reflectance, rounded as in the firing engine.
         emitted: (total * groups,) Float64, E_i A_i over Phi.
+        group: (total * groups,) UInt32, replicate * n_groups + group of each entry.
         step: the number of steps so far: each has rounding offsets of its own.
         turns: the number of sequences of points that steps take in turn; a warm-up has as many others.
         first: the first of the sequences that are used now.
@@ -54,7 +57,9 @@ class Exchange:
         every = np.arange(replicates)
         slots = np.concatenate([np.repeat(every, self.n), every, every])
         self.slot_replicate = upload(self.types.UInt32, np.repeat(slots, self.groups).astype(np.uint32))
-        dr.eval(self.replicate)
+        row = dr.arange(self.types.UInt32, self.total * self.groups)
+        self.group = self.by_patch(self.replicate) * self.groups + row % self.groups
+        dr.eval(self.replicate, self.group)
         self.step = 0
 
     @property
@@ -71,11 +76,15 @@ class Exchange:
 
     def by_replicate(self, values: np.ndarray):
         """Spread (replicates,) float64 over patches, to (total,) Float64."""
-        return dr.gather(self.types.Float64, upload(self.types.Float64, np.append(values, 0.0)), self.replicate)
+        return dr.gather(self.types.Float64, small(self.types.Float64, values), self.replicate)
 
     def by_slot(self, values: np.ndarray):
         """Spread (replicates,) float64 over slots and groups."""
-        return dr.gather(self.types.Float64, upload(self.types.Float64, np.append(values, 0.0)), self.slot_replicate)
+        return dr.gather(self.types.Float64, small(self.types.Float64, values), self.slot_replicate)
+
+    def by_group(self, values: np.ndarray):
+        """Spread (replicates, groups) float64 over patches, to (total * groups,) Float64."""
+        return dr.gather(self.types.Float64, small(self.types.Float64, values), self.group)
 
     def largest(self, values):
         """Return the largest magnitude of the groups, from (total * groups,) to (total,)."""
@@ -94,7 +103,7 @@ class Exchange:
         before = dr.prefix_sum(expected)
         dr.eval(before)
         drawn = [np.random.Generator(np.random.Philox(self._stream(r))).integers(0, LINE) for r in range(self.replicates)]
-        offset = dr.gather(types.UInt64, upload(types.UInt64, np.array([*drawn, 0], np.uint64)), self.replicate)
+        offset = dr.gather(types.UInt64, small(types.UInt64, drawn), self.replicate)
         low = before - dr.gather(types.UInt64, before, self.replicate * self.shooter.tracer.n_opaque) + offset
         counts = types.UInt32(((low + expected) >> BITS) - (low >> BITS))
         dr.eval(counts)
@@ -121,7 +130,7 @@ class Exchange:
     def _stream(self, replicate: int) -> np.random.SeedSequence:
         return stream(self.seed, replicate, Purpose.ROUNDING, self.step)
 
-    def send(self, power, expected) -> tuple[int, np.ndarray | None]:
+    def send(self, power, expected) -> tuple[int, Callable[[], np.ndarray] | None]:
         """Send powers; `Shooter.received` then holds what arrived.
 
         Args:
@@ -129,8 +138,8 @@ class Exchange:
             expected: (total,) UInt64, mean number of lines that patches fire, times LINE; positive where there is power.
 
         Returns:
-            Lines fired, and the power that left each replicate in them, (replicates, groups) int64; None where both ends
-            score.
+            Lines fired, and a function that reads the power that left each replicate in them, (replicates, groups) int64; None
+            where both ends score.
         """
         types = self.types
         counts = self.counts(expected)
@@ -141,10 +150,15 @@ class Exchange:
         lines = dr.select(expected >= LINE, types.Float64(counts), mean)
         weights = types.Int(dr.round(power / self.by_patch(dr.select(lines > 0, lines, 1.0))))
         dr.eval(weights)
+        return self.shoot(counts, weights), lambda: self._left(weights, counts)
+
+    def _left(self, weights, counts) -> np.ndarray:
+        """Return the power that left along lines, (replicates, groups) int64."""
+        types = self.types
+        total = dr.opaque(types.Int64, 0, self.replicates * self.groups + 1)
         left = types.Int64(weights) * types.Int64(self.by_patch(counts))
-        dr.eval(left)
-        fired = np.array(left).reshape(self.replicates, self.n, self.groups).sum(axis=1)
-        return self.shoot(counts, weights), fired
+        dr.scatter_add(total, left, self.group, mode=dr.ReduceMode.Expand)
+        return frozen(total)[:-1].reshape(self.replicates, self.groups)
 
     def _ends(self, power, mean) -> Ends:
         types = self.types

@@ -69,7 +69,7 @@ class Incremental:
         if not dr.any(self.unsent != 0):
             return 0  # no step is counted: a run that continues here calls this twice
         lines, fired = exchange.send(self.unsent, types.UInt64(exchange.largest(self.unsent)))
-        self.fired += 0 if fired is None else fired
+        self.fired += 0 if fired is None else fired()
         self.received += exchange.shooter.received
         self.unsent = dr.round(exchange.rho * types.Float64(exchange.patches(exchange.shooter.received)))
         dr.eval(self.received, self.unsent)

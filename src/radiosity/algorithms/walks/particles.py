@@ -88,8 +88,8 @@ class PathSegments:
         numbers[4:] = self._moved(numbers[4:], number - replicate * tracer.n_opaque)
         return self._land(tracer.leave(record)(numbers), replicate, numbers)
 
-    def later(self, particles: ParticleBank, segment) -> Step:
-        """Trace segment number ``segment`` (UInt32, 1 and up), from where the particles are."""
+    def later(self, particles: ParticleBank, segment, active: Any = True) -> Step:
+        """Trace segment number ``segment`` (UInt32, 1 and up), from where the ``active`` particles are."""
         tracer, types = self.tracer, self.tracer.types
         replicate = tracer.replicate(particles.walk)
         patch = particles.walk - replicate * tracer.n_opaque
@@ -103,7 +103,7 @@ class PathSegments:
             line = Frame.of(tracer.geometry, face).leave(s, t, numbers)
         else:
             line = tracer.leave(tracer.record(particles.place[0]))(numbers)
-        return self._land(line, replicate, numbers)
+        return self._land(line, replicate, numbers, active)
 
     def _moved(self, numbers, stream):
         """Return numbers moved modulo 1 by hashes of a stream, the first patch and the segment.
@@ -118,8 +118,8 @@ class PathSegments:
             word = mix(word + GOLDEN)
         return result
 
-    def _land(self, line, replicate, numbers) -> Step:
+    def _land(self, line, replicate, numbers, active: Any = True) -> Step:
         tracer = self.tracer
-        hit = first_hit(tracer.geometry, *line)
+        hit = first_hit(tracer.geometry, *line, active=active)
         landed = tracer.slot(hit, replicate)
         return Step(landed, numbers, place_of(tracer.geometry, hit) if self.continuous else (landed,))

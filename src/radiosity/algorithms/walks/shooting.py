@@ -4,17 +4,19 @@ Continuous: S. N. Pattanaik and S. P. Mudur, "Computation of global illumination
 of light", 3rd Eurographics Workshop on Rendering, 1992. Discrete: M. Sbert 1997. The estimator decides what a hit scores.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
 
-from ...device.recorded import loop
+from ...device.backend import frozen
+from ...device.launches import shared
 from ...errors import MethodError
 from ...tally.hit_counts import HitCounts
-from ...tally.hit_tally import DENSE
-from ...tracing.lanes import Batch, Launch
+from ...tally.hit_tally import DENSE, AbstractHitTally, hit_tally
+from ...tracing.lanes import Batch, Launch, sums
 from ...tracing.line_tracer import LineTracer
+from ...tracing.refill import follow, lanes_for
 from ..base import AbstractTally
 from ..state import Arrays, Sizes
 from .density import DensityTally
@@ -26,7 +28,23 @@ from .source_sampling import SourceSampling
 from .state import WalkState
 from .tally import WalkTally
 
-FEW = 1 << 12  # so few particles are followed until they end in one kernel: the sums are the same
+# After their first segment, up to so many particles of a launch are followed until they end in one kernel: the sums are the same.
+# On a CPU that is all of a launch, unless its cores are very many. The number for GPUs was not measured.
+TAILS = {"cpu": 1 << 22, "cuda": 1 << 20}
+
+
+@dataclass(frozen=True)
+class Adding:
+    """How the walks of a launch add to counters: their hits, and the mode in which they add scores."""
+
+    hits: AbstractHitTally
+    mode: dr.ReduceMode
+
+    @staticmethod
+    def of(hits: HitCounts, lines: int) -> "Adding":
+        """Return what suits a launch of ``lines`` first lines."""
+        mode = dr.ReduceMode.Expand if lines > DENSE * hits.tracer.total else dr.ReduceMode.Direct
+        return Adding(hit_tally(hits, lines, flags=False), mode)
 
 
 class Walks(AbstractWalks[WalkState]):
@@ -62,29 +80,34 @@ class Walks(AbstractWalks[WalkState]):
         weights = self.scores.born(number)
         self.scores.count_fired(weights, launch.lanes, launch.real(types))
         step = self.segments.first(number, index, record, bits)
-        particles, alive = self._settle(ParticleBank(number, index, (), weights), step, launch.real(types), 1, launch.width)
+        adding = Adding.of(self.hits, launch.width)
+        particles, alive = self._settle(ParticleBank(number, index, (), weights), step, launch.real(types), 1, adding)
+        few = TAILS[self.geometry.device.name] if self.method.order == "breadth-first" else launch.width
         while True:
             rows = dr.compress(alive)
             if dr.width(rows) == 0:
-                return lines
+                break
             particles = particles.at(rows)
-            if self.fractions is None and (particles.size <= FEW or self.method.order == "depth-first"):
-                return lines + self._to_the_end(particles, segment)
+            if self.fractions is None and particles.size <= few:
+                lines += self._to_the_end(particles, segment, adding)
+                break
             lines += particles.size
             self.scores.count_fired(particles.weights, particles.size)
             number = dr.opaque(types.UInt32, segment, particles.size)
             step = self.segments.later(particles, number)
             segment += 1
-            particles, alive = self._settle(particles, step, True, segment, particles.size)
+            particles, alive = self._settle(particles, step, True, segment, adding)
+        adding.hits.settle()
+        return lines
 
-    def _settle(self, particles: ParticleBank, step, real, segment: int, width: int) -> tuple[ParticleBank, Any]:
+    def _settle(self, particles: ParticleBank, step, real, segment: int, adding: Adding) -> tuple[ParticleBank, Any]:
         """Score hits and decide which particles go on, in a kernel of its own."""
-        mode = dr.ReduceMode.Expand if width > DENSE * self.tracer.total else dr.ReduceMode.Direct
-        after, alive = self._landed(particles, step, real, segment, mode)
-        dr.eval(self.hits.arrivals, *self.scores.arrays(), alive, after.columns())
+        after, alive = self._landed(particles, step, real, segment, adding)
+        with shared(dr.width(alive)):
+            dr.eval(*adding.hits.arrays(), *self.scores.arrays(), alive, after.columns())
         return after, alive
 
-    def _landed(self, particles: ParticleBank, step, real, segment, mode) -> tuple[ParticleBank, Any]:
+    def _landed(self, particles: ParticleBank, step, real, segment, adding: Adding) -> tuple[ParticleBank, Any]:
         tracer, types = self.tracer, self.types
         on = real & (step.landed < tracer.total)
         patch = step.landed - tracer.replicate(particles.walk) * tracer.n_opaque
@@ -93,37 +116,33 @@ class Walks(AbstractWalks[WalkState]):
             alive = on & (step.numbers[4] < probability)
         else:
             alive = on & (probability > 0) & self.fractions.go_on(particles.index, segment)
-        self.hits.add(step.landed, real, mode)
-        self.scores.deposit(particles.weights, step.landed, patch, probability, alive, real, mode)
+        adding.hits.add(step.landed, [], real)
+        self.scores.deposit(particles.weights, step.landed, patch, probability, alive, real, adding.mode)
         factor = None if self.fractions is None else self.fractions.factor(segment)
         weights = self.scores.reflected(particles.weights, patch, on, factor)
         return ParticleBank(particles.walk, particles.index, step.place, weights), alive
 
-    def _to_the_end(self, particles: ParticleBank, segment: int) -> int:
-        """Follow particles in one symbolic loop, and return the number of their lines."""
+    def _to_the_end(self, particles: ParticleBank, segment: int, adding: Adding) -> int:
+        """Follow particles in one launch, and return the number of their lines."""
         types, size = self.types, particles.size
-        going = dr.arange(types.UInt32, max(size, 2)) < dr.opaque(types.UInt32, size)
-        particles = particles if size > 1 else particles.at(dr.zeros(types.UInt32, 2) + dr.opaque(types.UInt32, 0))
-        lines = dr.zeros(types.UInt32, dr.width(going))
-        sums = tuple(dr.zeros(types.UInt64, dr.width(going)) for _ in particles.weights)
 
-        def body(columns, segment, lines, sums, going):
+        def step(columns, so_far, going):
+            *columns, segment = columns
+            lines, *powers = so_far
             here = particles.having(columns)
-            sums = tuple(s + dr.select(going, fixed, 0) for s, fixed in zip(sums, self.scores.fixed(here.weights), strict=True))
-            step = self.segments.later(here, segment)
-            after, alive = self._landed(here, step, going, segment + 1, dr.ReduceMode.Direct)
-            # particles that ended keep their places: slots after the patches have no record
-            kept = [dr.select(alive, new, old) for new, old in zip(after.columns(), columns, strict=True)]
-            return tuple(kept), segment + 1, lines + dr.select(going, types.UInt32(1), types.UInt32(0)), sums, alive
+            fixed = self.scores.fixed(here.weights)
+            powers = [power + dr.select(going, more, 0) for power, more in zip(powers, fixed, strict=True)]
+            after, alive = self._landed(here, self.segments.later(here, segment, going), going, segment + 1, adding)
+            lines += dr.select(going, types.UInt32(1), types.UInt32(0))
+            return [*after.columns(), segment + 1], (lines, *powers), alive
 
-        state = (particles.columns(), dr.opaque(types.UInt32, segment, dr.width(going)), lines, sums, going)
-        _, _, lines, sums, _ = loop(state, lambda columns, segment, lines, sums, going: going, body)
-        total = dr.sum(types.UInt64(lines))
-        parts = [dr.sum(s) for s in sums]
-        dr.eval(self.hits.arrivals, *self.scores.arrays(), total, parts)
-        took = int(total[0])
+        lanes = lanes_for(types, size)
+        none = (dr.zeros(types.UInt32, lanes), *(dr.zeros(types.UInt64, lanes) for _ in particles.weights))
+        starts = [*particles.columns(), dr.opaque(types.UInt32, segment, size)]
+        lines, *powers = follow(types, starts, size, none, step, lambda: [*adding.hits.arrays(), *self.scores.arrays()])
+        (took,) = sums(types, lines)
         if self.scores.carries:
-            self.scores.add_fired([int(part[0]) for part in parts])
+            self.scores.add_fired([int(frozen(power).sum()) for power in powers])
         else:
             self.scores.count_fired((), took)
         return took

@@ -5,7 +5,15 @@ from ..counters import FiringCounters
 from .base import AbstractOrder
 from .depth_first import walk_all
 
-TAIL = 1 << 13  # wavefronts of fewer lines are followed depth-first until they are absorbed: the counters are the same
+# Wavefronts of fewer lines are followed depth-first until they are absorbed: the counters are the same. A wavefront costs passes
+# over all rows, and a kernel that Python traces anew; a depth-first launch adds single words. On a CPU, processor time is least
+# from 2^15 to 2^18. For GPUs the number follows from rates of whole runs (docs/performance.md); it was not measured itself.
+TAILS = {"cpu": 1 << 17, "cuda": 1 << 22}
+
+
+def tail(counters: FiringCounters) -> int:
+    """Return the number of lines below which a wavefront is followed depth-first; 0 with bands, which need whole wavefronts."""
+    return TAILS[counters.tracer.geometry.device.name] if counters.bands is None else 0
 
 
 class BreadthFirst(AbstractOrder):
@@ -16,7 +24,7 @@ class BreadthFirst(AbstractOrder):
             wavefront, largest = counters.due()
             if wavefront is None:
                 return
-            if wavefront.total < TAIL and counters.bands is None:
+            if wavefront.total < tail(counters):
                 walk_all(counters, wavefront, swept)
                 return
             counters.fire(wavefront, largest)

@@ -7,7 +7,7 @@ leaves in the same pass, light that hits an earlier one in the next pass. The se
 from ...base import Swept
 from ..counters import FiringCounters
 from .base import AbstractOrder
-from .breadth_first import TAIL, BreadthFirst
+from .breadth_first import BreadthFirst, tail
 
 BLOCKS = 8
 
@@ -19,7 +19,7 @@ class WellDistributed(AbstractOrder):
         if counters.bands is not None or counters.total < BLOCKS:
             BreadthFirst().run(counters, swept)
             return
-        while self._passed(counters, swept) >= TAIL:
+        while self._passed(counters, swept) >= tail(counters):
             pass
         counters.look_everywhere()  # blocks do not note which patches lines hit
         BreadthFirst().run(counters, swept)  # the last few lines, if any are left

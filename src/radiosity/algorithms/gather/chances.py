@@ -1,0 +1,166 @@
+"""How likely a shadow ray from a receiver goes to each lamp.
+
+Receivers are taken in clusters of neighbours. A cluster chooses a lamp with a probability in proportion to what the lamp would
+send it without obstacles, bounded from the cluster's box, and to some extent by power alone. It is zero only for a lamp that is
+behind the cluster's planes, or that the cluster is behind. Where lamps are many, neighbours form a group, which is chosen as
+one; within it, lamps are chosen by power.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import drjit as dr
+import numpy as np
+
+from ...device.backend import upload
+from ...problem.model import Problem
+from ...tracing.geometry import Geometry
+from .boxes import Boxes
+from .lamps import Lamps
+from .packets import Packets
+
+CLUSTER = 256  # lanes
+ENTRIES = 1 << 22  # of the table of probabilities: clusters times groups
+BY_POWER = 0.1  # share of the probability that goes by power alone
+PIECE = 1 << 20  # entries that are computed at a time
+
+
+@dataclass(frozen=True, eq=False)
+class Chances:
+    """The probabilities of clusters to choose lamps.
+
+    Attributes:
+        lamps: the lamps of the scene.
+        packets: the lanes; those of one replicate are clustered.
+    """
+
+    lamps: Lamps
+    packets: Packets
+
+    @staticmethod
+    def of(geometry: Geometry, problem: Problem) -> "Chances":
+        """Return those of a scene; they are made once."""
+        if "chances" not in geometry.made:
+            geometry.made["chances"] = Chances(Lamps(geometry, problem), Packets(geometry, 1))
+        return geometry.made["chances"]
+
+    @cached_property
+    def clusters(self) -> int:
+        return -(-self.packets.width // CLUSTER)
+
+    @cached_property
+    def groups(self) -> np.ndarray:
+        """Where each group of lamps begins, and the number of lamps, (n_groups + 1,) int64."""
+        each = max(-(-len(self.lamps) * self.clusters // ENTRIES), 1)
+        return np.append(np.arange(0, len(self.lamps), each), len(self.lamps))
+
+    @cached_property
+    def group_of(self) -> np.ndarray:
+        return np.repeat(np.arange(len(self.groups) - 1), np.diff(self.groups))
+
+    @cached_property
+    def within(self) -> np.ndarray:
+        """The probability of each lamp once its group is chosen, (n_lamps,) float64."""
+        return self.lamps.power / np.add.reduceat(self.lamps.power, self.groups[:-1])[self.group_of]
+
+    @cached_property
+    def probability(self) -> np.ndarray:
+        """The probability of each group for each cluster, (clusters, n_groups) float32; rows sum to one, or are zero."""
+        found = np.empty((self.clusters, len(self.groups) - 1), np.float32)
+        step = max(PIECE // max(len(self.lamps), 1), 1)
+        boxes = Boxes.of(self.lamps, self.packets, CLUSTER)
+        for at in range(0, self.clusters, step):
+            rows = slice(at, at + step)
+            weight = np.add.reduceat(self._weights(boxes.take(rows)), self.groups[:-1], axis=1)
+            total = weight.sum(axis=1, keepdims=True)
+            found[rows] = np.divide(weight, total, out=np.zeros_like(weight), where=total > 0)
+        return found
+
+    def _weights(self, boxes: Boxes) -> np.ndarray:
+        """Return weights of all lamps for some clusters, (k, n_lamps) float64."""
+        power = self.lamps.power
+        weight = power * boxes.unobstructed(self.lamps)
+        weight = (1 - BY_POWER) * weight / weight.sum(axis=1, keepdims=True) + BY_POWER * power
+        return np.where(boxes.behind(self.lamps), 0.0, weight)
+
+    # ---- on the device ---------------------------------------------------------------------------------------------
+
+    def prepare(self) -> None:
+        """Make what kernels read."""
+        self.lamps.prepare()
+        _ = self.cumulative, self.density, self.chosen_within, self.spans
+
+    @property
+    def types(self):
+        return self.packets.types
+
+    @cached_property
+    def cumulative(self):
+        """Sums of probabilities of the groups up to each, of each cluster, (clusters * n_groups,) Float."""
+        return upload(self.types.Float, _cumulative(self.probability))
+
+    @cached_property
+    def density(self):
+        """Probabilities of groups, (clusters * n_groups,) Float."""
+        return upload(self.types.Float, self.probability)
+
+    @cached_property
+    def chosen_within(self):
+        """Of each lamp: its group, sums of `within` up to it in its group, and `within` over its area, (3 arrays)."""
+        sums = np.cumsum(self.within)
+        sums -= np.concatenate([[0], sums])[self.groups[:-1]][self.group_of]
+        sums[self.groups[1:] - 1] = 2.0
+        types = self.types
+        return (
+            upload(types.UInt32, self.group_of.astype(np.uint32)),
+            upload(types.Float, sums.astype(np.float32)),
+            upload(types.Float, (self.within / self.lamps.area).astype(np.float32)),
+        )
+
+    @cached_property
+    def spans(self):
+        """Where each group begins, (n_groups + 1,) UInt32."""
+        return upload(self.types.UInt32, self.groups.astype(np.uint32))
+
+    def row(self, place):
+        """Return where the probabilities of the lanes' clusters begin."""
+        return (place // CLUSTER) * dr.opaque(self.types.UInt32, len(self.groups) - 1)
+
+    def choose(self, row, number):
+        """Return a lamp and its density, the probability over its area, from a number in [0, 1); called in a kernel."""
+        UInt32, Float = self.types.UInt32, self.types.Float
+        many = len(self.groups) - 1
+        if len(self.lamps) == 1:
+            lamp = number * 0
+            return UInt32(lamp), dr.gather(Float, self.density, row) * dr.gather(Float, self.chosen_within[2], UInt32(lamp))
+        group = _search(self.cumulative, row, row * 0, row * 0 + (many - 1), many, number, UInt32, Float)
+        share = dr.gather(Float, self.density, row + group)
+        if many == len(self.lamps):
+            return group, share * dr.gather(Float, self.chosen_within[2], group)
+        below = dr.gather(Float, self.cumulative, row + group - 1, group > 0)
+        again = dr.clip((number - below) / dr.maximum(share, 1e-30), 0, 1 - 2.0**-24)
+        first, last = (dr.gather(UInt32, self.spans, group + one) - one for one in (0, 1))
+        lamp = _search(self.chosen_within[1], 0, first, last, int(np.diff(self.groups).max()), again, UInt32, Float)
+        return lamp, share * dr.gather(Float, self.chosen_within[2], lamp)
+
+    def density_of(self, row, lamp, active):
+        """Return the density with which `choose` takes a point of a lamp; called in a kernel."""
+        group = dr.gather(self.types.UInt32, self.chosen_within[0], lamp, active)
+        share = dr.gather(self.types.Float, self.density, row + group, active)
+        return share * dr.gather(self.types.Float, self.chosen_within[2], lamp, active)
+
+
+def _cumulative(rows: np.ndarray) -> np.ndarray:
+    """Return sums along rows, the last positive entry and those after it 2, so that a search always ends there."""
+    sums = np.cumsum(rows, axis=1, dtype=np.float64)
+    last = rows.shape[1] - 1 - np.argmax(rows[:, ::-1] > 0, axis=1)
+    return np.where(np.arange(rows.shape[1]) >= last[:, None], 2.0, sums).astype(np.float32)
+
+
+def _search(sums, row, low, high, most: int, number, UInt32, Float):
+    """Return the first place from ``low`` to ``high`` whose sum is above a number; called in a kernel."""
+    for _ in range(int(np.ceil(np.log2(max(most, 2))))):
+        middle = (low + high) >> 1
+        above = number >= dr.gather(Float, sums, row + middle)
+        low, high = dr.select(above, middle + 1, low), dr.select(above, high, middle)
+    return low
