@@ -29,7 +29,7 @@ class Shares:
     def of(packets: Packets, variance: np.ndarray, importance: np.ndarray) -> "Shares":
         """Make it from variances of lines of patches, (2, n), and how much the squared error of a patch counts, (n,)."""
         means = packets.by_packet(variance * importance) / packets.sizes
-        weights = (means + FLOOR * means.mean(axis=1).sum()) ** POWER
+        weights = (means + FLOOR * means.mean(axis=1).sum()) ** POWER if means.any() else np.ones_like(means)
         return Shares(packets, weights / max(float((weights * packets.sizes).sum()), 1e-300))
 
     @property
@@ -55,7 +55,7 @@ class Shares:
 
     @property
     def _phases(self) -> np.ndarray:
-        """Where each packet rounds up, (count,) float64 in [0, 1): evenly spread, so that the number of lines is N."""
+        """The phase at which each packet rounds up, (count,) float64 in [0, 1): evenly spread, so that the number of lines is N."""
         return np.arange(self.packets.count) * ((5**0.5 - 1) / 2) % 1.0
 
     def lines(self, quanta: int) -> int:
