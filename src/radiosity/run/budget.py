@@ -12,7 +12,7 @@ LEAST_QUANTA = 1024
 AIM, AIM_ONCE = 0.97, 0.9  # of an error target, at the last stage; lower where no run goes on from a stage between two rungs
 LEAST_STEP = 1.05  # times the lines so far
 DONE = 1 << 31  # quanta, more than any baseline takes: it ends when there is nothing left to do
-GATHERED = 24  # lines of a patch and replicate that a gather begins with
+GATHERED = 16  # lines of a patch and replicate: by then a gather has solved along its stored lines
 BASELINE_RUNGS = {"full-matrix": 1, "progressive": 64, "hierarchical": 1}  # the whole matrix; shots; passes of refinement
 
 

@@ -123,6 +123,8 @@ class Gather(AbstractAlgorithm[GatherState]):
     def _make_room(self, stored: int) -> None:
         """Make room for the hits of as many stored lines of each patch."""
         wanted = stored * self.packets.lanes
+        if stored == self._stored:
+            return
         if self._stored:
             self._hits = dr.concat([self._hits, dr.zeros(self.types.UInt32, wanted - dr.width(self._hits))])
         else:
@@ -163,7 +165,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         return met, reading
 
     def _mean(self, values) -> np.ndarray:
-        """Return the mean of positive values in each replicate, (replicates,) float64, from whole numbers, so that no order matters."""
+        """Return the mean of positive values in each replicate, (replicates,) float64; of whole numbers, so that no order matters."""
         whole = self.types.UInt64(dr.maximum(values, 0) * 2.0**24)
         return np.array(dr.block_sum(whole, self.packets.width), np.float64) / 2.0**24 / self.packets.width
 

@@ -58,6 +58,8 @@ class Reading:
         ]
         reflected = [value + one for value, one in zip(self.reflected, more, strict=True)]
         halves = [half + one - whole for half, one, whole in zip(self.halves, of_halves, more * 2, strict=True)]
+        if not first:  # along few lines a correction may go astray; a bias does not grow
+            halves = [dr.select(dr.abs(new) < dr.abs(old), new, old) for new, old in zip(halves, self.halves, strict=True)]
         left = rows.means([(a + b) * 0.5 for a, b in zip(halves[:groups], halves[groups:], strict=True)])
         means = rows.means(more)
         dr.eval(reflected, halves, left, means)
