@@ -117,5 +117,5 @@ def _refuse_options(method, found: str) -> None:
     if method.coherent and found != "gather" and not fires:
         raise MethodError(
             "coherent firing needs strata of the Halton sequence and whole wavefronts: discrete/local/breadth-first/"
-            f"halton, not {method.lines}/{method.order}/{method.points}; leave one out"
+            f"halton, not {method.lines}/{method.order}/{method.points}; leave one out, or take --order gather"
         )
