@@ -168,7 +168,7 @@ def test_a_part_goes_on_as_a_part(coloured, short):
 def test_fresh_processes_solve_parts(tmp_path):
     code = (
         "import sys, radiosity as rd; first = int(sys.argv[1]); patches = rd.subdivide(rd.load_scene('room'), cells=1); "
-        "rd.solve(patches, quanta=5000, replicates=2, first_replicate=first, seed=1).save(sys.argv[2])"
+        "rd.solve(patches, 'random-walk', quanta=5000, replicates=2, first_replicate=first, seed=1).save(sys.argv[2])"
     )
     paths = [tmp_path / f"{first}.npz" for first in (0, 2)]
     for first, path in zip((0, 2), paths, strict=True):

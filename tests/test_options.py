@@ -88,7 +88,7 @@ def test_a_choice_of_a_baseline_belongs_to_the_schemes_that_its_option_names():
 def test_what_the_tables_name_is_there():
     """Names and meanings are told by `method`, and what they stand for is in folders above it."""
     assert set(FIRED) == set(FIRING_ORDERS)
-    assert set(METHOD["order"].values) == {*FIRING_ORDERS, *WALK_ORDERS, *ITERATIONS, *GLOBAL_ORDERS}
+    assert set(METHOD["order"].values) == {*FIRING_ORDERS, *WALK_ORDERS, *ITERATIONS, *GLOBAL_ORDERS, "gather"}
     assert set(BASELINE["solver"].values) == set(SOLVERS)
     assert set(BASELINE["factors"].values) == set(ROWS)
     machines = {method.machine for method in accepted()} | {rd.Baseline(scheme).machine for scheme in SCHEMES}

@@ -113,7 +113,8 @@ def _refuse_options(method, found: str) -> None:
             "reconstruction 'smooth' is for values that are means over the lines of each patch: take --order gather; hits are "
             "smoothed by reconstruction 'local-linear', which needs equation continuous"
         )
-    if method.coherent and (found != "firing" or method.order != "breadth-first" or method.points != "halton"):
+    fires = found == "firing" and method.order == "breadth-first" and method.points == "halton"
+    if method.coherent and found != "gather" and not fires:
         raise MethodError(
             "coherent firing needs strata of the Halton sequence and whole wavefronts: discrete/local/breadth-first/"
             f"halton, not {method.lines}/{method.order}/{method.points}; leave one out"

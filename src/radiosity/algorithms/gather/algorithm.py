@@ -152,8 +152,8 @@ class Gather(AbstractAlgorithm[GatherState]):
         dr.eval(irradiance)
         rows = self._rows(shares)
         grown = max(self._done / shares.stored_quanta, 1.0)
-        tolerance = TOLERANCE * max(self._mean(value) for value in irradiance) / grown**0.5
-        reading, means = self._reading.corrected(rows, irradiance, max(tolerance, 1e-12), first=grown == 1.0)
+        tolerance = TOLERANCE * np.max([self._mean(value) for value in irradiance], axis=0) / grown**0.5
+        reading, means = self._reading.corrected(rows, irradiance, np.maximum(tolerance, 1e-12), first=grown == 1.0)
         met = [
             total + types.Int64(dr.round(types.Float64(mean) * cosine * lines.unit))
             for total, mean in zip(self._met, means, strict=True)
@@ -161,9 +161,10 @@ class Gather(AbstractAlgorithm[GatherState]):
         dr.eval(met)
         return met, reading
 
-    def _mean(self, values) -> float:
-        """Return the mean of positive values, from whole numbers, so that no order matters."""
-        return float(dr.sum(self.types.UInt64(dr.maximum(values, 0) * 2.0**24))[0]) / 2.0**24 / self.packets.lanes
+    def _mean(self, values) -> np.ndarray:
+        """Return the mean of positive values in each replicate, (replicates,) float64; of whole numbers, so that no order matters."""
+        whole = self.types.UInt64(dr.maximum(values, 0) * 2.0**24)
+        return np.array(dr.block_sum(whole, self.packets.width), np.float64) / 2.0**24 / self.packets.width
 
     # ---- states ----------------------------------------------------------------------------------------------------
 

@@ -50,7 +50,7 @@ class Chances:
 
     @cached_property
     def groups(self) -> np.ndarray:
-        """Where each group of lamps begins, and the number of lamps, (n_groups + 1,) int64."""
+        """The first lamp of each group, and the number of lamps, (n_groups + 1,) int64."""
         each = max(-(-len(self.lamps) * self.clusters // ENTRIES), 1)
         return np.append(np.arange(0, len(self.lamps), each), len(self.lamps))
 
@@ -106,7 +106,7 @@ class Chances:
 
     @cached_property
     def chosen_within(self):
-        """Of each lamp: its group, sums of `within` up to it in its group, and `within` over its area, (3 arrays)."""
+        """The group of each lamp, sums of `within` up to it in its group, and `within` over its area, (3 arrays)."""
         sums = np.cumsum(self.within)
         sums -= np.concatenate([[0], sums])[self.groups[:-1]][self.group_of]
         sums[self.groups[1:] - 1] = 2.0
@@ -119,7 +119,7 @@ class Chances:
 
     @cached_property
     def spans(self):
-        """Where each group begins, (n_groups + 1,) UInt32."""
+        """The first lamp of each group, and their number, (n_groups + 1,) UInt32."""
         return upload(self.types.UInt32, self.groups.astype(np.uint32))
 
     def row(self, place):

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import drjit as dr
+import numpy as np
 
 from .rows import Rows
 
@@ -33,12 +34,12 @@ class Reading:
         """Return what is read before the first correction: zero."""
         return Reading(*([dr.zeros(kind, lanes) for _ in range(count * groups)] for count in (1, 2, 1, 1)))
 
-    def corrected(self, rows: Rows, irradiance: list, tolerance: float, *, first: bool) -> tuple["Reading", list]:
+    def corrected(self, rows: Rows, irradiance: list, tolerance: np.ndarray, *, first: bool) -> tuple["Reading", list]:
         """Return what lines read from now on, and by how much more of it each lane's lines meet, in the mean over stored lines.
 
         Args:
             irradiance: what all lines so far say, of each group.
-            tolerance: see `Rows.solve`.
+            tolerance: of each replicate, see `Rows.solve`.
             first: it is the first correction.
         """
         groups = len(self.reflected)

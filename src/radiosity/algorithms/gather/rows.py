@@ -68,7 +68,7 @@ class Rows:
         _, *sums = loop(state, lambda number, *sums: number < end, body)
         return [total * share for total in sums]
 
-    def solve(self, right: list, tolerance: float, start: list | None = None, half: int | None = None) -> list:
+    def solve(self, right: list, tolerance: "float | np.ndarray", start: list | None = None, half: int | None = None) -> list:
         """Return x = r + rho F' x of each group, along all stored lines or a half of them.
 
         A Jacobi iteration takes longest for the even part of the light. So after some, a multiple of the reflectance is added,
@@ -77,26 +77,41 @@ class Rows:
 
         Args:
             right: of each group, (lanes,) Float.
-            tolerance: iterations end once about no more than this is missing anywhere.
+            tolerance: of all replicates or of each, (replicates,) float: iterations end once about no more than this is missing
+                anywhere in a replicate. Each ends for itself, so that replicates do not depend on each other.
             start: the first iterate; ``right`` by default.
         """
-        found, before = list(right if start is None else start), np.inf
+        found, before = list(right if start is None else start), np.full(self.packets.replicates, np.inf)
+        open_ = np.ones(self.packets.replicates, bool)
         for iteration in range(1, LONGEST + 1):
             met = self.means(found, half)
             new = [one + share * value for one, share, value in zip(right, self.reflectance, met, strict=True)]
             if iteration % CHECKED == CHECKED - 3:
                 new = [self._balanced(value, old, *even) for value, old, even in zip(new, found, self.even, strict=True)]
+            if not open_.all():
+                goes_on = self._of_replicates(self.packets.types.Bool, open_)
+                new = [dr.select(goes_on, value, old) for value, old in zip(new, found, strict=True)]
             dr.eval(new)
             if iteration % CHECKED in (CHECKED - 1, 0):
-                change = max(float(dr.max(dr.abs(a - b))[0]) for a, b in zip(new, found, strict=True))
+                change = np.max([self._largest(dr.abs(a - b)) for a, b in zip(new, found, strict=True)], axis=0)
                 if iteration % CHECKED == CHECKED - 1:
                     before = change
                 else:
-                    factor = min(change / max(before, 1e-300), SLOWEST)
-                    if change * factor / (1 - factor) <= tolerance:
+                    factor = np.minimum(change / np.maximum(before, 1e-300), SLOWEST)
+                    open_ &= change * factor / (1 - factor) > tolerance
+                    if not open_.any():
                         return new
             found = new
         return found
+
+    def _largest(self, values) -> np.ndarray:
+        """Return the largest value of each replicate, (replicates,) float64."""
+        return np.array(dr.block_reduce(dr.ReduceOp.Max, values, self.packets.width), np.float64)
+
+    def _of_replicates(self, kind, values: np.ndarray):
+        """Return a value of each replicate for each of its lanes."""
+        _, replicate, _, _ = self.packets.read()
+        return dr.gather(kind, upload(kind, values), replicate)
 
     @cached_property
     def even(self) -> list:

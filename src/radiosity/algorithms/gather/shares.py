@@ -66,7 +66,7 @@ class Shares:
 
     @cached_property
     def _phases(self) -> np.ndarray:
-        """Where each packet rounds up, (count,) float64 in [0, 1): evenly spread, so that the number of lines is N."""
+        """The phase at which each packet rounds up, (count,) float64 in [0, 1): evenly spread, so that lines are N."""
         return np.arange(self.packets.count) * ((5**0.5 - 1) / 2) % 1.0
 
     def lines(self, quanta: int) -> int:
