@@ -122,14 +122,11 @@ class Gather(AbstractAlgorithm[GatherState]):
 
     def _make_room(self, stored: int) -> None:
         """Make room for the hits of as many stored lines of each patch."""
-        wanted = stored * self.packets.lanes
-        if stored == self._stored:
-            return
-        if self._stored:
-            self._hits = dr.concat([self._hits, dr.zeros(self.types.UInt32, wanted - dr.width(self._hits))])
-        else:
-            self._hits = dr.zeros(self.types.UInt32, wanted)
-        self._stored = stored
+        more = (stored - self._stored) * self.packets.lanes
+        if more > 0:
+            room = dr.zeros(self.types.UInt32, more)
+            self._hits = dr.concat([self._hits, room]) if self._stored else room
+            self._stored = stored
 
     def _rows(self, shares: Shares) -> Rows:
         _, _, place, _ = self.packets.read()
