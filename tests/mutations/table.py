@@ -23,8 +23,8 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/gather/algorithm.py",
-        "        if stored == self._stored:\n            return\n",
-        "",
+        "        if more > 0:\n",
+        "        if more >= 0:\n",
         ("test_gather_contract.py",),
         "a slice that stores no further line makes room for none",
     ),
