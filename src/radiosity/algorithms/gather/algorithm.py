@@ -162,7 +162,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         return met, reading
 
     def _mean(self, values) -> np.ndarray:
-        """Return the mean of positive values in each replicate, (replicates,) float64; of whole numbers, so that no order matters."""
+        """Return the mean of positive values of each replicate, (replicates,), from whole numbers, so that no order matters."""
         whole = self.types.UInt64(dr.maximum(values, 0) * 2.0**24)
         return np.array(dr.block_sum(whole, self.packets.width), np.float64) / 2.0**24 / self.packets.width
 
