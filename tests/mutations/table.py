@@ -15,6 +15,13 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "algorithms/gather/tally.py",
+        "stored = np.maximum(state.stored, 1)",
+        "stored = np.maximum(np.minimum(state.cosine, 16), 1)",
+        ("test_gather.py",),
+        "patches that store few lines are taken to store all",
+    ),
+    Mistake(
         "algorithms/gather/lines.py",
         "(kernel <= KERNEL * bound)",
         "(kernel <= 2 * KERNEL * bound)",
@@ -1808,5 +1815,33 @@ MISTAKES = (
         "self.tally.bias(",
         ("test_gather_smooth.py",),
         "targets of means wait for biases that cancel",
+    ),
+    Mistake(
+        "tracing/refill.py",
+        "fresh = going & ~on & (place < end)",
+        "fresh = going & ~on & (place < end - stride)",
+        ("test_tail.py",),
+        "lanes leave their last walks out",
+    ),
+    Mistake(
+        "algorithms/firing/orders/depth_first.py",
+        "    counters.look_everywhere()  # where",
+        "    pass  # where",
+        ("test_tail.py",),
+        "lines of later launches are forgotten where a run is interrupted within a tail",
+    ),
+    Mistake(
+        "algorithms/walks/shooting.py",
+        "return [*after.columns(), segment + 1], (lines, *powers), alive",
+        "return [*after.columns(), segment], (lines, *powers), alive",
+        ("test_tail.py",),
+        "all later segments of a walk that is followed take the points of one",
+    ),
+    Mistake(
+        "algorithms/iterations/control.py",
+        "        self.missed += [seen % LINE, seen >> BITS]\n        self._kept = None",
+        "        self.missed += [seen % LINE, seen >> BITS]",
+        ("test_iteration.py", "test_iteration_bits.py", "test_iteration_unbiased.py"),
+        "the share of missed lines stays that of the first probing lines",
     ),
 )

@@ -13,6 +13,7 @@ import drjit as dr
 import numpy as np
 
 from ..device.backend import frozen, upload
+from ..device.launches import shared
 from ..method import Method
 from ..sampling.streams import Purpose, Seed, stream
 from ..tracing.geometry import Geometry
@@ -95,7 +96,7 @@ class Shooter:
         columns = dr.gather(types.UInt32, counts, rows), dr.gather(types.UInt32, self.fired, rows)
         largest = dr.max(columns[0] + columns[1])
         batch = Batch.of(types, rows, *columns, tracer.record)
-        # batches of few lines share one kernel, whatever their indices
+        # read after the batch, whose size the host has waited for; batches of few lines share one kernel, whatever their indices
         bits = tracer.numbers.bits_for(int(largest[0]))
         mode = dr.ReduceMode.Expand if batch.total > DENSE * self.total else dr.ReduceMode.Direct
         for launch in batch.launches(types):
@@ -121,7 +122,8 @@ class Shooter:
             self._add(types.Int64(dr.round(back)), here, real, mode)
         if pairs is not None:
             dr.schedule(number, landed)
-        dr.eval(self.hits.arrivals, self.received)
+        with shared(launch.lanes):
+            dr.eval(self.hits.arrivals, self.received)
         if pairs is not None:
             pairs(frozen(number)[: launch.lanes], frozen(landed)[: launch.lanes])
 

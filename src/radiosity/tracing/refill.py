@@ -30,14 +30,14 @@ def lanes_for(types, walks: int) -> int:
 def follow(types, starts: list, walks: int, sums: tuple, step: Step, arrays: Callable[[], list]) -> tuple:
     """Follow walks until all have ended, in one launch.
 
-    Lane i follows the walks i, i + lanes, i + 2 lanes, ... one after the other. What walks add to ``arrays`` are whole numbers, so
-    the result does not depend on that.
+    Lane i follows the walks i, i + lanes, i + 2 lanes, ... one after the other. What walks add to ``arrays`` are whole numbers,
+    so the result does not depend on that.
 
     Args:
         starts: columns of ``walks`` entries or more: the state in which each walk begins.
         sums: what each lane sums over its walks, `lanes_for` entries: zeros.
-        step: takes columns, sums and the mask of lanes that have a walk; returns the next columns and sums, and which walks go on.
-            It is recorded once.
+        step: takes columns, sums and the mask of lanes that have a walk; returns the next columns and sums, and which walks go
+            on. It is recorded once.
         arrays: returns the arrays that steps write to.
 
     Returns:

@@ -162,7 +162,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         return met, reading
 
     def _mean(self, values) -> np.ndarray:
-        """Return the mean of positive values in each replicate, (replicates,) float64; sums are of whole numbers."""
+        """Return the mean of positive values of each replicate, (replicates,), from whole numbers, so that no order matters."""
         whole = self.types.UInt64(dr.maximum(values, 0) * 2.0**24)
         return np.array(dr.block_sum(whole, self.packets.width), np.float64) / 2.0**24 / self.packets.width
 
@@ -177,7 +177,8 @@ class Gather(AbstractAlgorithm[GatherState]):
             met, reading = self._corrected(shares)
         rows = self._rows(shares)
         missed = np.stack([packets.patch_values(np.array(rows.missed(code))) for code in (ESCAPED, LOST)])
-        cosine, rays = (np.repeat(count, packets.sizes)[packets.place].astype(np.uint32) for count in shares.counts(self._done))
+        of_packets = (*shares.counts(self._done), shares.stored(self._done))
+        cosine, rays, stored = (np.repeat(count, packets.sizes)[packets.place].astype(np.uint32) for count in of_packets)
         by_patch = self._by_patch
         halves = np.stack([by_patch(reading.halves[at : at + self.groups]) for at in (0, self.groups)])
         return GatherState(
@@ -186,6 +187,7 @@ class Gather(AbstractAlgorithm[GatherState]):
             done=self._done,
             cosine=cosine,
             rays=rays,
+            stored=stored,
             brought=by_patch(self._brought),
             met=by_patch(met),
             reflected=by_patch(reading.reflected),

@@ -17,6 +17,7 @@ class GatherState(AbstractState):
     Attributes:
         done: N up to which lines have been traced.
         cosine, rays: (n_patches,) uint32, cosine lines and shadow rays of each patch in a replicate.
+        stored: (n_patches,) uint32, how many of the cosine lines are stored.
         brought: (replicates, n_patches, groups) uint64, sums of shadow rays.
         met: (replicates, n_patches, groups) int64, sums of cosine lines.
         reflected: (replicates, n_patches, groups) float32, the radiosity that lines read, in shares of the largest emission.
@@ -29,6 +30,7 @@ class GatherState(AbstractState):
     done: int = number(int)
     cosine: np.ndarray = array("rows", merged=alike)
     rays: np.ndarray = array("rows", merged=alike)
+    stored: np.ndarray = array("rows", merged=alike)
     brought: np.ndarray = array("replicates", "rows", "groups")
     met: np.ndarray = array("replicates", "rows", "groups")
     reflected: np.ndarray = array("replicates", "rows", "groups")
@@ -45,7 +47,8 @@ class GatherState(AbstractState):
     def empty(cls, sizes: Sizes, quanta: int) -> "GatherState":
         """Return the state before the first line."""
         values = {"sizes": sizes, "quanta": quanta, "done": 0}
-        kinds = {"cosine": np.uint32, "rays": np.uint32, "brought": np.uint64, "met": np.int64, "missed": np.uint32}
+        counts = dict.fromkeys(("cosine", "rays", "stored", "missed"), np.uint32)
+        kinds = counts | {"brought": np.uint64, "met": np.int64}
         for one in fields(cls):
             if "layout" in one.metadata:
                 values[one.name] = np.zeros(sizes.shape(one.metadata["layout"].axes), kinds.get(one.name, np.float32))

@@ -7,7 +7,6 @@ from ...solution.books import by_difference, exact_sum
 from ..base import AbstractBiasedTally
 from .lines import UNITS, most_read
 from .pilot import LINES
-from .shares import STORED
 from .state import GatherState
 
 
@@ -39,7 +38,7 @@ class GatherTally(AbstractBiasedTally[GatherState]):
 
     def bias(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
         first, left = (np.abs(x[..., group].mean(axis=0, dtype=np.float64)) for x in (state.first_bias, state.bias_left))
-        of_all = np.minimum(state.cosine, STORED) / np.maximum(state.cosine, 1)  # that of the solution by all lines goes as 1 / m
+        of_all = state.stored / np.maximum(state.cosine, 1)  # that of the solution by all lines goes as 1 / m
         return np.maximum(left, first * of_all) * problem.patches.area
 
     def books(self, problem: Problem, state: GatherState, group: int) -> dict:
@@ -50,6 +49,6 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         """Return the energy balance of the power that patches receive, (n_patches,) W or lm."""
         rho, own = problem.groups.reflectance[:, group], problem.groups.emission[:, group] * problem.patches.area
         left = own + rho * received
-        stored = np.maximum(np.minimum(state.cosine, STORED), 1)
+        stored = np.maximum(state.stored, 1)
         escaped, lost = (float(left @ (count.mean(axis=0) / stored)) for count in state.missed)
         return by_difference(float(own.sum()), float(received @ (1 - rho)), escaped, lost)

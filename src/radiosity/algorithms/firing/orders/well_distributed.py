@@ -19,18 +19,20 @@ class WellDistributed(AbstractOrder):
         if counters.bands is not None or counters.total < BLOCKS:
             BreadthFirst().run(counters, swept)
             return
-        while self._passed(counters, swept) >= tail(counters):
-            pass
+        while self._due(counters) >= max(tail(counters), 1):
+            self._pass(counters, swept)
         counters.look_everywhere()  # blocks do not note which patches lines hit
         BreadthFirst().run(counters, swept)  # the last few lines, if any are left
 
-    def _passed(self, counters: FiringCounters, swept: Swept) -> int:
-        """Fire the lines of a pass, and return their number."""
-        fired = 0
+    def _due(self, counters: FiringCounters) -> int:
+        """Return the number of lines that are due in all blocks."""
+        wavefront, _ = counters.due_between(0, counters.total)
+        return 0 if wavefront is None else wavefront.total
+
+    def _pass(self, counters: FiringCounters, swept: Swept) -> None:
+        """Fire the lines of a pass."""
         for block in range(BLOCKS):
             wavefront, largest = counters.due_between(counters.total * block // BLOCKS, counters.total * (block + 1) // BLOCKS)
             if wavefront is not None:
                 counters.fire(wavefront, largest)
                 swept(wavefront.total)
-                fired += wavefront.total
-        return fired
