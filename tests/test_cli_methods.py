@@ -51,7 +51,7 @@ def test_an_unknown_method_is_an_error_that_lists_them(capsys):
     assert run(["methods", "magic"]) == 2
     assert "known are random-walk" in capsys.readouterr().err
     assert run(["solve", "room", "--method", "magic"]) == 2
-    assert "known are random-walk" in capsys.readouterr().err
+    assert "known are auto, random-walk" in capsys.readouterr().err
 
 
 def test_axes_are_options_of_solve(capsys):
