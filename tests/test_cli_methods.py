@@ -49,7 +49,7 @@ def test_the_randomisation_is_explained_and_chosen(capsys):
 
 def test_an_unknown_method_is_an_error_that_lists_them(capsys):
     assert run(["methods", "magic"]) == 2
-    assert "known are random-walk" in capsys.readouterr().err
+    assert "known are auto, random-walk" in capsys.readouterr().err
     assert run(["solve", "room", "--method", "magic"]) == 2
     assert "known are auto, random-walk" in capsys.readouterr().err
 
