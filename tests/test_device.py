@@ -11,7 +11,7 @@ import pytest
 import radiosity as rd
 from radiosity.device import launches as blocks
 from radiosity.device import llvm
-from radiosity.device.backend import PACKET, choose, upload
+from radiosity.device.backend import PACKET, choose, small, upload
 
 
 def python(code: str, **environment) -> subprocess.CompletedProcess:
@@ -73,6 +73,20 @@ def test_a_broken_library_that_we_chose_is_not_called_a_setting(tmp_path, monkey
     monkeypatch.setenv(llvm.VARIABLE, str(broken))
     with pytest.raises(rd.DeviceError, match=r"^no usable libLLVM found"):
         llvm.find()
+
+
+def test_a_few_numbers_are_copied_whole():
+    """No number is rounded, and none becomes a constant of a kernel: gathers read an array, whatever the numbers."""
+    types = choose("cpu").types
+    for kind, values in (
+        (types.Float64, np.array([[0.1, 1 / 3], [1e300, -(2.0**-1000)]])),
+        (types.Float64, np.array([0.1])),
+        (types.UInt64, [2**63 + 1]),
+        (types.UInt32, [7] * 5),
+    ):
+        array = small(kind, values)
+        assert array.state is dr.VarState.Evaluated
+        assert np.array(array).tolist() == [*np.ravel(values).tolist(), 0]
 
 
 def test_uploads_are_copies_and_padded():

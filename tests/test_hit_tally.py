@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.device.backend import choose, frozen, upload
 from radiosity.tally import hit_tally
 
@@ -56,6 +57,7 @@ def test_sums_are_those_of_whole_numbers(kind, groups, lines, random):
 @pytest.mark.parametrize("name", ["room", "cornell-box"])
 def test_copies_end_in_equal_integers(name, monkeypatch):
     """All sweeps in copies, none, and some; also where flags tell which patches go on."""
+    monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 1 << 13})
     patches, took = rd.subdivide(rd.load_scene(name), cells=20), []
     for dense, most in ((0, hit_tally.MOST), (np.inf, hit_tally.MOST), (0, 0), (hit_tally.SHARED, hit_tally.MOST)):
         monkeypatch.setattr(hit_tally, "SHARED", dense)

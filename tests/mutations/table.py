@@ -1832,10 +1832,10 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/walks/shooting.py",
-        "return [*after.columns(), segment + 1], (lines, *powers), alive",
-        "return [*after.columns(), segment], (lines, *powers), alive",
+        "dr.opaque(types.UInt32, segment, size)]",
+        "dr.opaque(types.UInt32, 0, size)]",
         ("test_tail.py",),
-        "all later segments of a walk that is followed take the points of one",
+        "walks that are followed take the points of the segments before",
     ),
     Mistake(
         "algorithms/iterations/control.py",
