@@ -23,7 +23,7 @@ def patches():
 
 
 def counters(patches, **choices):
-    state = rd.solve(patches, **({"quanta": QUANTA, "replicates": 3, "seed": 5} | choices)).state
+    state = rd.solve(patches, **({"method": "random-walk", "quanta": QUANTA, "replicates": 3, "seed": 5} | choices)).state
     return state["arrivals"], state["fired"], state["missed"]
 
 
@@ -64,7 +64,7 @@ def test_quanta_replay_a_run_bit_for_bit():
         patches = rd.subdivide(rd.load_scene(scene), cells=5)
         for budget in ({"seconds": 0.5}, {"error": 0.02}, {"rays": 14_000_000}):
             first = rd.solve(patches, replicates=2, **budget)
-            again = rd.solve(patches, "random-walk", replicates=2, quanta=first.quanta)
+            again = rd.solve(patches, replicates=2, quanta=first.quanta)
             assert np.array_equal(first.irradiance, again.irradiance)
             assert np.array_equal(first.irradiance_standard_error, again.irradiance_standard_error)
     assert first.quanta > first_stage(2, len(patches))  # several stages were replayed

@@ -51,7 +51,7 @@ def test_solve_writes_everything_at_once(capsys, tmp_path):
 
 def test_solve_is_the_library(solved):
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=2)
-    expected = rd.solve(patches, "random-walk", rays=20_000, replicates=2)
+    expected = rd.solve(patches, rays=20_000, replicates=2)
     found = rd.load_solution(solved)
     assert (found.arrivals == expected.arrivals).all()
     assert (found.radiosity == expected.radiosity).all()
@@ -96,7 +96,7 @@ def test_resume(capsys, tmp_path):
     assert before.rays < after.rays
     assert after.rays == pytest.approx(1e6, rel=0.1)
     assert len(after.patches) == len(before.patches)
-    whole = rd.solve(rd.subdivide(rd.load_scene("room"), size=0.5), "random-walk", quanta=after.quanta)
+    whole = rd.solve(rd.subdivide(rd.load_scene("room"), size=0.5), quanta=after.quanta)
     assert (after.arrivals == whole.arrivals).all()
     assert (after.radiosity == whole.radiosity).all()
 

@@ -46,7 +46,7 @@ def test_parts_of_a_run_are_merged_as_the_page_shows(tmp_path, monkeypatch):
     names: dict = {"__name__": "parts"}
     (block,) = blocks(DOCS / "long-runs.md")
     exec(compile(block, "long-runs.md", "exec"), names)
-    whole = rd.solve(names["solution"].patches, "random-walk", quanta=2**18, replicates=8)
+    whole = rd.solve(names["solution"].patches, quanta=2**18, replicates=8)
     assert np.array_equal(names["solution"].irradiance_standard_error, whole.irradiance_standard_error)
 
 

@@ -47,7 +47,7 @@ def with_more(vertices, faces, reflectance=0.0, emission=0.0, scene=None, **more
 
 
 def solved(scene, cells=2, rays=40_000, **choices) -> rd.Solution:
-    return rd.solve(rd.subdivide(scene, cells=cells), rays=rays, replicates=8, **choices)
+    return rd.solve(rd.subdivide(scene, cells=cells), rays=rays, replicates=8, **({"method": "random-walk"} | choices))
 
 
 def holds(solution, truth, rows: slice | np.ndarray = slice(None)) -> None:

@@ -107,7 +107,7 @@ def test_black_scene_has_known_radiosity_and_an_error_of_irradiance():
         ({"quanta": 2**33}, "32-bit counters"),
         ({"rays": 1000, "replicates": 0}, "replicates is 0"),
         ({"rays": 1000, "seed": -1}, "seed is -1"),
-        ({"rays": 1000, "method": "magic"}, "'magic' does not exist; known are random-walk"),
+        ({"rays": 1000, "method": "magic"}, "'magic' does not exist; known are auto, random-walk"),
         ({"rays": 1000, "equation": "cubic"}, "equation 'cubic' does not exist; known are discrete"),
         ({"rays": 1000, "lines": "curved"}, "lines 'curved' does not exist; known are local"),
         ({"rays": 1000, "order": "sideways"}, "order 'sideways' does not exist; known are depth-first, breadth-first"),

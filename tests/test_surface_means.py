@@ -62,7 +62,7 @@ def test_beyond_its_own_lines_a_patch_takes_the_shift_of_all(monkeypatch):
     assert line_tracer.own_lines(6) == 16
 
     def arrivals(**choices):
-        return rd.solve(patches, quanta=3000, replicates=2, **choices).state["arrivals"]
+        return rd.solve(patches, "random-walk", quanta=3000, replicates=2, **choices).state["arrivals"]
 
     shared = arrivals(randomisation="shared")
     assert not np.array_equal(arrivals(), shared)

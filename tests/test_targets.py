@@ -202,7 +202,7 @@ def means_of(target: float, seeds: int, **choices) -> tuple[int, list[float]]:
     patches = rd.subdivide(alone.scene, cells=3)
     errors = []
     for seed in range(seeds):
-        solution = rd.solve(patches, error=target, error_of="mean:sensor", seed=seed, **choices)
+        solution = rd.solve(patches, "random-walk", error=target, error_of="mean:sensor", seed=seed, **choices)
         assert solution.status == "complete"
         assert solution.surface_table()[1]["interval"] <= target * (1 + 1e-9)  # Student's interval is what it goes by
         errors.append(abs(float(solution.irradiance[9:, 0].mean()) / truth - 1))

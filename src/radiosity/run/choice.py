@@ -37,6 +37,7 @@ MEASURED = {"gather": 0.75, FALLBACK: 1.1, CONTROL: 1.2}
 ENOUGH = 48  # lines of a patch: with fewer, the pilot would take too much of them
 ENTRY = 4.0  # lines: the work of one entry of the table of clusters and lamps
 MOST = 0.3  # of the lines: the work of the pilot
+TINY = 1e-6  # of the light: smaller errors count as this
 UNKNOWN = 3e7  # lines: the work of a pilot that is done where seconds or an error are asked for
 
 
@@ -74,14 +75,20 @@ def choice_for(patches: Patches, budget: Budget, part: Part, device: str, resume
     geometry.prepare()
     method = PRESETS["gather"].method
     errors = predicted(problem, pilot.Pilot.of(geometry, problem, Chances.of(geometry, problem), method, part.seed))
-    best = min(errors, key=lambda name: errors[name])
-    shown = ", ".join(f"{name} {errors[name] / errors[best]:.3g}" for name in sorted(errors, key=lambda name: errors[name]))
+    if not errors:
+        return _chosen(FALLBACK, "the pilot met no light that is reflected", pilot.LINES * n, geometry)
+    order = sorted(errors, key=lambda name: errors[name])
+    best, least = order[0], max(errors[order[0]], TINY)
+    shown = ", ".join(f"{name} {max(errors[name], TINY) / least:.3g}" for name in order)
     counted = 0 if best == "gather" else pilot.LINES * n
     return _chosen(best, f"predicted errors for equal work: {shown}", counted, geometry)
 
 
 def predicted(problem: Problem, found: pilot.Pilot) -> dict[str, float]:
-    """Return the relative error of each method of `METHODS` after one line of every patch, times the square root of its cost."""
+    """Return the relative error of each method of `METHODS` after one line of every patch, times the square root of its cost.
+
+    It is empty where the pilot met no light that is reflected.
+    """
     area, groups, n = problem.patches.area, problem.groups, len(problem.patches)
     shares = groups.emission / np.maximum(groups.emission.max(axis=0), 1e-300)
     reflected = groups.reflectance * found.irradiance
@@ -89,7 +96,7 @@ def predicted(problem: Problem, found: pilot.Pilot) -> dict[str, float]:
     light, rho = reflected[:, group], groups.reflectance[:, group]
     total = float(area @ light**2)
     if not total:
-        return {"gather": 0.0}
+        return {}
     packets = found.shares.packets
     weights = np.repeat(found.shares.weights, packets.sizes, axis=1)[:, packets.place]
     each = n * weights / weights.sum()

@@ -39,6 +39,7 @@ from .snapshot import Snapshot
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 COUNTERS_FULL = "counters full before the end; take more replicates"
 LARGE = 1 << 19  # counters: before results are read, memory of wavefronts is given back, which takes some milliseconds
+AT_ONCE = 1 << 24  # lines: a run of fewer, whose N is known beforehand, is one stage
 PATIENCE = 1.2  # times the seconds asked for: after that a stage is left unfinished
 
 
@@ -257,7 +258,9 @@ class Run:
     def _first_quanta(self) -> int:
         """Return N of the first stage: the ladder's first rung, or less where the budget asks for less."""
         if self.ladder.quanta is not None:
-            return min(self.rung, int(self.ladder.quanta))
+            known = int(self.ladder.quanta)
+            at_once = self.ladder is not self.budget and known * self.replicates <= AT_ONCE
+            return known if at_once else min(self.rung, known)
         if isinstance(self.method, Baseline):
             return self.rung
         if self.budget.rays is None or self.budget.rays >= MANY * self.rung * self.replicates:

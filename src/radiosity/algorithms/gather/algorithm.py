@@ -18,7 +18,7 @@ from ..base import AbstractAlgorithm, Swept
 from ..state import Arrays, Sizes
 from .chances import Chances
 from .lines import UNITS, Lines
-from .packets import ESCAPED, LOST, Packets
+from .packets import Packets
 from .pilot import LINES, Pilot
 from .reading import Reading
 from .rows import Rows
@@ -28,7 +28,7 @@ from .state import GatherState
 from .tally import GatherTally
 
 SLICE = 1 << 22  # lines of a slice: between slices a run can be interrupted
-TOLERANCE = 5e-3  # of the mean irradiance, in the first correction; later ones take less, as errors do
+TOLERANCE = 3e-3  # of the mean irradiance, in the first correction; later ones take less, as errors do
 
 
 class Gather(AbstractAlgorithm[GatherState]):
@@ -77,7 +77,8 @@ class Gather(AbstractAlgorithm[GatherState]):
         self._brought, self._met = (
             [dr.zeros(kind, self.packets.lanes) for _ in range(self.groups)] for kind in (types.UInt64, types.Int64)
         )
-        self._reading = Reading.nothing(types.Float, self.packets.lanes, self.groups)
+        self._reading = Reading.nothing(types.Float, self.packets.lanes, self.groups, self.replicates)
+        self._missed = [dr.zeros(types.UInt32, self.packets.lanes) for _ in range(2)]
         self._hits, self._stored = dr.zeros(types.UInt32, self.packets.lanes), 0
 
     def advance(self, quanta: int, swept: Swept) -> None:
@@ -112,8 +113,10 @@ class Gather(AbstractAlgorithm[GatherState]):
             if storing:
                 self._make_room(int((before + more)[0].max()))
             read = None if storing else self._reading.reflected
-            self._add(self._met, lines.cosine(before[0], more[0], read, self._hits if storing else None))
-        dr.eval(self._brought, self._met)
+            met, missed = lines.cosine(before[0], more[0], read, self._hits if storing else None)
+            self._add(self._met, met)
+            self._add(self._missed, missed)
+        dr.eval(self._brought, self._met, self._missed)
         return int((more * self.packets.sizes).sum()) * self.replicates
 
     def _add(self, sums: list, more: list) -> None:
@@ -175,8 +178,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         met, reading = self._met, self._reading
         if self._done < shares.stored_quanta and self._done == self._quanta:
             met, reading = self._corrected(shares)
-        rows = self._rows(shares)
-        missed = np.stack([packets.patch_values(np.array(rows.missed(code))) for code in (ESCAPED, LOST)])
+        missed = np.stack([packets.patch_values(frozen(count)) for count in self._missed])
         of_packets = (*shares.counts(self._done), shares.stored(self._done))
         cosine, rays, stored = (np.repeat(count, packets.sizes)[packets.place].astype(np.uint32) for count in of_packets)
         by_patch = self._by_patch
@@ -195,6 +197,7 @@ class Gather(AbstractAlgorithm[GatherState]):
             first_bias=by_patch(reading.first),
             bias_left=by_patch(reading.left),
             missed=missed,
+            unsolved=reading.missing,
         )
 
     def _by_patch(self, columns: list) -> np.ndarray:
@@ -220,12 +223,13 @@ class Gather(AbstractAlgorithm[GatherState]):
             return
         stored = shares.stored(state.done)
         self._make_room(int(stored.max()))
-        again = lines.cosine(np.zeros_like(stored), stored, keep=self._hits)
+        again, missed = lines.cosine(np.zeros_like(stored), stored, keep=self._hits)
         self._brought = self._by_lane(types.UInt64, state.brought)
         if state.done < shares.stored_quanta:  # lines read nothing yet; what `capture` added is found again
-            self._met = [types.Int64(value) for value in again]
+            self._met, self._missed = [types.Int64(value) for value in again], missed
             return
         self._met = self._by_lane(types.Int64, state.met)
         halves = [value for half in state.halves for value in self._by_lane(types.Float, half)]
         reflected, first, left = (self._by_lane(types.Float, x) for x in (state.reflected, state.first_bias, state.bias_left))
-        self._reading = Reading(reflected, halves, first, left)
+        self._missed = [upload(types.UInt32, self.packets.lane_values(count)) for count in state.missed]
+        self._reading = Reading(reflected, halves, first, left, state.unsolved)

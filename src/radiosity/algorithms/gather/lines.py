@@ -24,7 +24,7 @@ from ...tracing.hits import first_hit, patch_of
 from ...tracing.ray_generation import MASK, Frame, before, place_number, position
 from .chances import Chances
 from .lamps import NONE
-from .packets import Packets
+from .packets import ESCAPED, LOST, Packets
 
 KERNEL = 1 / 3  # of the density of shadow rays: above this kernel, cosine lines count
 UNITS = 2.0**30  # fixed point units of one line
@@ -88,8 +88,9 @@ class Lines:
 
     # ---- cosine lines ----------------------------------------------------------------------------------------------
 
-    def cosine(self, done, counts, read=None, keep=None, squares: bool = False):
-        """Trace cosine lines, and return sums of what they meet, of each group: Int64, or Float with their squares.
+    def cosine(self, done, counts, read=None, keep=None, squares: bool = False) -> tuple[list, list]:
+        """Trace cosine lines. Return sums of what they meet, of each group: Int64, or Float with squares; and how many lines
+        escaped and were lost, UInt32 each.
 
         That is the emission of lamps for which cosine lines count, and what is read.
 
@@ -107,9 +108,10 @@ class Lines:
         frame, position_of = self._frame(record)
         normal, row = frame.normal * frame.side, self.chances.row(place)
         base, lanes, scale = replicate * packets.width_on_device, dr.opaque(UInt32, packets.lanes), dr.opaque(Float, self.unit)
+        one, none = UInt32(1), UInt32(0)
         dr.eval(start, count, row, base)
 
-        def body(number, *sums):
+        def body(number, escaped, lost, *sums):
             u = points(number)
             origin, direction = frame.leave(*position_of(u), u)
             hit = first_hit(geometry, origin, direction, coherent=packets.coherent)
@@ -127,12 +129,16 @@ class Lines:
             if read is not None:
                 there = where < packets.width_on_device
                 values = [value + dr.gather(Float, b, base + where, there) for value, b in zip(values, read, strict=True)]
+            gone = [total + dr.select(where == code, one, none) for total, code in ((escaped, ESCAPED), (lost, LOST))]
             if squares:
-                return (number + 1, *_squared(sums, values))
+                return (number + 1, *gone, *_squared(sums, values))
             fixed = [types.Int64(types.Int(value * scale + 0.5)) for value in values]
-            return (number + 1, *(total + value for total, value in zip(sums, fixed, strict=True)))
+            return (number + 1, *gone, *(total + value for total, value in zip(sums, fixed, strict=True)))
 
-        return self._summed(count, body, types.Float if squares else types.Int64, 1 + squares, keep)
+        zeros = [dr.zeros(UInt32, packets.lanes) for _ in range(2)]
+        zeros += [dr.zeros(Float if squares else types.Int64, packets.lanes) for _ in range(self.groups * (1 + squares))]
+        escaped, lost, *sums = self._summed(count, body, zeros, keep)
+        return sums, [escaped, lost]
 
     # ---- shadow rays -----------------------------------------------------------------------------------------------
 
@@ -173,7 +179,8 @@ class Lines:
             fixed = [types.UInt64(types.Int(value * UNITS + 0.5)) for value in brought]
             return (number + 1, *(total + value for total, value in zip(sums, fixed, strict=True)))
 
-        return self._summed(count, body, types.Float if squares else types.UInt64, 1 + squares)
+        kind = Float if squares else types.UInt64
+        return self._summed(count, body, [dr.zeros(kind, packets.lanes) for _ in range(self.groups * (1 + squares))])
 
     def _point_of(self, lamp, u):
         """Return a point of a lamp, the lamp's normal, its first patch and their number; called in a kernel."""
@@ -188,11 +195,10 @@ class Lines:
 
     # ---- both ------------------------------------------------------------------------------------------------------
 
-    def _summed(self, count, body, kind, times: int, keep=None) -> list:
-        """Return the sums of a loop over ``count`` lines of each lane, ``times`` as many as there are groups."""
-        zeros = (dr.zeros(kind, self.packets.lanes) for _ in range(times * self.groups))
+    def _summed(self, count, body, zeros: list, keep=None) -> list:
+        """Return the sums of a loop over ``count`` lines of each lane."""
         state = (dr.zeros(self.types.UInt32, self.packets.lanes), *zeros)
-        _, *sums = loop(state, lambda number, *sums: number < count, body)
+        _, *sums = loop(state, lambda number, *_: number < count, body)
         dr.eval(sums, *([] if keep is None else [keep]))
         return sums
 

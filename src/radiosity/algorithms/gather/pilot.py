@@ -64,7 +64,7 @@ class Pilot:
         constant = lambda value: np.full(packets.count, value)  # noqa: E731
         shadow = lines.shadow(constant(0), constant(SHADOW), squares=True)
         hits = dr.zeros(types.UInt32, STORED * packets.lanes)
-        lamplight = lines.cosine(constant(0), constant(STORED), keep=hits)
+        lamplight, _ = lines.cosine(constant(0), constant(STORED), keep=hits)
         rows = Rows(
             packets, hits, dr.full(types.UInt32, STORED, packets.lanes), Rows.reflectances(packets, problem.groups.reflectance)
         )
@@ -75,8 +75,8 @@ class Pilot:
         right = [rho * value for rho, value in zip(rows.reflectance, direct, strict=True)]
         dr.eval(right, direct)
         level = max(float(np.mean(np.array(one))) for one in direct)
-        reflected = rows.solve(right, TOLERANCE * max(level, 1e-30))
-        cosine = lines.cosine(constant(STORED), constant(READ), read=reflected, squares=True)
+        reflected, _ = rows.solve(right, TOLERANCE * max(level, 1e-30))
+        cosine, _ = lines.cosine(constant(STORED), constant(READ), read=reflected, squares=True)
         variance = np.stack([_variance(packets, sums, number) for sums, number in ((cosine, READ), (shadow, SHADOW))])
         rho = problem.groups.reflectance.max(axis=1)
         area = packets.patches.area

@@ -22,17 +22,20 @@ class Reading:
         halves: what it would be by the first half of the lines, then by the second, less ``reflected``; twice as many entries.
         first: the bias of irradiance after the first correction.
         left: what corrections have left of it.
+        missing: (replicates,) float64, what iterations have left of the last correction, at most.
     """
 
     reflected: list
     halves: list
     first: list
     left: list
+    missing: np.ndarray
 
     @staticmethod
-    def nothing(kind, lanes: int, groups: int) -> "Reading":
+    def nothing(kind, lanes: int, groups: int, replicates: int) -> "Reading":
         """Return what is read before the first correction: zero."""
-        return Reading(*([dr.zeros(kind, lanes) for _ in range(count * groups)] for count in (1, 2, 1, 1)))
+        columns = ([dr.zeros(kind, lanes) for _ in range(count * groups)] for count in (1, 2, 1, 1))
+        return Reading(*columns, np.zeros(replicates))
 
     def corrected(self, rows: Rows, irradiance: list, tolerance: np.ndarray, *, first: bool) -> tuple["Reading", list]:
         """Return what lines read from now on, and by how much more of it each lane's lines meet, in the mean over stored lines.
@@ -50,11 +53,11 @@ class Reading:
             for start, rho, mean, half in zip(right * 2, rows.reflectance * 2, met, self.halves, strict=True)
         ]
         dr.eval(right, rights)
-        more = rows.solve(right, tolerance)
+        more, missing = rows.solve(right, tolerance)
         of_halves = [
             one
             for half in (0, 1)
-            for one in rows.solve(rights[half * groups : (half + 1) * groups], ROUGHLY * tolerance, more, half)
+            for one in rows.solve(rights[half * groups : (half + 1) * groups], ROUGHLY * tolerance, more, half)[0]
         ]
         reflected = [value + one for value, one in zip(self.reflected, more, strict=True)]
         halves = [half + one - whole for half, one, whole in zip(self.halves, of_halves, more * 2, strict=True)]
@@ -63,5 +66,5 @@ class Reading:
         left = rows.means([(a + b) * 0.5 for a, b in zip(halves[:groups], halves[groups:], strict=True)])
         means = rows.means(more)
         dr.eval(reflected, halves, left, means)
-        reading = replace(self, reflected=reflected, halves=halves, left=left)
+        reading = replace(self, reflected=reflected, halves=halves, left=left, missing=missing)
         return (replace(reading, first=left) if first else reading), means

@@ -68,8 +68,8 @@ class Rows:
         _, *sums = loop(state, lambda number, *sums: number < end, body)
         return [total * share for total in sums]
 
-    def solve(self, right: list, tolerance: "float | np.ndarray", start: list | None = None, half: int | None = None) -> list:
-        """Return x = r + rho F' x of each group, along all stored lines or a half of them.
+    def solve(self, right: list, tolerance: "float | np.ndarray", start: list | None = None, half: int | None = None):
+        """Return x = r + rho F' x of each group, along all stored lines or a half of them; and what is missing in each replicate.
 
         A Jacobi iteration takes longest for the even part of the light. So after some, a multiple of the reflectance is added,
         which makes the power of all areas balance. Where changes fall by a factor q from one iteration to the next, what is
@@ -82,7 +82,7 @@ class Rows:
             start: the first iterate; ``right`` by default.
         """
         found, before = list(right if start is None else start), np.full(self.packets.replicates, np.inf)
-        open_ = np.ones(self.packets.replicates, bool)
+        open_, missing = np.ones(self.packets.replicates, bool), np.zeros(self.packets.replicates)
         for iteration in range(1, LONGEST + 1):
             met = self.means(found, half)
             new = [one + share * value for one, share, value in zip(right, self.reflectance, met, strict=True)]
@@ -98,11 +98,12 @@ class Rows:
                     before = change
                 else:
                     factor = np.minimum(change / np.maximum(before, 1e-300), SLOWEST)
-                    open_ &= change * factor / (1 - factor) > tolerance
+                    missing = np.where(open_, change * factor / (1 - factor), missing)
+                    open_ &= missing > tolerance
                     if not open_.any():
-                        return new
+                        return new, missing
             found = new
-        return found
+        return found, missing
 
     def _largest(self, values) -> np.ndarray:
         """Return the largest value of each replicate, (replicates,) float64."""
@@ -146,18 +147,3 @@ class Rows:
         found = dr.gather(types.Float, shares, patch, place < dr.opaque(types.UInt32, self.packets.n))
         dr.eval(found)
         return found
-
-    def missed(self, code: int):
-        """Return how many stored lines of each lane ended with a code of `packets`, (lanes,) UInt32."""
-        packets, UInt32 = self.packets, self.packets.types.UInt32
-        lane, lanes = dr.arange(UInt32, packets.lanes), dr.opaque(UInt32, packets.lanes)
-        wanted, stored = dr.opaque(UInt32, code), self.stored
-
-        def body(number, total):
-            where = dr.gather(UInt32, self.hits, number * lanes + lane)
-            return number + 1, total + dr.select(where == wanted, UInt32(1), UInt32(0))
-
-        state = (dr.zeros(UInt32, packets.lanes), dr.zeros(UInt32, packets.lanes))
-        _, total = loop(state, lambda number, total: number < stored, body)
-        dr.eval(total)
-        return total

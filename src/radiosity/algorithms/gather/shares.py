@@ -8,10 +8,10 @@ import numpy as np
 from .packets import Packets
 
 STORED, FIRST_SHADOW = 16, 8  # cosine lines that are stored, and shadow rays that are fired with them, of a patch at most
-FIRST = 14  # of both kinds, in the mean over patches
+FIRST = 16  # of both kinds, in the mean over patches
 LEAST = (3, 1)  # of them, however small N is
 POWER = 0.435  # errors of a patch fall about as N^-0.65 (variance N^-1.3): shares go as variance to 1 / (1 + 1.3)
-FLOOR = 1e-3  # of the mean variance: no patch has none
+FLOOR = 1e-2  # of the mean variance: no patch has none
 LARGEST, HALVINGS = 2.0**60, 80  # of factors, which are found by halving an interval
 GROWTH = 4  # the reflected radiosity that lines read is corrected each time that N has grown by this factor
 

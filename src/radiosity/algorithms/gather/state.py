@@ -24,7 +24,8 @@ class GatherState(AbstractState):
         halves: (2, replicates, n_patches, groups) float32, by how much that differs along each half of the stored lines.
         first_bias, bias_left: (replicates, n_patches, groups) float32, the bias of irradiance after the first correction and
             after the last one, in shares of the largest emission.
-        missed: (2, replicates, n_patches) uint32, stored lines that escaped and were lost.
+        missed: (2, replicates, n_patches) uint32, cosine lines that escaped and were lost.
+        unsolved: (replicates,) float64, what iterations have left of the solution along stored lines, at most, as `bias_left`.
     """
 
     done: int = number(int)
@@ -38,6 +39,7 @@ class GatherState(AbstractState):
     first_bias: np.ndarray = array("replicates", "rows", "groups")
     bias_left: np.ndarray = array("replicates", "rows", "groups")
     missed: np.ndarray = array(2, "replicates", "rows")
+    unsolved: np.ndarray = array("replicates")
 
     @property
     def unfinished(self) -> bool:

@@ -9,6 +9,8 @@ from .lines import UNITS, most_read
 from .pilot import LINES
 from .state import GatherState
 
+ROUNDED = 2.0**-20  # of a value: less is lost in single precision
+
 
 class GatherTally(AbstractBiasedTally[GatherState]):
     """Reads means over the lines of each patch: what shadow rays bring, and what cosine lines meet."""
@@ -39,7 +41,8 @@ class GatherTally(AbstractBiasedTally[GatherState]):
     def bias(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
         first, left = (np.abs(x[..., group].mean(axis=0, dtype=np.float64)) for x in (state.first_bias, state.bias_left))
         of_all = state.stored / np.maximum(state.cosine, 1)  # that of the solution by all lines goes as 1 / m
-        return np.maximum(left, first * of_all) * problem.patches.area
+        rounded = ROUNDED * self.irradiance(problem, state, group)[0].mean(axis=0)
+        return (np.maximum(left, first * of_all) + state.unsolved.mean()) * problem.patches.area + rounded
 
     def books(self, problem: Problem, state: GatherState, group: int) -> dict:
         values, unit = self.irradiance(problem, state, group)
@@ -49,6 +52,5 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         """Return the energy balance of the power that patches receive, (n_patches,) W or lm."""
         rho, own = problem.groups.reflectance[:, group], problem.groups.emission[:, group] * problem.patches.area
         left = own + rho * received
-        stored = np.maximum(state.stored, 1)
-        escaped, lost = (float(left @ (count.mean(axis=0) / stored)) for count in state.missed)
+        escaped, lost = (float(left @ (count.mean(axis=0) / np.maximum(state.cosine, 1))) for count in state.missed)
         return by_difference(float(own.sum()), float(received @ (1 - rho)), escaped, lost)
