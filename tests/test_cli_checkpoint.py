@@ -19,7 +19,7 @@ from radiosity.cli import checkpoints, main
 from radiosity.image import tables
 from radiosity.run import checkpoint as engine_checkpoints
 
-RUN = ("solve", "room", "--cells", "2", "--quanta", "300k", "--replicates", "2")
+RUN = ("solve", "room", "--method", "random-walk", "--cells", "2", "--quanta", "300k", "--replicates", "2")
 PROGRAM = """
 import resource, sys
 from radiosity.cli import checkpoints, main

@@ -231,7 +231,7 @@ def test_means_reach_their_targets_in_95_percent(numbers, target):
 def test_a_limit_ends_a_run_to_an_error(limit, why):
     patches, _ = sensor()
     with pytest.warns(rd.RadiosityWarning, match=rf"error 10% of surface:sensor was not reached: after .* lines .*{why}"):
-        solution = rd.solve(patches, error=0.1, error_of="surface:sensor", **limit)
+        solution = rd.solve(patches, "random-walk", error=0.1, error_of="surface:sensor", **limit)
     assert solution.status == "not reached"
     assert solution.rays < 60_000
     assert "not reached: the error asked for was 10%" in solution.report()

@@ -16,10 +16,10 @@ class Mistake(NamedTuple):
 MISTAKES = (
     Mistake(
         "algorithms/gather/tally.py",
-        "stored = np.maximum(state.stored, 1)",
-        "stored = np.maximum(np.minimum(state.cosine, 16), 1)",
+        "count.mean(axis=0) / np.maximum(state.cosine, 1)",
+        "count.mean(axis=0) / np.maximum(state.stored, 1)",
         ("test_gather.py",),
-        "patches that store few lines are taken to store all",
+        "lines of all stages that escaped are shares of the stored ones",
     ),
     Mistake(
         "algorithms/gather/lines.py",
