@@ -161,10 +161,13 @@ def appears(path: Path, process: subprocess.Popen) -> None:
         pytest.fail(f"ended before {path.name} was there: {process.communicate()}")
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
-def test_signals_leave_the_state(tmp_path, number, status):
+@pytest.mark.parametrize(
+    ("number", "status", "method"),
+    [(signal.SIGTERM, 143, "random-walk"), (signal.SIGINT, 130, "random-walk"), (signal.SIGINT, 130, "auto")],
+)
+def test_signals_leave_the_state(tmp_path, number, status, method):
     kept, output = tmp_path / "room.checkpoint.npz", tmp_path / "room.csv"
-    arguments = ("solve", "room", "--cells", "2", "--replicates", "2", "--rays", "1G", "-o", output)
+    arguments = ("solve", "room", "--method", method, "--cells", "2", "--replicates", "2", "--rays", "1G", "-o", output)
     process = started(*arguments)
     appears(kept, process)
     process.send_signal(number)
@@ -173,11 +176,10 @@ def test_signals_leave_the_state(tmp_path, number, status):
     assert err == f"radiosity: interrupted: stopped before the end; --resume {kept} goes on from there\n"
     found = rd.load_solution(kept)
     assert found.status == "interrupted"
-    lines = found.state["fired"].sum()
-    cut = found.patches
-    more = rd.solve(cut, "random-walk", quanta=max(int(found.state["quanta"]), 1 << 19), replicates=2, resume=found)
-    assert more.rays >= lines > 0
-    assert np.array_equal(more.irradiance, rd.solve(cut, "random-walk", quanta=more.quanta, replicates=2).irradiance)
+    done, cut = found.state["fired" if method == "random-walk" else "cosine"].sum(), found.patches
+    more = rd.solve(cut, method, quanta=max(int(found.state["quanta"]), 1 << 19), replicates=2, resume=found)
+    assert more.rays >= done > 0
+    assert np.array_equal(more.irradiance, rd.solve(cut, method, quanta=more.quanta, replicates=2).irradiance)
 
 
 @pytest.mark.parametrize("numbers", [(signal.SIGHUP,), (signal.SIGHUP, signal.SIGHUP), (signal.SIGTERM, signal.SIGHUP)], ids=str)
