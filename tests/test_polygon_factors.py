@@ -199,7 +199,8 @@ def test_any_pair_of_separate_polygons_agrees_with_quadrature(values, distance, 
         other = other[[0, 2, 1, 1]]
     found = one_pair(one, other)
     largest = parallel(1, 1) / distance**2
-    assert found == pytest.approx(by_points(one, other), rel=1e-6, abs=1e-6 * largest)
+    # the other is in front of the first, so no point of it comes to lie in a plane where the factor has a kink
+    assert found == pytest.approx(by_points(other, one), rel=1e-6, abs=1e-6 * largest)
     assert found == pytest.approx(one_pair(other, one), rel=1e-9, abs=1e-12 * largest)
 
 

@@ -54,7 +54,7 @@ def patches(cube):
 
 
 def quick(patches, **more):
-    return rd.solve(patches, quanta=1024, replicates=2, **more)
+    return rd.solve(patches, "random-walk", quanta=1024, replicates=2, **more)
 
 
 def in_thread(function):
