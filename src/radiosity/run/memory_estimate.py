@@ -38,7 +38,7 @@ MEMORY_ESTIMATES = {
     "firing": MemoryEstimate(50e6, 60, 80, 15, 27),  # the fixed part includes 20e6 while kernels of long runs are compiled
     "walks": MemoryEstimate(90e6, 60, 80, 36, 17),
     "gathering": MemoryEstimate(120e6, 60, 80, 88, 10),
-    "gather": MemoryEstimate(120e6, 120, 80, 120, 60),
+    "gather": MemoryEstimate(60e6, 120, 80, 70, 160),  # 52 of the 70 bytes are for lines that long runs store
     "iteration": MemoryEstimate(10e6, 60, 80, 82, 135),
     "multipath": MemoryEstimate(115e6, 60, 80, 18, 46),
     "pooling": MemoryEstimate(100e6, 60, 80, 211, 213),
