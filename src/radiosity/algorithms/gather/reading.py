@@ -34,8 +34,8 @@ class Reading:
     @staticmethod
     def nothing(kind, lanes: int, groups: int, replicates: int) -> "Reading":
         """Return what is read before the first correction: zero."""
-        columns = ([dr.zeros(kind, lanes) for _ in range(count * groups)] for count in (1, 2, 1, 1))
-        return Reading(*columns, np.zeros(replicates))
+        one, two, three, four = ([dr.zeros(kind, lanes) for _ in range(count * groups)] for count in (1, 2, 1, 1))
+        return Reading(one, two, three, four, np.zeros(replicates))
 
     def corrected(self, rows: Rows, irradiance: list, tolerance: np.ndarray, *, first: bool) -> tuple["Reading", list]:
         """Return what lines read from now on, and by how much more of it each lane's lines meet, in the mean over stored lines.
