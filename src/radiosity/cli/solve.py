@@ -46,8 +46,8 @@ def solve(
     scene
         A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene: cornell-box, room, studio, labyrinth.
     method
-        Name of a method; `radiosity methods` lists them. auto takes what a pilot of the scene says. The options below change a
-        part of the method, of random-walk for auto.
+        Name of a method; `radiosity methods` lists them. auto chooses one for the scene, by a short pilot run. The options
+        below change a part of the method. Without a method they change random-walk.
     """
     given = budget.given
     if cut.refine_check and (run.resume is not None or run.checkpoint is not None):

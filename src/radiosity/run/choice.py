@@ -21,6 +21,7 @@ from ..patches import Patches
 from ..problem.model import Problem
 from ..scene.model import Back
 from ..solution.model import Solution
+from ..tally.unmet import sides
 from ..tracing.geometry import Geometry
 from .budget import Budget
 from .part import Part
@@ -120,8 +121,7 @@ def _impossible(patches: Patches, problem: Problem) -> str:
 
 
 def _lamps(patches: Patches) -> int:
-    lit = patches.emission.any(axis=1)
-    return len(np.unique(2 * patches.face[lit].astype(np.int64) + patches.is_back[lit]))
+    return len(np.unique(sides(patches)[patches.emission.any(axis=1)]))
 
 
 def _too_few(budget: Budget, part: Part, n: int, work: float) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...device.backend import upload
 from ...problem.model import Problem
+from ...tally.unmet import sides as side_of
 from ...tracing.faces import COLUMN_BITS, QUAD
 from ...tracing.geometry import Geometry
 
@@ -25,7 +26,7 @@ class Lamps:
         """The lamps, (n_lamps, 2) int64: face, and 1 for its back. Neighbours follow each other."""
         patches = self.problem.patches
         lit = self.problem.groups.emission.any(axis=1)
-        face, back = np.divmod(np.unique(2 * patches.face[lit].astype(np.int64) + patches.is_back[lit]), 2)
+        face, back = np.divmod(np.unique(side_of(patches)[lit]), 2)
         centre = self.geometry.faces.corners[face].mean(axis=1)
         scaled = np.floor((centre - centre.min(axis=0)) / max(np.ptp(centre, axis=0).max(), 1e-300) * 1023)
         order = np.lexsort((*scaled.T, *np.floor(scaled / 64).T))

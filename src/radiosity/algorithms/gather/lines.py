@@ -97,7 +97,8 @@ class Lines:
         Args:
             done, counts: of each packet, (count,) int: the lines of each patch so far, and now.
             read: of each group, the reflected radiosity of each lane, Float.
-            keep: UInt32, line number times lanes plus lane: takes the lane's place where the line hits, or `MISSED`.
+            keep: UInt32, line number times lanes plus lane: takes the lane's place where the line hits, or
+                `packets.ESCAPED` or `LOST`.
         """
         packets, types = self.packets, self.types
         geometry, UInt32, Float = packets.geometry, types.UInt32, types.Float
