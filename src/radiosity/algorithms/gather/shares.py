@@ -12,8 +12,43 @@ FIRST = 16  # of both kinds, in the mean over patches
 LEAST = (3, 1)  # of them, however small N is
 POWER = 0.435  # errors of a patch fall about as N^-0.65 (variance N^-1.3): shares go as variance to 1 / (1 + 1.3)
 FLOOR = 1e-2  # of the mean variance: no patch has none
-LARGEST, HALVINGS = 2.0**60, 80  # of factors, which are found by halving an interval
 GROWTH = 4  # the reflected radiosity that lines read is corrected each time that N has grown by this factor
+
+
+@dataclass(frozen=True, eq=False)
+class Factors:
+    """The factor of all weights at which clipped counts sum to N: a function that grows with N, straight between corners.
+
+    Attributes:
+        corners: (m,) float64, factors at which a count leaves its lower limit or meets its upper one, ascending.
+        sums: (m,) float64, the sum of counts at each.
+        slopes: (m,) float64, by how much the sum grows with the factor from there on.
+    """
+
+    corners: np.ndarray
+    sums: np.ndarray
+    slopes: np.ndarray
+
+    @staticmethod
+    def of(weights: np.ndarray, sizes: np.ndarray, least: np.ndarray, most: np.ndarray) -> "Factors":
+        """Make it for counts clip(factor * weights, least, most), each of so many patches."""
+        growth = weights * sizes
+        ends = np.isfinite(most)
+        corners = np.concatenate([(least / weights).ravel(), (most / weights)[ends]])
+        changes = np.concatenate([growth.ravel(), -growth[ends]])
+        order = np.argsort(corners, kind="stable")
+        corners, slopes = corners[order], np.maximum(np.cumsum(changes[order]), 0.0)
+        steps = np.concatenate([[0.0], slopes[:-1] * np.diff(corners)])
+        return Factors(corners, float((least * sizes).sum()) + np.cumsum(steps), slopes)
+
+    def at(self, quanta: int) -> float:
+        """Return the factor at N; 0 where the lower limits alone are more."""
+        number = int(np.searchsorted(self.sums, quanta, side="right")) - 1
+        if number < 0:
+            return 0.0
+        begin, slope = float(self.corners[number]), float(self.slopes[number])
+        end = float(self.corners[number + 1]) if number + 1 < len(self.corners) else np.inf
+        return min(begin + (quanta - float(self.sums[number])) / slope, end) if slope > 0 else begin
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,23 +81,31 @@ class Shares:
 
         It never falls as N grows.
         """
-        first = self._shared(min(quanta, self.stored_quanta), np.array([[LEAST[0]], [LEAST[1]]]), (STORED, FIRST_SHADOW))
-        return first if quanta <= self.stored_quanta else self._shared(quanta, first, (np.inf, np.inf))
+        first = self._counts(min(quanta, self.stored_quanta), *self._first)
+        return first if quanta <= self.stored_quanta else self._counts(quanta, *self._later)
 
     def stored(self, quanta: int) -> np.ndarray:
         """Return how many cosine lines of the patches of each packet are stored at N, (count,) int64."""
         return self.counts(min(quanta, self.stored_quanta))[0]
 
-    def _shared(self, quanta: int, least: np.ndarray, most: tuple[float, float]) -> np.ndarray:
+    def _counts(self, quanta: int, factors: Factors, least: np.ndarray, most: np.ndarray) -> np.ndarray:
         """Return counts in proportion to the weights, within limits, that sum to N."""
-        limit, low, high = np.array(most)[:, None], 0.0, LARGEST
-        for _ in range(HALVINGS):  # a larger N takes the same way or turns up earlier, so counts never fall
-            middle = (low + high) / 2 if low else high / 1024
-            if float((np.clip(middle * self.weights, least, limit) * self.packets.sizes).sum()) <= quanta:
-                low = middle
-            else:
-                high = middle
-        return np.clip(np.floor(low * self.weights + self._phases), least, limit).astype(np.int64)
+        return np.clip(np.floor(factors.at(quanta) * self.weights + self._phases), least, most).astype(np.int64)
+
+    @cached_property
+    def _first(self) -> tuple[Factors, np.ndarray, np.ndarray]:
+        """Factors and limits of the first lines, which are stored."""
+        least, most = (
+            np.broadcast_to(np.array(limit, float)[:, None], self.weights.shape) for limit in (LEAST, (STORED, FIRST_SHADOW))
+        )
+        return Factors.of(self.weights, self.packets.sizes, least, most), least, most
+
+    @cached_property
+    def _later(self) -> tuple[Factors, np.ndarray, np.ndarray]:
+        """The same of all lines of a longer run."""
+        least = self._counts(self.stored_quanta, *self._first).astype(float)
+        most = np.full_like(least, np.inf)
+        return Factors.of(self.weights, self.packets.sizes, least, most), least, most
 
     @cached_property
     def _phases(self) -> np.ndarray:

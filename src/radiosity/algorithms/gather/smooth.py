@@ -55,8 +55,7 @@ class SmoothTally(AbstractBiasedTally[GatherState]):
             self._known.clear()
             self._known["state"] = state
         if group not in self._known:
-            values, unit = self.plain.irradiance(problem, state, group)
-            direct = self.plain.direct(problem, state, group)
-            parts = [smoothed(problem.patches, part) for part in (direct, values - direct)]
+            *both, unit = self.plain.parts(problem, state, group)
+            parts = [smoothed(problem.patches, part) for part in both]
             self._known[group] = sum(part for part, _ in parts), sum(bias for _, bias in parts), unit
         return self._known[group]

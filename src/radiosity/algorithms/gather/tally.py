@@ -5,6 +5,7 @@ import numpy as np
 from ...problem.model import Problem
 from ...solution.books import by_difference, exact_sum
 from ..base import AbstractBiasedTally
+from .balance import factors
 from .lines import UNITS, most_read
 from .pilot import LINES
 from .state import GatherState
@@ -24,15 +25,24 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         lines = state.cosine.astype(np.int64) + state.rays
         return lines * state.sizes.replicates  # a patch is measured by the lines that leave it
 
-    def direct(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
-        """Return the part of `irradiance` that shadow rays bring, (replicates, n_patches)."""
-        rays = np.maximum(state.rays, 1).astype(np.float64)
-        return state.brought[..., group] * (problem.patches.area / (rays * UNITS))
+    def parts(self, problem: Problem, state: GatherState, group: int) -> tuple[np.ndarray, np.ndarray, float]:
+        """Return what shadow rays bring, and what cosine lines meet, (replicates, n_patches) each, and the unit of both.
+
+        In each replicate all of it is multiplied so that the power of the scene balances, see `balance.factors`.
+        """
+        rays, lines = (np.maximum(count, 1).astype(np.float64) for count in (state.rays, state.cosine))
+        brought = state.brought[..., group] * (problem.patches.area / (rays * UNITS))
+        met = state.met[..., group] * (problem.patches.area * most_read(problem) / (lines * UNITS))
+        unit = float(problem.groups.emission[:, group].max())
+        if unit > 0:
+            own = problem.groups.emission[:, group] * problem.patches.area / unit
+            factor = factors(own, problem.groups.reflectance[:, group], brought + met, state.missed.sum(axis=0), lines)
+            brought, met = brought * factor, met * factor
+        return brought, met, unit
 
     def irradiance(self, problem: Problem, state: GatherState, group: int) -> tuple[np.ndarray, float]:
-        lines = np.maximum(state.cosine, 1).astype(np.float64)
-        met = state.met[..., group] * (problem.patches.area * most_read(problem) / (lines * UNITS))
-        return self.direct(problem, state, group) + met, float(problem.groups.emission[:, group].max())
+        brought, met, unit = self.parts(problem, state, group)
+        return brought + met, unit
 
     def line(self, problem: Problem, state: GatherState, group: int) -> np.ndarray | float:
         """Return the power that one of a patch's lines brings where it hits the brightest lamp."""

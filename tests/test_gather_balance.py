@@ -1,0 +1,65 @@
+"""The factors by which received power is multiplied so that the power of a scene balances."""
+
+import numpy as np
+import pytest
+
+from radiosity.algorithms.gather.balance import factors
+
+OWN, REFLECTANCE = np.array([1.0, 0.0]), np.array([0.0, 0.5])  # a lamp and a floor
+RECEIVED = np.array([[0.0, 2.0]]) * np.linspace(0.97, 1.02, 8)[:, None]
+
+
+def imbalance(received: np.ndarray, missed: np.ndarray, lines: np.ndarray) -> np.ndarray:
+    sent = OWN + REFLECTANCE * received
+    return OWN.sum() - received @ (1 - REFLECTANCE) - (sent * missed / lines).sum(axis=1)
+
+
+def balanced(missed, lines, received=RECEIVED) -> np.ndarray:
+    missed, lines = np.broadcast_to(np.array(missed), received.shape), np.array(lines, float)
+    return received * factors(OWN, REFLECTANCE, received, missed, lines)
+
+
+def test_a_closed_scene_absorbs_what_lamps_emit():
+    assert balanced([0, 0], [16, 100])[:, 1] * 0.5 == pytest.approx(np.ones(8), rel=1e-12)
+
+
+def test_an_open_scene_balances_where_many_lines_know_what_escapes():
+    missed, lines = np.array([0, 10**8]), np.array([10**8, 2 * 10**8])
+    left = imbalance(balanced(missed, lines), missed, lines)
+    assert np.abs(left).max() < 1e-3 * np.abs(imbalance(RECEIVED, missed, lines)).max()
+
+
+def test_few_lines_that_escape_are_not_believed():
+    """A lamp of 16 lines, an eighth of which escape: the balance in each replicate would err by several percent."""
+    missed, lines = np.stack([np.array([1, 2, 4, 2, 3, 1, 3, 0]), np.full(8, 62_500)], axis=1), np.array([16.0, 100_000.0])
+    power = RECEIVED * (0.875 / (0.5 + 0.3125) / 2)  # a floor whose power balances in the mean
+    assert np.std(imbalance(power, missed, lines)) > 4 * np.std(power[:, 1] * 0.8125)
+    assert np.std(balanced(missed, lines, power)[:, 1]) < 2.5 * np.std(power[:, 1])
+
+
+def patches_of_two_kinds(even: float, alone: np.ndarray, seed: int = 1) -> np.ndarray:
+    """Received power of 256 replicates, in the mean 2 of 100 patches, with errors that all have alike and errors of their own."""
+    random = np.random.default_rng(seed)
+    return 0.02 * (1 + even * random.normal(size=(256, 1)) + alone * random.normal(size=(256, 100)))
+
+
+@pytest.mark.parametrize(("even", "alone", "better"), [(0.02, 0.01, 1.9), (0.002, np.repeat([0.6, 0.01], [5, 95]), 1.0)])
+def test_the_imbalance_goes_where_its_cause_is(even, alone, better):
+    """To all patches alike, or to the five that vary much: not to others, whose errors would grow by it."""
+    own, reflectance, lines = np.append(1.0, np.zeros(100)), np.append(0.0, np.full(100, 0.5)), np.full(101, 1000)
+    received = np.column_stack([np.zeros(256), patches_of_two_kinds(even, alone)])
+    found = received * factors(own, reflectance, received, np.zeros_like(received), lines)
+    before, after = (np.sqrt(np.mean((power[:, 6:] / 0.02 - 1) ** 2)) for power in (received, found))
+    assert after < 1.05 * before / better
+    assert found.sum(axis=1) == pytest.approx(np.full(256, 2.0), rel=1e-9)
+    if better == 1.0:  # what all patches would take if they were scaled alike is more
+        scaled = received * (2.0 / received.sum(axis=1, keepdims=True))
+        assert np.sqrt(np.mean((scaled[:, 6:] / 0.02 - 1) ** 2)) > 1.3 * after
+
+
+def test_replicates_that_receive_nothing_stay():
+    assert (factors(OWN, REFLECTANCE, np.zeros((3, 2)), np.zeros((3, 2)), np.ones(2)) == 1).all()
+
+
+def test_one_replicate_is_scaled():
+    assert balanced([0, 0], [1, 1], RECEIVED[:1])[0] == pytest.approx([0.0, 2.0])
