@@ -11,7 +11,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from ...device.backend import upload
+from ...device.backend import small, upload
 from ...device.recorded import loop
 from .packets import Packets
 
@@ -89,7 +89,7 @@ class Rows:
             if iteration % CHECKED == CHECKED - 3:
                 new = [self._balanced(value, old, *even) for value, old, even in zip(new, found, self.even, strict=True)]
             if not open_.all():
-                goes_on = self._of_replicates(self.packets.types.Bool, open_)
+                goes_on = self._of_replicates(open_) != 0
                 new = [dr.select(goes_on, value, old) for value, old in zip(new, found, strict=True)]
             dr.eval(new)
             if iteration % CHECKED in (CHECKED - 1, 0):
@@ -109,10 +109,10 @@ class Rows:
         """Return the largest value of each replicate, (replicates,) float64."""
         return np.array(dr.block_reduce(dr.ReduceOp.Max, values, self.packets.width), np.float64)
 
-    def _of_replicates(self, kind, values: np.ndarray):
-        """Return a value of each replicate for each of its lanes."""
+    def _of_replicates(self, flags: np.ndarray):
+        """Return the flag of each replicate, 0 or 1, for each of its lanes."""
         _, replicate, _, _ = self.packets.read()
-        return dr.gather(kind, upload(kind, values), replicate)
+        return dr.gather(self.packets.types.UInt32, small(self.packets.types.UInt32, flags.astype(np.uint32)), replicate)
 
     @cached_property
     def even(self) -> list:
