@@ -125,17 +125,21 @@ MISTAKES = (
     ),
     Mistake("solution/npz.py", '    "patch_size",\n', "", ("test_round_trip.py",), "a field of the scene is not saved"),
     Mistake(
-        "solution/loading.py", 'scale=described["scale"],', "", ("test_round_trip.py",), "a field of the scene is not loaded"
+        "solution/stored_patches.py",
+        'scale=described["scale"],',
+        "",
+        ("test_round_trip.py",),
+        "a field of the scene is not loaded",
     ),
     Mistake(
-        "solution/loading.py",
+        "solution/stored_patches.py",
         "Camera(tuple(origin), tuple(target), tuple(up), **rest)",
         'Camera(tuple(origin), tuple(target), tuple(up), rest["fov"])',
         ("test_round_trip.py",),
         "a camera loses its size",
     ),
     Mistake(
-        "solution/loading.py",
+        "solution/stored_patches.py",
         "limit = np.inf if facts",
         "limit = np.inf if True or facts",
         ("test_round_trip.py",),
