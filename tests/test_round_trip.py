@@ -83,7 +83,9 @@ def is_default(field, value) -> bool:
 
 @pytest.fixture(scope="module")
 def solution() -> rd.Solution:
-    return rd.solve(rd.subdivide(everything(), size=2.5), "random-walk", quanta=2000, replicates=3, seed=2**40)
+    patches, random = rd.subdivide(everything(), size=2.5), np.random.Generator(np.random.Philox(2))
+    own = {"own_reflectance": patches.reflectance / 2, "own_emission": random.random(patches.emission.shape)}
+    return rd.solve(replace(patches, **own), "random-walk", quanta=2000, replicates=3, seed=2**40)
 
 
 def test_no_field_has_its_default(solution):
@@ -146,6 +148,8 @@ DAMAGE = {
     "an emission below zero": spoilt("scene_emission", lambda old, arrays: -1.0),
     "an infinite emission": spoilt("scene_back_emission", lambda old, arrays: np.inf),
     "a back of no kind": spoilt("scene_back", lambda old, arrays: len(Back)),
+    "an own reflectance of one": spoilt("patches_own_reflectance", lambda old, arrays: 1.0),
+    "an own emission below zero": spoilt("patches_own_emission", lambda old, arrays: -1.0),
     "no columns": spoilt("patches_columns", lambda old, arrays: 0),
     "a triangle cut unevenly": spoilt("patches_rows", lambda old, arrays: old + 1),
     "an irradiance that is unknown": spoilt("irradiance", lambda old, arrays: np.nan),
@@ -174,6 +178,20 @@ def test_what_does_not_fit_together_is_refused(solution, tmp_path, damage):
 
 FACE_FIELDS = {"faces", "reflectance", "emission", "back", "back_reflectance", "back_emission", "surface"}
 PAINT_FIELDS = {"image", "uv", "color"}
+
+
+def test_files_with_values_of_patches_are_refused_by_versions_that_do_not_know_them(solution, tmp_path):
+    for patches, number in ((solution.patches, 2), (rd.subdivide(everything(), size=2.5), 1)):
+        replace(solution, patches=patches).save(tmp_path / "a.npz")
+        with np.load(tmp_path / "a.npz") as file:
+            assert json.loads(str(file["meta"]))["format"] == number
+
+
+@pytest.mark.parametrize("name", ["own_reflectance", "own_emission"])
+def test_the_hash_of_the_cut_sees_values_of_patches(solution, name):
+    patches = solution.patches
+    other = replace(patches, **{name: getattr(patches, name) / 2})
+    assert len({patches.hash, other.hash, replace(patches, **{name: None}).hash}) == 3
 
 
 @pytest.mark.parametrize("masked", [False, True])

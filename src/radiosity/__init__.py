@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from .diagnostics.check import check
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
+    from .run.line_set.model import LineSet
+    from .run.line_set.trace import trace_lines
     from .run.merge import merge
     from .run.refine import refine_check
     from .run.solve import solve
@@ -41,6 +43,8 @@ HOOKS["export"] = _export  # of `Solution.export`
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
     "diagnostics.check": ("check",),
+    "run.line_set.model": ("LineSet",),
+    "run.line_set.trace": ("trace_lines",),
     "run.merge": ("merge",),
     "run.refine": ("refine_check",),
     "run.solve": ("solve",),
@@ -58,6 +62,7 @@ __all__ = [
     "Baseline",
     "Camera",
     "DeviceError",
+    "LineSet",
     "Method",
     "MethodError",
     "OutputError",
@@ -75,6 +80,7 @@ __all__ = [
     "refine_check",
     "solve",
     "subdivide",
+    "trace_lines",
 ]
 
 

@@ -24,6 +24,7 @@ class LocalLines:
 
     With lines in proportion to area alone, the form factors of small lights, which matter most, would have few lines. Where each
     line counts at both its ends, a quarter of all lines goes to what emits. That halves the error or better; more gains little.
+    Where sources are preferred, they have their quarter in any case.
     """
 
     def __init__(
@@ -31,7 +32,7 @@ class LocalLines:
     ):
         self.n, self.total = len(problem.patches), len(problem.patches) * replicates
         self.shooter = Shooter(geometry, method, seed, replicates, 0)
-        light = TO_LIGHTS if both_ways else 0.0
+        light = TO_LIGHTS if both_ways or problem.prefers_sources else 0.0
         self.share = (1 - light) * problem.patches.area / problem.patches.area.sum() + light * problem.source.share
         self.phase = phases(seed, replicates, self.n) * 2.0**-32
 

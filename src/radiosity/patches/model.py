@@ -18,6 +18,8 @@ class Patches:
     Attributes:
         scene: the scene whose faces are divided.
         columns, rows: (n_faces,) int32, cells along the face's first and second edge (equal for triangles).
+        own_reflectance, own_emission: (n_patches, n_bands) float64, where patches have values of their own in place of the
+            scene's, see `patches.relit.relit`; else None.
 
     Example:
         >>> patches = rd.subdivide(rd.load_scene("room"), cells=2)
@@ -28,14 +30,21 @@ class Patches:
     scene: Scene
     columns: np.ndarray
     rows: np.ndarray
+    own_reflectance: np.ndarray | None = None
+    own_emission: np.ndarray | None = None
 
     def __len__(self) -> int:
         return int(self.first[-1])
 
     @cached_property
     def hash(self) -> str:
-        """SHA-256 of the way in which the scene is cut."""
-        return hashlib.sha256(self.columns.tobytes() + self.rows.tobytes()).hexdigest()
+        """SHA-256 of the way in which the scene is cut, and of values that patches have of their own."""
+        digest = hashlib.sha256(self.columns.tobytes() + self.rows.tobytes())
+        for name in ("own_reflectance", "own_emission"):
+            own = getattr(self, name)
+            if own is not None:
+                digest.update(f"{name}{own.shape}".encode() + own.tobytes())
+        return digest.hexdigest()
 
     @cached_property
     def cells_per_face(self) -> np.ndarray:
@@ -111,11 +120,15 @@ class Patches:
     @cached_property
     def reflectance(self) -> np.ndarray:
         """Reflectances, (n_patches, n_bands) float64."""
+        if self.own_reflectance is not None:
+            return self.own_reflectance
         return self._of_side(self.scene.reflectance, self.scene.back_reflectance, self.scene.reflectance_paint)
 
     @cached_property
     def emission(self) -> np.ndarray:
         """Self-emitted radiosity, (n_patches, n_bands) float64, W/m² or lm/m²."""
+        if self.own_emission is not None:
+            return self.own_emission
         return self._of_side(self.scene.emission, self.scene.back_emission, self.scene.emission_paint)
 
     def _of_side(self, front, back, paint) -> np.ndarray:

@@ -22,6 +22,7 @@ class Problem:
         source: the scalar problem of the largest band of each row (contract 3).
         rows: what fires lines: the patches, and lights without area.
         lights: lights without area, or None.
+        prefers_sources: what emits gets a part of all lines, also by methods that would give it none.
     """
 
     patches: Patches
@@ -29,6 +30,7 @@ class Problem:
     source: Source
     rows: SourceRows
     lights: AbstractLights | None = None
+    prefers_sources: bool = False
 
     @cached_property
     def scalar(self) -> "Problem":

@@ -1,16 +1,18 @@
 """Checkpoints: a run's state is written to disk from time to time, so that only what came since can be lost."""
 
+import math
 import time
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from ..errors import MethodError, OutputError, RadiosityWarning
 from ..method import Auto, Baseline, Method
-from ..solution.model import Solution
 from ..solution.saving import save
 from ..solution.whole import check_place
+from .result import Result
 
 EVERY = 30.0  # seconds
 TIMES = 30  # a run goes on for this many times the time of writing, at least: writing then takes 3 % of the time
@@ -19,6 +21,11 @@ WHOLE = {
     "full-matrix": "a full matrix is made whole or not at all",
     "hierarchical": "hierarchical radiosity keeps no links in its results",
 }
+
+
+def save_solution(solution, path: Path) -> None:
+    """Write a solution without what follows from it."""
+    save(solution, path, derived=False)
 
 
 def resumable(method: "Method | Baseline | Auto") -> bool:
@@ -33,15 +40,40 @@ class Checkpoint:
     Attributes:
         path: .npz, which `load_solution` reads.
         every: seconds between two writings; longer where writing takes long.
+        save: writes a result to a path.
         written: True where this run has written it.
     """
 
     path: Path
     every: float = EVERY
+    save: Callable[[Any, Path], None] = save_solution
     written: bool = False
     _due: float = field(init=False)
     _sized: bool = field(init=False, default=False)
     _warned: bool = field(init=False, default=False)
+
+    @staticmethod
+    def of(given, every, method: "Method | Baseline", save: Callable[[Any, Path], None] = save_solution) -> "Checkpoint":
+        """Return a checked checkpoint from what a caller gave: a path, or a `Checkpoint`.
+
+        Raises:
+            MethodError: arguments of other types, or there is no state to go on from. OutputError: see `check`.
+        """
+        if isinstance(given, Checkpoint):
+            given.check(method)
+            return given
+        try:
+            good = not isinstance(every, bool) and math.isfinite(every) and every >= 0
+        except TypeError:
+            good = False
+        if not good:
+            raise MethodError(f"checkpoint_every is {every!r}; it must be a number of seconds")
+        try:
+            keeper = Checkpoint(Path(given), float(every), save)
+        except TypeError:
+            raise MethodError(f"checkpoint is {given!r}; it must be the path of an .npz file") from None
+        keeper.check(method)
+        return keeper
 
     def __post_init__(self):
         self._due = time.monotonic() + self.every
@@ -62,7 +94,7 @@ class Checkpoint:
     def due(self) -> bool:
         return time.monotonic() >= self._due
 
-    def write(self, solution: Callable[[], Solution]) -> None:
+    def write(self, solution: Callable[[], Result]) -> None:
         """Write the file, unless that would take too much of the time so far; called between two wavefronts.
 
         A failure is told once, and the run goes on: what was written before stays.
@@ -79,14 +111,14 @@ class Checkpoint:
         now = time.monotonic()
         self._due = now + max(self.every, TIMES * (now - begun))
 
-    def end(self, solution: Solution) -> None:
+    def end(self, solution: Result) -> None:
         """Write the file at the end of a run; that of a complete run only where the run has written one before."""
         if self.written or solution.status != "complete":
             self._save(solution)
 
-    def _save(self, solution: Solution) -> None:
+    def _save(self, solution: Result) -> None:
         try:
-            save(solution, self.path, derived=False)
+            self.save(solution, self.path)
         except OutputError as error:
             if not self._warned:
                 warnings.warn(

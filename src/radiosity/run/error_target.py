@@ -1,19 +1,17 @@
 """The error target of a run: the patches or surfaces whose error it must reach."""
 
-import difflib
 from dataclasses import dataclass, field
-from fnmatch import fnmatchcase
 
 import numpy as np
 
 from ..errors import MethodError
 from ..patches import Patches
+from ..scene.named import surfaces_called
 from ..solution.errors import SURE
 from ..solution.intervals import student
 from .snapshot import Snapshot
 
 SURFACE, MEAN = KINDS = ("surface:", "mean:")
-SHOWN = 8
 PAIRS = 1e8  # pairs of light and vertex: with more, they are not checked
 FLAT = 1e-9  # of the scene's size: vertices no further in front of a light's plane lie in it
 
@@ -69,11 +67,10 @@ def rows_of(patches: Patches, name: str) -> np.ndarray:
             f"error_of is '{name}'; write {SURFACE}NAME (RMS over its patches) or {MEAN}NAME (of its mean irradiance), such as "
             f"{SURFACE}{names[0]}"
         )
-    found = [i for i, known in enumerate(names) if known == wanted] or [i for i, k in enumerate(names) if fnmatchcase(k, wanted)]
+    found = surfaces_called(names, wanted)
     rows = np.flatnonzero(np.isin(patches.surface, found))
     if not len(rows):
-        close = difflib.get_close_matches(wanted, names, SHOWN, 0.5) or names[:SHOWN]
-        raise MethodError(f"no surface is called '{wanted}'; there are {len(names)}, such as {', '.join(close)}")
+        raise MethodError(f"error_of is '{name}', and no patch is on that surface; choose another")
     return rows
 
 

@@ -73,9 +73,11 @@ def _merged(given: list[Solution]) -> Solution:
         _check_follows(one + 1, parts[one], other + 1, parts[other])
     parts, given = [parts[at] for at in order], [given[at] for at in order]
     first, quanta = given[0], given[0].quanta
+    from .record import Record
     from .run import Run
 
-    run = Run(first.patches, _method(first), _budget(given), _whole(parts), first.provenance.get("device", "auto"))
+    device = first.provenance.get("device", "auto")
+    run = Run(first.patches, _method(first), _budget(given), _whole(parts), device, record=Record)
     for solution in given:
         different = differences(solution.provenance, run.record.provenance, FACTS, ("then", "now"))
         if different:

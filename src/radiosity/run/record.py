@@ -1,16 +1,20 @@
-"""What the solutions of a run have in common, and how one is made of a snapshot."""
+"""What the results of a run have in common, and how one is made of a snapshot."""
 
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import version
+from typing import ClassVar, Generic
 
 from ..algorithms.state import AbstractState
 from ..errors import DeviceError
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import Solution
+from ..solution.without_results import without_results
 from ..tracing.geometry import TRACING
 from .part import Part
+from .result import R
 from .snapshot import Snapshot
 
 LOST_HITS = (
@@ -21,8 +25,8 @@ LOST_HITS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
-    """The facts that all solutions of a run share: what they come from.
+class AbstractRecord(ABC, Generic[R]):
+    """The facts that all results of a run share: what they come from. A class of it says what a run makes of a stage.
 
     Attributes:
         patches: of the scene.
@@ -31,6 +35,7 @@ class Record:
         device: its name.
         budget: as it was given, without what was not.
         choice: what is known of the choice of the method, where it was left to the program.
+        has_errors: True where results have an error, which a run may tell or aim at.
     """
 
     patches: Patches
@@ -39,13 +44,25 @@ class Record:
     device: str
     budget: dict
     choice: dict | None = None
+    has_errors: ClassVar[bool] = True
 
     @property
+    @abstractmethod
     def provenance(self) -> dict:
-        """See `Solution.provenance`."""
+        """What results come from, see `Solution.provenance`."""
+
+    @abstractmethod
+    def result(self, snapshot: Snapshot, status: str, state: AbstractState, seconds: float) -> R:
+        """Return the result of a snapshot, with a state to go on from."""
+
+    @abstractmethod
+    def unfinished(self, before: R | None, status: str, state: AbstractState, seconds: float) -> R:
+        """Return the result of a run that ended within its first stage; ``before`` is what it went on from."""
+
+    @property
+    def _run(self) -> dict:
+        """The facts of a run, whatever its results are."""
         return {
-            "scene": self.patches.scene.hash,
-            "source": self.patches.scene.source,
             "method": str(self.method),
             "choices": self.method.choices,
             **self.part.facts(),
@@ -58,7 +75,16 @@ class Record:
             "versions": {name: _version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
         }
 
-    def solution(self, snapshot: Snapshot, status: str, state: AbstractState, seconds: float) -> Solution:
+
+class Record(AbstractRecord[Solution]):
+    """The record of a run that solves the equation."""
+
+    @property
+    def provenance(self) -> dict:
+        scene = self.patches.scene
+        return {"scene": scene.hash, "source": scene.source, **self._run}
+
+    def result(self, snapshot: Snapshot, status: str, state: AbstractState, seconds: float) -> Solution:
         """Return the solution of a snapshot, with a state to go on from.
 
         Raises:
@@ -83,6 +109,11 @@ class Record:
             snapshot.surface_power,
             snapshot.side_power,
         )
+
+    def unfinished(self, before: Solution | None, status: str, state: AbstractState, seconds: float) -> Solution:
+        if before is not None and before.quanta > 0:
+            return replace(before, seconds=seconds, status=status, state=state.arrays(), provenance=self.provenance)
+        return without_results(self.patches, self.part.replicates, seconds, status, self.provenance, state.arrays())
 
 
 @cache

@@ -70,7 +70,7 @@ def refine_check(
     return RefineCheck(replace(one, state={}), replace(other, state={}), parent, error)
 
 
-def _finished(run: "Run") -> Solution:
+def _finished(run: "Run[Solution]") -> Solution:
     solution = run.solve()
     if solution.status == "interrupted":
         raise KeyboardInterrupt

@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, Generic
 
 from ..algorithms.base import AbstractAlgorithm, AbstractMeanTally, Interrupted
 from ..algorithms.merging import merge as merge_states
@@ -17,9 +17,7 @@ from ..method import Baseline, Method
 from ..patches import Patches
 from ..problem.model import Problem
 from ..sampling.streams import Seed
-from ..solution.model import Solution
 from ..solution.status import NOT_REACHED
-from ..solution.without_results import without_results
 from ..tally import unmet
 from ..tracing.geometry import Geometry
 from . import memory_estimate
@@ -31,7 +29,8 @@ from .error_target import Target, nothing_before_lights
 from .part import Part, check_stages
 from .pilot import few_quanta
 from .progress import Listener, Stop, Teller
-from .record import Record
+from .record import AbstractRecord
+from .result import R
 from .same import check_same
 from .shortfall import warn_of_few_ends, warn_of_more, warn_of_target
 from .snapshot import Snapshot
@@ -43,8 +42,11 @@ AT_ONCE = 1 << 24  # lines: a run of fewer, whose N is known beforehand, is one 
 PATIENCE = 1.2  # times the seconds asked for: after that a stage is left unfinished
 
 
-class Run:
-    """A problem, a method and a budget."""
+class Run(Generic[R]):
+    """A problem, a method and a budget.
+
+    The record makes the results: a `Solution`, or another value.
+    """
 
     def __init__(
         self,
@@ -54,17 +56,20 @@ class Run:
         part: Part,
         device: str,
         listener: Listener | None = None,
-        resume: Solution | None = None,
+        resume: R | None = None,
         checkpoint: Checkpoint | None = None,
         error_of: str | None = None,
         choice: Choice | None = None,
+        *,
+        record: Callable[..., AbstractRecord[R]],
+        problem: Problem | None = None,
     ):
         self.patches, self.method, self.budget, self.part = patches, method, budget, part
         self.replicates, self.resume, self.checkpoint = part.replicates, resume, checkpoint
         self.snapshot: Snapshot | None = None  # of the last complete stage
         self.also: Callable[[Snapshot], Any] | None = None  # what else is read of a stage
         self.seconds_before = 0.0 if resume is None else resume.seconds
-        self.problem = Problem.of(patches)
+        self.problem = Problem.of(patches) if problem is None else problem
         bands = self.problem.groups.n_groups
         if bands > 1 and method.machine == "firing" and method.order == "depth-first":
             raise MethodError(
@@ -82,18 +87,18 @@ class Run:
             self.budget = replace(budget, rays=max(budget.rays - choice.extra_lines, 1))
         self.device = choose(device)
         given = {name: value for name, value in {**vars(budget), "error_of": error_of}.items() if value is not None}
-        self.record = Record(patches, method, part, self.device.name, given, None if choice is None else choice.facts)
+        self.record = record(patches, method, part, self.device.name, given, None if choice is None else choice.facts)
         if resume is not None:
             check_same(resume.provenance, self.record.provenance)
         made = None if choice is None else choice.geometry
         self.geometry = Geometry(patches, self.device) if made is None else made
 
-    def solve(self) -> Solution:
+    def solve(self) -> R:
         """Run stage after stage until the budget is used up, or until Ctrl-C."""
         with turn(), self.stop.listening():
             return self._stages()
 
-    def _stages(self) -> Solution:
+    def _stages(self) -> R:
         algorithm, target = self._algorithm(self.problem, self.part), 0
         self.algorithm = algorithm
         self.ladder = self.budget
@@ -164,7 +169,7 @@ class Run:
             raise KeyboardInterrupt
         return solution
 
-    def merged(self, quanta: int, parts: list[tuple[dict, Part]]) -> Solution:
+    def merged(self, quanta: int, parts: list[tuple[dict, Part]]) -> R:
         """The solution of this run after N quanta, from arrays of the states of its parts, in the order of their replicates.
 
         Raises:
@@ -188,14 +193,12 @@ class Run:
     def _had_results(self) -> bool:
         return self.resume is not None and self.resume.quanta > 0
 
-    def _so_far(self, status: str, state: AbstractState) -> Solution:
+    def _so_far(self, status: str, state: AbstractState) -> R:
         """Results of the last complete stage, if any, and a state to go on from."""
         seconds = self.teller.elapsed + self.seconds_before
         if self.snapshot is not None:
-            return self.record.solution(self.snapshot, status, state, seconds)
-        if self.resume is not None and self._had_results:
-            return replace(self.resume, seconds=seconds, status=status, state=state.arrays(), provenance=self.record.provenance)
-        return without_results(self.patches, self.replicates, seconds, status, self.record.provenance, state.arrays())
+            return self.record.result(self.snapshot, status, state, seconds)
+        return self.record.unfinished(self.resume, status, state, seconds)
 
     def _missed(self, at: Progressed) -> bool:
         """Return whether a stage that was to be the last has missed its error, and the limit leaves room for another run."""
@@ -240,7 +243,7 @@ class Run:
     @property
     def _error_matters(self) -> bool:
         """True where an error target or a listener needs the error between stages; it costs a pass over all replicates."""
-        return self.budget.error is not None or self.teller.listener is not None
+        return self.record.has_errors and (self.budget.error is not None or self.teller.listener is not None)
 
     def _swept(self, count: int) -> None:
         self.teller.lines += count
@@ -276,8 +279,8 @@ class Run:
         if self.stop.asked:
             raise KeyboardInterrupt
 
-    def _solution(self, snapshot: Snapshot, status: str, pending: AbstractState | None) -> Solution:
-        solution = self.record.solution(snapshot, status, pending or snapshot.state, self.teller.elapsed + self.seconds_before)
+    def _solution(self, snapshot: Snapshot, status: str, pending: AbstractState | None) -> R:
+        solution = self.record.result(snapshot, status, pending or snapshot.state, self.teller.elapsed + self.seconds_before)
         with result_kept():
             if self.resume is None:
                 warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)

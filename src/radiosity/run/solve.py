@@ -1,6 +1,5 @@
 """`solve`, which makes a solution from a scene."""
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -141,7 +140,7 @@ def prepared(
     error_of=None,
     checkpoint=None,
     checkpoint_every=30.0,
-) -> "Run":
+) -> "Run[Solution]":
     """Return a checked run that has not begun; arguments and errors are those of `solve`."""
     usual = 1 if isinstance(chosen, Baseline) else 8
     replicates = usual if replicates is None else whole(replicates, "replicates", 1)
@@ -158,10 +157,7 @@ def prepared(
     else:
         budget = Budget(rays, seconds, error, quanta)
         budget.check(replicates)
-    if isinstance(scene, Scene):
-        scene = subdivide(scene, **cut_for(chosen))
-    if not isinstance(scene, Patches):
-        raise MethodError(f"solve takes a Scene or Patches, not {type(scene).__name__}; load a file with load_scene")
+    scene = patches_of(scene, chosen, "solve")
     if resume is not None and not isinstance(resume, Solution):
         raise MethodError(f"resume takes a Solution, not {type(resume).__name__}; load a file with load_solution")
     if resume is not None and len(resume.patches) != len(scene):
@@ -174,15 +170,29 @@ def prepared(
 
         choice = choice_for(scene, budget, part, device, resume)
         chosen = choice.method
-    _refuse_open(scene.scene, chosen)
-    keeper = checkpoint if checkpoint is None else _keeper(checkpoint, checkpoint_every, chosen)
+    refuse_open(scene.scene, chosen)
+    keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, chosen)
     tell(scene.scene)
+    from .record import Record
     from .run import Run
 
-    return Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of, choice)
+    return Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of, choice, record=Record)
 
 
-def _refuse_open(scene: Scene, method: Method | Baseline) -> None:
+def patches_of(scene: Scene | Patches, method: Method | Baseline | Auto, caller: str) -> Patches:
+    """Return the patches to solve for; a scene is cut as the method needs it.
+
+    Raises:
+        MethodError: it is neither a scene nor patches.
+    """
+    if isinstance(scene, Scene):
+        scene = subdivide(scene, **cut_for(method))
+    if not isinstance(scene, Patches):
+        raise MethodError(f"{caller} takes a Scene or Patches, not {type(scene).__name__}; load a file with load_scene")
+    return scene
+
+
+def refuse_open(scene: Scene, method: Method | Baseline) -> None:
     """Raise where a scene has open lamps and the method cannot solve it.
 
     An open lamp is seen together with what is behind it. Only lines that carry power from their patch tell the two apart.
@@ -194,21 +204,3 @@ def _refuse_open(scene: Scene, method: Method | Baseline) -> None:
         f"lines pass through the lamps {names} (null BSDF), and only walks that begin at the lights follow them: "
         "take --method random-walk, or give the lamps a black diffuse BSDF"
     )
-
-
-def _keeper(path, every, method: Method | Baseline) -> Checkpoint:
-    if isinstance(path, Checkpoint):
-        path.check(method)
-        return path
-    try:
-        good = not isinstance(every, bool) and math.isfinite(every) and every >= 0
-    except TypeError:
-        good = False
-    if not good:
-        raise MethodError(f"checkpoint_every is {every!r}; it must be a number of seconds")
-    try:
-        keeper = Checkpoint(Path(path), float(every))
-    except TypeError:
-        raise MethodError(f"checkpoint is {path!r}; it must be the path of an .npz file") from None
-    keeper.check(method)
-    return keeper

@@ -195,8 +195,7 @@ class Scene:
     @cached_property
     def hash(self) -> str:
         """SHA-256 of everything that a solution depends on."""
-        digest = hashlib.sha256()
-        for array in (
+        digest = _digest(
             self.vertices,
             self.faces,
             self.reflectance,
@@ -205,9 +204,7 @@ class Scene:
             self.back_reflectance,
             self.back_emission,
             self.surface,
-        ):
-            digest.update(str((array.dtype.str, array.shape)).encode())
-            digest.update(np.ascontiguousarray(array).tobytes())
+        )
         for paint in (self.reflectance_paint, self.emission_paint):
             for array in () if paint is None else (*paint.images, paint.image, paint.uv, paint.color, np.array(paint.limit)):
                 digest.update(np.ascontiguousarray(array).tobytes())
@@ -215,6 +212,11 @@ class Scene:
                 digest.update(repr(paint.samplers).encode())  # plain ones as if there were none: older files have the same hash
         digest.update(repr((self.names, self.bands, self.photometric)).encode())
         return digest.hexdigest()
+
+    @cached_property
+    def geometry_hash(self) -> str:
+        """SHA-256 of everything that lines depend on: faces, backs and surfaces, and neither emission nor reflectance."""
+        return _digest(self.vertices, self.faces, self.back, self.surface).hexdigest()
 
     def take(self, keep: np.ndarray) -> "Scene":
         """The scene of a choice of faces (indices or mask)."""
@@ -247,3 +249,12 @@ def unit_normals(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Return unit normals, (n, 3), of faces with these edges, (n, 3) each."""
     cross = np.cross(first, second)
     return cross / np.linalg.norm(cross, axis=1, keepdims=True)
+
+
+def _digest(*arrays: np.ndarray):
+    """Return a SHA-256 of arrays, with their types and shapes."""
+    digest = hashlib.sha256()
+    for array in arrays:
+        digest.update(str((array.dtype.str, array.shape)).encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest

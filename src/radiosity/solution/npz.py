@@ -1,10 +1,13 @@
 """The keys of a solution file, an NPZ archive that stands alone: scene, results, provenance and the state of the run.
 
 An array of the scene has the key ``scene_NAME``, of a paint ``reflectance_paint_NAME``, of the state ``state_NAME``. The rest is
-one text of JSON, ``meta``.
+one text of JSON, ``meta``. Line sets are such files, too, with the same keys of scene and patches.
 """
 
-FORMAT = 1
+SOLUTION, LINES = "solution", "line set"  # kinds of files
+READERS = {SOLUTION: "load_solution", LINES: "load_lines"}
+FORMAT, FORMAT_OF_OWN = 1, 2  # of solutions; the second where patches have values of their own, which older versions do not know
+OWN_ARRAYS = ("own_reflectance", "own_emission")  # of patches, that may be missing
 SCENE_ARRAYS = (
     "vertices",
     "faces",

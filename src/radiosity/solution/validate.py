@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from ..patches.model import Patches
 from ..scene.model import Back, Scene
 from ..scene.paint import Paint
 from .books import Books
@@ -22,17 +23,9 @@ def validate(solution: Solution) -> None:
     Raises:
         ValueError: what does not fit.
     """
-    scene, patches = solution.patches.scene, solution.patches
-    _scene(scene)
-    n, bands = scene.n_faces, scene.n_bands
-    for name, cells in (("columns", patches.columns), ("rows", patches.rows)):
-        _array(name, cells, "iu", (n,))
-        _that((cells >= 1).all(), f"{name} below 1")
-    _that((patches.columns == patches.rows)[~scene.is_quad].all(), "triangles cut unevenly")
-    # in floating point, where products cannot overflow; a number of patches that is not the results' is never allocated
-    count = patches.columns.astype(float) * patches.rows * np.where(scene.back == Back.RADIATES, 2, 1)
+    scene, bands = solution.patches.scene, solution.patches.scene.n_bands
     n_patches = len(solution.irradiance) if solution.irradiance.ndim else -1
-    _that(count.sum() == n_patches, f"{n_patches} results for {count.sum():.0f} patches")
+    validate_patches(solution.patches, n_patches)
     _array("irradiance", solution.irradiance, "f", (n_patches, bands))
     none_yet = solution.quanta == 0 and np.isnan(solution.irradiance).all()  # the run was stopped within its first stage
     _that(none_yet or (np.abs(solution.irradiance) <= MOST).all(), "irradiance that is not finite")
@@ -48,6 +41,28 @@ def validate(solution: Solution) -> None:
             _that((np.abs(power) <= MOST).all(), "powers that are not finite")
     history = solution.history
     _that(history.ndim == 2 and history.shape[1] == 2 and history.dtype.kind in "fiu", "a history of another shape")
+
+
+def validate_patches(patches: Patches, n_patches: int) -> None:
+    """Refuse patches of a file whose arrays do not fit together, or that are not so many.
+
+    Raises:
+        ValueError: what does not fit.
+    """
+    scene = patches.scene
+    _scene(scene)
+    for name, cells in (("columns", patches.columns), ("rows", patches.rows)):
+        _array(name, cells, "iu", (scene.n_faces,))
+        _that((cells >= 1).all(), f"{name} below 1")
+    _that((patches.columns == patches.rows)[~scene.is_quad].all(), "triangles cut unevenly")
+    # in floating point, where products cannot overflow; a number of patches that is not the results' is never allocated
+    count = patches.columns.astype(float) * patches.rows * np.where(scene.back == Back.RADIATES, 2, 1)
+    _that(count.sum() == n_patches, f"{n_patches} results for {count.sum():.0f} patches")
+    for name, most in (("own_reflectance", 1), ("own_emission", MOST)):
+        own = getattr(patches, name)
+        if own is not None:
+            _array(name, own, "f", (n_patches, scene.n_bands))
+            _that(((own >= 0) & (own < most)).all(), f"{name} out of range")
 
 
 def _scene(scene: Scene) -> None:
