@@ -36,6 +36,11 @@ class Patches:
     def __len__(self) -> int:
         return int(self.first[-1])
 
+    @property
+    def cut_hash(self) -> str:
+        """SHA-256 of the way in which the scene is cut."""
+        return hashlib.sha256(self.columns.tobytes() + self.rows.tobytes()).hexdigest()
+
     @cached_property
     def hash(self) -> str:
         """SHA-256 of the way in which the scene is cut, and of values that patches have of their own."""

@@ -89,7 +89,7 @@ class Run(Generic[R]):
         given = {name: value for name, value in {**vars(budget), "error_of": error_of}.items() if value is not None}
         self.record = record(patches, method, part, self.device.name, given, None if choice is None else choice.facts)
         if resume is not None:
-            check_same(resume.provenance, self.record.provenance)
+            check_same(resume.provenance, self.record.provenance, self.record.kind)
         made = None if choice is None else choice.geometry
         self.geometry = Geometry(patches, self.device) if made is None else made
 

@@ -22,6 +22,7 @@ from ..solve import patches_of, refuse_open
 from ..whole_number import whole
 from .model import LineSet
 from .problem import Sources, problem_of
+from .saving import save_lines
 
 ENDED = ("complete", "interrupted")  # what needs no warning
 
@@ -99,7 +100,7 @@ def trace_lines(
         chosen = Sources.of(patches, sources)
         if chosen.names and lines != "local":
             raise MethodError(f"sources get more local lines, and lines '{lines}' begin at no surface; leave one of the two out")
-        keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, method)
+        keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, method, save_lines)
         tell(patches.scene)
         from ..run import Run
         from .record import LineRecord
