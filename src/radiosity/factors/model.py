@@ -38,7 +38,7 @@ class Factors:
 
     @cached_property
     def _ordered(self):
-        """A CSR array of the entries in their own order, where that is by rows; else None. It adds up as `numpy.bincount` does."""
+        """A CSR array of the entries as they stand, which adds up as `numpy.bincount` does; None where they are not by rows."""
         if (self.rows[1:] < self.rows[:-1]).any():
             return None
         from scipy.sparse import csr_array

@@ -76,7 +76,8 @@ class Run(Generic[R]):
                 f"order '{method.order}' cannot carry {bands} different bands: "
                 "band power travels with whole wavefronts; take breadth-first, or solve one band at a time"
             )
-        memory_estimate.check(method, patches, bands, part.replicates, budget.rays)
+        lines = memory_estimate.lines_of(method, budget, part.replicates)
+        memory_estimate.check(method, patches, bands, part.replicates, lines)
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = part.rung(method.order, self.problem.source.share)
         part.check(method, budget, self.rung)

@@ -82,6 +82,8 @@ def trace_lines(
     """
     method = Method(order="matrix", lines=lines, numbers=numbers)
     part = Part(Seed(whole(seed, "seed", 0), whole(first_replicate, "first_replicate", 0)), whole(replicates, "replicates", 1))
+    if sum(given is not None for given in (rays, seconds, quanta)) != 1:
+        raise MethodError("give exactly one of rays, seconds and quanta to trace_lines")
     asked = Budget(rays, seconds, None, quanta)
     asked.check(part.replicates)
     if not isinstance(both_ways, bool):
