@@ -116,6 +116,7 @@ def test_changes_are_read_from_the_right():
     """Names may have dots and equals signs; the last change of a surface counts, and comes last."""
     found = _values(("a.b=c.emission=1", "x.emission.front=2", "x.emission.back=3,4", "y.emission=1", "a.b=c.emission=5"))
     assert found == {"emission": {"x": {"front": [2], "back": [3, 4]}, "y": [1], "a.b=c": [5]}, "reflectance": None}
+    assert list(found["emission"]) == ["x", "y", "a.b=c"]
     assert _values(("x.emission.front=2", "x.emission=3"))["emission"] == {"x": [3]}
     assert _sources(("a", "b:front", "c:d", "e:back")) == {"a": "both", "b": "front", "c:d": "both", "e": "back"}
     assert _sources(()) is None

@@ -62,7 +62,7 @@ def _restore(arrays: dict[str, Any], meta: dict[str, Any]) -> LineSet:
     seconds, status, sources = meta["seconds"], meta["status"], meta["sources"]
     _that(isinstance(seconds, int | float) and math.isfinite(seconds) and seconds >= 0, f"seconds {seconds!r}")
     _that(isinstance(status, str) and all(isinstance(name, str) for name in sources), "a status or sources that are no text")
-    pairs = CountedPairs(patches, keys, counts, replicates, both_ways, directed)
+    pairs = CountedPairs(patches, keys, counts, replicates, both_ways, directed, keeps=True)
     return LineSet(pairs, meta["rays"], quanta, float(seconds), status, method, parts, tuple(sources), provenance)
 
 

@@ -21,6 +21,7 @@ from ..shortfall import warn_of_few_ends
 from ..snapshot import Snapshot
 from .adding import fields_of_sum
 from .saving import save_lines
+from .starved import warn_of_starved
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -119,6 +120,8 @@ class LineSet:
         record = Record(patches, self.method, part, self.provenance["device"], self.provenance["budget"])
         solution = record.result(snapshot, self.status, snapshot.state, self.seconds)
         unmet.warn(patches, self.pairs.lines)
+        if self.method.lines == "local":
+            warn_of_starved(patches, self.pairs.lines)
         warn_of_few_ends(self.method, self.rays / self.replicates / len(patches))
         about = {"line_set": self.provenance, "solve_seconds": time.perf_counter() - begun}
         return replace(solution, state={}, provenance=solution.provenance | about)
