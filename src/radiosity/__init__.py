@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .diagnostics.check import check
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
+    from .run.line_set.loading import load_lines
     from .run.line_set.model import LineSet
     from .run.line_set.trace import trace_lines
     from .run.merge import merge
@@ -43,6 +44,7 @@ HOOKS["export"] = _export  # of `Solution.export`
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
     "diagnostics.check": ("check",),
+    "run.line_set.loading": ("load_lines",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
     "run.merge": ("merge",),
@@ -74,6 +76,7 @@ __all__ = [
     "SceneError",
     "Solution",
     "check",
+    "load_lines",
     "load_scene",
     "load_solution",
     "merge",

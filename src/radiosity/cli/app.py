@@ -12,7 +12,9 @@ from . import interrupts
 from .check import check
 from .doctor import doctor
 from .experiment import experiment
+from .lines import lines
 from .methods import methods
+from .relight import relight
 from .render import render
 from .solve import solve
 from .streams import say, silence
@@ -34,7 +36,7 @@ app = App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-for place, command in enumerate((solve, methods, render, check, experiment, doctor)):
+for place, command in enumerate((solve, methods, lines, relight, render, check, experiment, doctor)):
     app.command(command, sort_key=place)
 
 
