@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     __version__: str
 
     from .diagnostics.check import check
+    from .exchange.archive import load_exchange
+    from .exchange.radiative import radiative_exchange
+    from .exchange.result import RadiativeExchange
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
     from .run.line_set.model import LineSet
@@ -43,6 +46,9 @@ HOOKS["export"] = _export  # of `Solution.export`
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
     "diagnostics.check": ("check",),
+    "exchange.archive": ("load_exchange",),
+    "exchange.radiative": ("radiative_exchange",),
+    "exchange.result": ("RadiativeExchange",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
     "run.merge": ("merge",),
@@ -67,6 +73,7 @@ __all__ = [
     "MethodError",
     "OutputError",
     "Patches",
+    "RadiativeExchange",
     "RadiosityError",
     "RadiosityWarning",
     "RefineCheck",
@@ -74,9 +81,11 @@ __all__ = [
     "SceneError",
     "Solution",
     "check",
+    "load_exchange",
     "load_scene",
     "load_solution",
     "merge",
+    "radiative_exchange",
     "refine_check",
     "solve",
     "subdivide",

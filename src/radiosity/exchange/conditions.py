@@ -1,0 +1,196 @@
+"""The conditions of a scene's surfaces: arguments by name, put over what the scene's file says, and checked."""
+
+import math
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Any
+
+import numpy as np
+
+from ..errors import RadiosityWarning, SceneError, shown
+from ..patches.model import Patches
+from ..scene.heat import Heat
+
+HOTTEST = 1e6  # K; a larger number is an error of units, or of typing
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """What is known of all surfaces.
+
+    Attributes:
+        temperature: (n_surfaces,) K, NaN where a surface floats.
+        flux: (n_surfaces,) W that each floating surface gets from elsewhere, NaN on others.
+        isothermal: (n_surfaces,) bool.
+        emissivity: (n_bands, n_patches) in (0, 1].
+        surroundings: K or None.
+        wavelengths: edges between bands, µm.
+    """
+
+    temperature: np.ndarray
+    flux: np.ndarray
+    isothermal: np.ndarray
+    emissivity: np.ndarray
+    surroundings: float | None
+    wavelengths: tuple[float, ...]
+
+    @staticmethod
+    def of(
+        patches: Patches,
+        *,
+        temperature: Mapping[str, float] | None = None,
+        emissivity=None,
+        flux: Mapping[str, float] | None = None,
+        adiabatic: Iterable[str] = (),
+        isothermal: Iterable[str] = (),
+        surroundings: float | None = None,
+        wavelengths: Iterable[float] | None = None,
+    ) -> "Conditions":
+        """Make them from arguments of `radiative_exchange` and what the scene says.
+
+        Raises:
+            SceneError: an unknown surface, a value out of range, two conditions of one surface, or none.
+        """
+        scene = patches.scene
+        names, heat = list(scene.names), scene.heat or Heat.none(len(scene.names))
+        kelvin, watts = heat.temperature.copy(), heat.flux.copy()
+        given: dict[int, str] = {}
+        for what, values in (
+            ("temperature", _by_name(temperature, names, "temperature")),
+            ("flux", _by_name(flux, names, "flux")),
+            ("adiabatic", dict.fromkeys(_named(adiabatic, names, "adiabatic"), 0.0)),
+        ):
+            for i, value in values.items():
+                if i in given:
+                    raise SceneError(f"surface '{names[i]}' has both {given[i]} and {what}; give one")
+                given[i] = what
+                kelvin[i], watts[i] = np.nan, np.nan
+                if what == "temperature":
+                    kelvin[i] = _number(value, what, names[i])
+                else:
+                    watts[i] = _number(value, what, names[i])
+        one = heat.isothermal.copy()
+        one[_named(isothermal, names, "isothermal")] = True
+        around = heat.surroundings if surroundings is None else surroundings
+        if around is not None:
+            around = _number(around, "temperature", None)
+        edges = _edges(heat.wavelengths if wavelengths is None else wavelengths)
+        of_surface: list[Any] = list(heat.emissivity)
+        for i, value in _by_name(emissivity, names, "emissivity").items():
+            of_surface[i] = value
+        used = np.unique(patches.surface)
+        lacking = [names[i] for i in used if np.isnan(kelvin[i]) and np.isnan(watts[i])]
+        if lacking:
+            raise SceneError(f"no temperature, flux or adiabatic is given for {shown(lacking)}; give each of them one")
+        if not np.isfinite(kelvin[used]).any() and around is None:
+            raise SceneError(
+                "no surface has a temperature, and there are no surroundings: all temperatures are unknown; give one"
+            )
+        table = _emissivities(patches, of_surface, len(edges) + 1)
+        return Conditions(kelvin, np.where(np.isnan(kelvin), watts, np.nan), one, table, around, edges)
+
+
+def _number(value, what: str, name: str | None) -> float:
+    """A temperature or flux within its range."""
+    where = f"{what} of surface '{name}'" if name is not None else "temperature of the surroundings"
+    rule = f"K, from 0 to {HOTTEST:g}" if what == "temperature" else "W, a finite number"
+    try:
+        number = math.nan if isinstance(value, (bool, str)) else float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number) or (what == "temperature" and not 0 <= number <= HOTTEST):
+        raise SceneError(f"{where} is {value!r}; it must be in {rule}")
+    return number
+
+
+def _matching(pattern, names: list[str], what: str) -> list[int]:
+    """The surfaces of this name, or else those that match it as a pattern."""
+    found = [i for i, name in enumerate(names) if name == pattern]
+    found = found or [i for i, name in enumerate(names) if fnmatchcase(name, str(pattern))]
+    if not found:
+        raise SceneError(f"{what}: no surface is called '{pattern}'; there are {shown(names, 20)}")
+    return found
+
+
+def _named(given, names: list[str], what: str) -> list[int]:
+    """The surfaces that a list of names or patterns means."""
+    if isinstance(given, (str, bytes)) or not np.iterable(given):
+        raise SceneError(f"{what} is {given!r}; give a list of names of surfaces")
+    return sorted({i for pattern in given for i in _matching(pattern, names, what)})
+
+
+def _by_name(given, names: list[str], what: str) -> dict[int, Any]:
+    """Values by the number of the surface. An exact name goes before a pattern."""
+    if given is None:
+        return {}
+    if what == "emissivity" and not isinstance(given, Mapping):
+        return dict.fromkeys(range(len(names)), given)
+    if not isinstance(given, Mapping):
+        raise SceneError(f"{what} is {given!r}; give values by names of surfaces, such as {{'{names[0]}': ...}}")
+    found: dict[int, Any] = {}
+    by: dict[int, str] = {}
+    for pattern, value in given.items():
+        for i in _matching(pattern, names, what):
+            exact = names[i] == pattern
+            if i in by and by[i] != names[i] and not exact:
+                raise SceneError(
+                    f"{what} of surface '{names[i]}' is given by '{by[i]}' and by '{pattern}'; give it by its own name"
+                )
+            if i not in by or exact:
+                found[i], by[i] = value, str(pattern)
+    return found
+
+
+def _edges(given) -> tuple[float, ...]:
+    """Edges between bands."""
+    try:
+        edges = tuple(float(edge) for edge in given)
+    except (TypeError, ValueError):
+        edges = (math.nan,)
+    if not all(math.isfinite(edge) and edge > 0 for edge in edges) or any(np.diff(edges) <= 0):
+        raise SceneError(f"wavelengths are {given!r}; give the edges between bands in micrometres, above 0 and ascending")
+    return edges
+
+
+def _emissivities(patches: Patches, of_surface: list, bands: int) -> np.ndarray:
+    """Emissivities of patches, (bands, n_patches)."""
+    scene, used = patches.scene, set(np.unique(patches.surface).tolist())
+    result = np.full((bands, len(patches)), np.nan)
+    assumed, coloured, told = [], [], []
+    for i in sorted(used):
+        here, name, value = patches.surface == i, scene.names[i], of_surface[i]
+        if value is not None:
+            result[:, here] = _of_bands(value, bands, name)[:, None]
+        elif name in scene.assumed:
+            assumed.append(name)
+        elif bands > 1 or (patches.reflectance[here] != patches.reflectance[here][:, :1]).any():
+            coloured.append(name)
+        else:
+            told.append(name)
+            result[0, here] = 1 - patches.reflectance[here, 0]
+    if assumed:
+        raise SceneError(f"no emissivity is given for {shown(assumed)}, and no file gives a reflectance; give emissivity")
+    if coloured:
+        raise SceneError(
+            f"no emissivity is given for {shown(coloured)}; colours of visible light do not tell that of heat in "
+            f"{'bands' if bands > 1 else 'one band'}: give emissivity"
+        )
+    if told:
+        text = f"no emissivity is given for {shown(told)}; 1 - reflectance is taken"
+        warnings.warn(text, RadiosityWarning, stacklevel=4)
+    return result
+
+
+def _of_bands(value, bands: int, name: str) -> np.ndarray:
+    """The emissivities of a surface in all bands, (bands,)."""
+    try:
+        values = np.full(1, math.nan) if isinstance(value, (bool, str)) else np.atleast_1d(np.array(value, float))
+    except (TypeError, ValueError):
+        values = np.full(1, math.nan)
+    if values.ndim != 1 or len(values) not in (1, bands):
+        raise SceneError(f"emissivity of surface '{name}' is {value!r}; give one number, or one for each of {bands} bands")
+    if not ((values > 0) & (values <= 1)).all():
+        raise SceneError(f"emissivity of surface '{name}' is {value!r}; it must be above 0, and 1 at most")
+    return np.broadcast_to(values, (bands,))
