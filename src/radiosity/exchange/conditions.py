@@ -11,9 +11,7 @@ import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
 from ..patches.model import Patches
-from ..scene.heat import Heat
-
-HOTTEST = 1e6  # K; a larger number is an error of units, or of typing
+from ..scene.heat import HOTTEST, Heat
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,29 +54,26 @@ class Conditions:
         scene = patches.scene
         names, heat = list(scene.names), scene.heat or Heat.none(len(scene.names))
         kelvin, watts = heat.temperature.copy(), heat.flux.copy()
-        given: dict[int, str] = {}
-        for what, values in (
-            ("temperature", _by_name(temperature, names, "temperature")),
-            ("flux", _by_name(flux, names, "flux")),
-            ("adiabatic", dict.fromkeys(_named(adiabatic, names, "adiabatic"), 0.0)),
-        ):
-            for i, value in values.items():
-                if i in given:
-                    raise SceneError(f"surface '{names[i]}' has both {given[i]} and {what}; give one")
-                given[i] = what
-                kelvin[i], watts[i] = np.nan, np.nan
-                if what == "temperature":
-                    kelvin[i] = _number(value, what, names[i])
-                else:
-                    watts[i] = _number(value, what, names[i])
+        adiabatic = dict.fromkeys(_list(adiabatic, "adiabatic"), 0.0)
+        given: dict[int, tuple[bool, str]] = {}
+        for what, values in (("temperature", temperature), ("flux", flux), ("adiabatic", adiabatic)):
+            for i, (value, exact) in _by_name(values, names, what).items():
+                before, kind = given.get(i, (False, ""))
+                if kind and before == exact:
+                    raise SceneError(f"surface '{names[i]}' has both {kind} and {what}; give one")
+                if kind and before:
+                    continue  # its own name goes before a pattern
+                given[i] = exact, what
+                number = _number(value, what, names[i])
+                kelvin[i], watts[i] = (number, np.nan) if what == "temperature" else (np.nan, number)
         one = heat.isothermal.copy()
-        one[_named(isothermal, names, "isothermal")] = True
+        one[[i for pattern in _list(isothermal, "isothermal") for i in _matching(pattern, names, "isothermal")]] = True
         around = heat.surroundings if surroundings is None else surroundings
         if around is not None:
             around = _number(around, "temperature", None)
         edges = _edges(heat.wavelengths if wavelengths is None else wavelengths)
         of_surface: list[Any] = list(heat.emissivity)
-        for i, value in _by_name(emissivity, names, "emissivity").items():
+        for i, (value, _) in _by_name(emissivity, names, "emissivity").items():
             of_surface[i] = value
         used = np.unique(patches.surface)
         lacking = [names[i] for i in used if np.isnan(kelvin[i]) and np.isnan(watts[i])]
@@ -114,32 +109,34 @@ def _matching(pattern, names: list[str], what: str) -> list[int]:
     return found
 
 
-def _named(given, names: list[str], what: str) -> list[int]:
-    """The surfaces that a list of names or patterns means."""
-    if isinstance(given, (str, bytes)) or not np.iterable(given):
+def _list(given, what: str) -> list[str]:
+    """A list of names or patterns."""
+    if isinstance(given, (str, bytes, Mapping)) or not np.iterable(given):
         raise SceneError(f"{what} is {given!r}; give a list of names of surfaces")
-    return sorted({i for pattern in given for i in _matching(pattern, names, what)})
+    return [str(name) for name in given]
 
 
-def _by_name(given, names: list[str], what: str) -> dict[int, Any]:
-    """Values by the number of the surface. An exact name goes before a pattern."""
+def _by_name(given, names: list[str], what: str) -> dict[int, tuple[Any, bool]]:
+    """Values by the number of the surface, and whether it is given by its own name, which goes before a pattern."""
     if given is None:
         return {}
     if what == "emissivity" and not isinstance(given, Mapping):
-        return dict.fromkeys(range(len(names)), given)
+        return dict.fromkeys(range(len(names)), (given, False))
     if not isinstance(given, Mapping):
         raise SceneError(f"{what} is {given!r}; give values by names of surfaces, such as {{'{names[0]}': ...}}")
-    found: dict[int, Any] = {}
-    by: dict[int, str] = {}
+    found: dict[int, tuple[Any, bool]] = {}
     for pattern, value in given.items():
-        for i in _matching(pattern, names, what):
+        here = _matching(pattern, names, what)
+        if what == "flux" and len(here) > 1:
+            raise SceneError(f"flux of '{pattern}' is W of one whole surface; give {shown(names[i] for i in here)} one each")
+        for i in here:
             exact = names[i] == pattern
-            if i in by and by[i] != names[i] and not exact:
-                raise SceneError(
-                    f"{what} of surface '{names[i]}' is given by '{by[i]}' and by '{pattern}'; give it by its own name"
-                )
-            if i not in by or exact:
-                found[i], by[i] = value, str(pattern)
+            before = found.get(i)
+            if before is not None and not before[1] and not exact and before[0] != value:
+                text = f"is given by two patterns, as {before[0]!r} and {value!r}; give it by its own name"
+                raise SceneError(f"{what} of surface '{names[i]}' {text}")
+            if before is None or exact:
+                found[i] = value, exact
     return found
 
 

@@ -143,13 +143,13 @@ def _until(target: Target, estimator: Estimator, rays: float | None, options: di
 def _result(patches: Patches, conditions: Conditions, found: Estimate, lines, status: str, seconds: float) -> RadiativeExchange:
     k = len(patches.scene.names)
     area = np.bincount(patches.surface, patches.area, k)
-    mean = [np.bincount(patches.surface, band * patches.area, k) for band in conditions.emissivity]
+    mean = [_means(patches, band) for band in conditions.emissivity]
     kind = np.where(~np.isnan(conditions.temperature), "temperature", np.where(conditions.flux == 0, "adiabatic", "flux"))
     return RadiativeExchange(
         names=patches.scene.names,
         conditions=tuple(kind.tolist()),
         area=area,
-        emissivity=np.stack(mean, axis=1) / np.where(area > 0, area, np.nan)[:, None],
+        emissivity=np.stack(mean, axis=1),
         net=found.net[:k],
         net_standard_error=found.net_error[:k],
         temperature=found.temperature,
@@ -171,3 +171,17 @@ def _result(patches: Patches, conditions: Conditions, found: Estimate, lines, st
         status=status,
         provenance=dict(lines.provenance),
     )
+
+
+def _means(patches: Patches, values: np.ndarray) -> np.ndarray:
+    """Area means over surfaces, (k,), to the last bit where all values of a surface are equal."""
+    k, result = len(patches.scene.names), []
+    for i in range(k):
+        here = patches.surface == i
+        equal = not here.any() or np.ptp(values[here]) == 0
+        result.append(
+            values[here].max(initial=np.nan if not here.any() else 0.0)
+            if equal
+            else np.average(values[here], weights=patches.area[here])
+        )
+    return np.array(result)

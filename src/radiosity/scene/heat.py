@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+HOTTEST = 1e6  # K; a larger number is an error of units, or of typing
+
 
 @dataclass(frozen=True, eq=False)
 class Heat:
