@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     __version__: str
 
     from .diagnostics.check import check
-    from .exchange.archive import load_exchange
+    from .exchange.loading import load_exchange
     from .exchange.radiative import radiative_exchange
     from .exchange.result import RadiativeExchange
     from .method import BASELINES, PRESETS, Baseline, Method
@@ -46,7 +46,7 @@ HOOKS["export"] = _export  # of `Solution.export`
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
     "diagnostics.check": ("check",),
-    "exchange.archive": ("load_exchange",),
+    "exchange.loading": ("load_exchange",),
     "exchange.radiative": ("radiative_exchange",),
     "exchange.result": ("RadiativeExchange",),
     "run.line_set.model": ("LineSet",),

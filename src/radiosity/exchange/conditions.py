@@ -4,7 +4,6 @@ import math
 import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from ..errors import RadiosityWarning, SceneError, shown
 from ..patches.model import Patches
 from ..scene.heat import HOTTEST, Heat
+from ..scene.named import surfaces_called
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ class Conditions:
                 number = _number(value, what, names[i])
                 kelvin[i], watts[i] = (number, np.nan) if what == "temperature" else (np.nan, number)
         one = heat.isothermal.copy()
-        one[[i for pattern in _list(isothermal, "isothermal") for i in _matching(pattern, names, "isothermal")]] = True
+        one[[i for pattern in _list(isothermal, "isothermal") for i in surfaces_called(names, pattern)]] = True
         around = heat.surroundings if surroundings is None else surroundings
         if around is not None:
             around = _number(around, "temperature", None)
@@ -100,15 +100,6 @@ def _number(value, what: str, name: str | None) -> float:
     return number
 
 
-def _matching(pattern, names: list[str], what: str) -> list[int]:
-    """The surfaces of this name, or else those that match it as a pattern."""
-    found = [i for i, name in enumerate(names) if name == pattern]
-    found = found or [i for i, name in enumerate(names) if fnmatchcase(name, str(pattern))]
-    if not found:
-        raise SceneError(f"{what}: no surface is called '{pattern}'; there are {shown(names, 20)}")
-    return found
-
-
 def _list(given, what: str) -> list[str]:
     """A list of names or patterns."""
     if isinstance(given, (str, bytes, Mapping)) or not np.iterable(given):
@@ -125,8 +116,8 @@ def _by_name(given, names: list[str], what: str) -> dict[int, tuple[Any, bool]]:
     if not isinstance(given, Mapping):
         raise SceneError(f"{what} is {given!r}; give values by names of surfaces, such as {{'{names[0]}': ...}}")
     found: dict[int, tuple[Any, bool]] = {}
-    for pattern, value in given.items():
-        here = _matching(pattern, names, what)
+    for pattern, value in ((str(key), value) for key, value in given.items()):
+        here = surfaces_called(names, pattern)
         if what == "flux" and len(here) > 1:
             raise SceneError(f"flux of '{pattern}' is W of one whole surface; give {shown(names[i] for i in here)} one each")
         for i in here:

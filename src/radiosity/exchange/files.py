@@ -6,7 +6,7 @@ from ..errors import OutputError
 from ..image.output import check_writable as check_one
 from ..image.output import require
 from ..solution.csv_rows import write_rows
-from .result import SURROUNDINGS
+from .report import SURROUNDINGS
 
 SUFFIXES = (".npz", ".csv", ".png")
 UNITS = {"area": "m²", "flux": "W/m²"} | {

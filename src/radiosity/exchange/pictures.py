@@ -10,8 +10,7 @@ from ..image import bitmap, false_color
 from ..image.picture import choose_camera, first_hits, take
 from ..image.quantity import Quantity
 from ..solution.replacing import replacing
-from .report import SIGN
-from .result import SURROUNDINGS
+from .report import SIGN, SURROUNDINGS
 
 COLORS = "coolwarm"  # blue takes heat, red gives it off
 MOST = 24  # surfaces of a matrix; those that exchange least are left out

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import MethodError, RadiosityWarning
 from ..patches import Patches, subdivide
+from ..run.line_set.model import LineSet
 from ..run.progress import Listener
 from ..run.whole_number import whole
 from ..scene.model import Scene
@@ -26,7 +27,7 @@ SLOPE = 0.6  # of the error against lines, by which the next look is chosen
 
 
 def radiative_exchange(
-    scene,
+    scene: Scene | Patches | LineSet,
     temperature: Mapping[str, float] | None = None,
     *,
     emissivity=None,
@@ -71,7 +72,7 @@ def radiative_exchange(
 
     Raises:
         SceneError: a condition is missing, given twice, unknown or out of range; lines escape and there are no surroundings;
-            nothing determines a temperature. MethodError: a budget that makes no sense.
+            nothing determines a temperature. MethodError: no such surface, or a budget that makes no sense.
 
     Example:
         >>> room = rd.subdivide(rd.load_scene("room"), cells=1)
@@ -81,12 +82,13 @@ def radiative_exchange(
     """
     begun = time.perf_counter()
     replicates, seed = whole(replicates, "replicates", 1), whole(seed, "seed", 0)
-    lines = None if isinstance(scene, (Scene, Patches)) else scene
-    if lines is not None and not hasattr(lines, "pairs"):
-        raise MethodError(f"radiative_exchange takes a Scene, Patches or lines, not {type(scene).__name__}")
+    if not isinstance(scene, (Scene, Patches, LineSet)):
+        raise MethodError(f"radiative_exchange takes a Scene, Patches or a LineSet, not {type(scene).__name__}")
+    lines = scene if isinstance(scene, LineSet) else None
     if lines is not None and (rays is not None or error is not None):
         raise MethodError("lines are there already: leave rays and error out, or give the patches")
-    patches = lines.patches if lines is not None else subdivide(scene, about=PATCHES) if isinstance(scene, Scene) else scene
+    cut = subdivide(scene, about=PATCHES) if isinstance(scene, Scene) else scene
+    patches = cut.patches if isinstance(cut, LineSet) else cut
     conditions = Conditions.of(
         patches,
         temperature=temperature,
@@ -103,7 +105,7 @@ def radiative_exchange(
     options = {"replicates": replicates, "seed": seed, "device": device, "progress": progress, "memory": memory}
     status = "complete"
     if error is None:
-        lines = lines if lines is not None else trace(patches, RAYS if rays is None else rays, **options)
+        lines = lines if lines is not None else trace(patches, conditions, RAYS if rays is None else rays, None, **options)
         found, status = estimator.estimate(lines.pairs), lines.status
     else:
         target = Target.of(patches.scene.names, estimator.floats, error, error_of)
@@ -119,7 +121,7 @@ def _until(target: Target, estimator: Estimator, rays: float | None, options: di
     goal = min(max(FIRST * len(patches), 2000 * options["replicates"]), most)
     lines, first = None, True
     while True:
-        lines = trace(patches, goal, before=lines, **options)
+        lines = trace(patches, estimator.conditions, goal, lines, **options)
         found = estimator.estimate(lines.pairs, tell=first)
         bound, first = target.reached(found, options["replicates"]), False
         if bound <= target.error:

@@ -6,6 +6,7 @@ import math
 from ..errors import printable
 
 SIGN = "net: heat that a surface gives off to the others; positive: it must be heated, negative: it must be cooled"
+SURROUNDINGS = "surroundings"  # name of the last row of tables
 WIDE = 1000  # columns; names are never cut off
 
 

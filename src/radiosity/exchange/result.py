@@ -8,8 +8,7 @@ import numpy as np
 from ..errors import MethodError
 from ..patches.model import Patches
 from ..solution.intervals import student
-
-SURROUNDINGS = "surroundings"
+from .report import SURROUNDINGS, report
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,8 +133,6 @@ class RadiativeExchange:
 
     def report(self) -> str:
         """Return a table in text."""
-        from .report import report
-
         return report(self)
 
     def __str__(self) -> str:
@@ -147,7 +144,7 @@ class RadiativeExchange:
         Raises:
             OutputError: the file cannot be written.
         """
-        from .archive import save
+        from .saving import save
 
         return save(self, Path(path))
 

@@ -1,11 +1,11 @@
 """The error that an exchange must reach: of the net heat or the temperature of a surface, or of the largest net heat."""
 
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 
 import numpy as np
 
 from ..errors import MethodError, shown
+from ..scene.named import surfaces_called
 from ..solution.errors import SURE
 from ..solution.intervals import FEW, student
 from .estimate import Estimate
@@ -49,10 +49,7 @@ class Target:
         wanted = str(error_of).removeprefix(kind or "")
         if kind is None or not wanted:
             raise MethodError(f"error_of is '{error_of}'; write {NET}NAME or {TEMPERATURE}NAME, such as {NET}{names[0]}")
-        found = [i for i, name in enumerate(names) if name == wanted]
-        found = found or [i for i, name in enumerate(names) if fnmatchcase(name, wanted)]
-        if not found:
-            raise MethodError(f"error_of: no surface is called '{wanted}'; there are {shown(names, 20)}")
+        found = surfaces_called(names, wanted)
         exact = [names[i] for i in found if floats[i] == (kind == NET)]
         if exact:
             what, other = ("net heat", TEMPERATURE) if kind == NET else ("temperature", NET)

@@ -1,45 +1,22 @@
-"""The lines of a radiative exchange, traced in stages."""
-
-from dataclasses import dataclass, replace
+"""The lines of a radiative exchange."""
 
 import numpy as np
 
-from ..factors.counted import CountedPairs
-from ..method import Method
 from ..patches.model import Patches
-from ..run.solve import solve
+from ..run.line_set.model import LineSet
+from ..run.line_set.trace import trace_lines
+from .conditions import Conditions
+
+SMALL = 0.1  # share of the scene's area below which surfaces that are hot or cold by themselves get more lines
 
 
-@dataclass(frozen=True, eq=False)
-class Lines:
-    """Counted lines, and what made them."""
-
-    pairs: CountedPairs
-    rays: int
-    replicates: int
-    seed: int
-    seconds: float
-    status: str
-    patches: Patches
-    solution: object
-    provenance: dict
+def sources(patches: Patches, conditions: Conditions) -> list[str]:
+    """Return the names of small surfaces of given temperature or flux: by area alone they would have few lines."""
+    area = np.bincount(patches.surface, patches.area, len(patches.scene.names))
+    driven = ~(conditions.flux == 0) & (area > 0)
+    return [patches.scene.names[i] for i in np.flatnonzero(driven & (area < SMALL * area.sum()))]
 
 
-def trace(patches: Patches, rays: float, *, replicates, seed, device, progress, memory, before=None):
-    """Trace lines; go on from ``before``, if there is some."""
-    scene = patches.scene
-    lit = replace(scene, emission=np.ones_like(scene.emission), back_emission=np.ones_like(scene.emission), emission_paint=None)
-    cut = before.solution.patches if before else Patches(lit, patches.columns, patches.rows)
-    s = solve(
-        cut,
-        Method(order="matrix"),
-        rays=rays,
-        replicates=replicates,
-        seed=seed,
-        device=device,
-        progress=progress,
-        memory=memory,
-        resume=before.solution if before else None,
-    )
-    pairs = CountedPairs(patches, s.state["keys"], s.state["counts"], replicates, True)
-    return Lines(pairs, s.rays, replicates, seed, s.seconds, s.status, patches, s, s.provenance)
+def trace(patches: Patches, conditions: Conditions, rays: float, before: LineSet | None, **options) -> LineSet:
+    """Trace lines, or go on from those ``before``; options are those of `trace_lines`."""
+    return trace_lines(patches, rays=rays, sources=sources(patches, conditions) or None, resume=before, **options)
