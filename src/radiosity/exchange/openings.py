@@ -12,7 +12,7 @@ from .network import Network, Pooled
 
 LEAK = 1e-3  # share of a side's lines that may escape through seams, where no surroundings are given
 HIDDEN = 0.99  # share of lines that end on backs, from which a patch is hidden, such as floor below furniture
-UNDEFINED = 0.05  # largest share of a side's lines that may end on backs, hidden patches apart
+UNDEFINED = 0.2  # largest share of a side's lines that may end on backs, hidden patches apart
 
 
 def refuse_one_way(patches: Patches) -> None:

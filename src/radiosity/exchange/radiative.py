@@ -75,8 +75,8 @@ def radiative_exchange(
             nothing determines a temperature. MethodError: no such surface, or a budget that makes no sense.
 
     Example:
-        >>> room = rd.subdivide(rd.load_scene("room"), cells=1)
-        >>> heat = rd.radiative_exchange(room, {"floor": 310, "*": 290}, emissivity=0.9, rays=100_000)
+        >>> maze = rd.subdivide(rd.load_scene("labyrinth"), cells=1)
+        >>> heat = rd.radiative_exchange(maze, {"floor": 310, "*": 290}, emissivity=0.9, rays=100_000)
         >>> bool(heat["floor"]["net"] > 0), bool(abs(heat.net.sum()) < 1e-6)
         (True, True)
     """
