@@ -38,6 +38,12 @@ class RadiativeExchange:
         seconds: of tracing and solving.
         status: "complete", "not reached" (the error asked for) or "interrupted".
         provenance: what made the result.
+
+    Example:
+        >>> maze = rd.subdivide(rd.load_scene("labyrinth"), cells=1)
+        >>> heat = rd.radiative_exchange(maze, {"floor": 310, "*": 290}, emissivity=0.9, rays=100_000)
+        >>> heat["floor"]["condition"], bool(heat["floor"]["net low"] < heat["floor"]["net"])
+        ('temperature', True)
     """
 
     names: tuple[str, ...]

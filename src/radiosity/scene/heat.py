@@ -32,3 +32,22 @@ class Heat:
     def none(n: int) -> "Heat":
         """Make what a scene of n surfaces says that says nothing."""
         return Heat(np.full(n, np.nan), np.full(n, np.nan), (None,) * n, np.zeros(n, bool))
+
+    def facts(self) -> dict:
+        """Return the conditions as text of files can hold them; unknown numbers are None."""
+        return {
+            "temperature": [None if np.isnan(value) else float(value) for value in self.temperature],
+            "flux": [None if np.isnan(value) else float(value) for value in self.flux],
+            "emissivity": self.emissivity,
+            "isothermal": self.isothermal.tolist(),
+            "surroundings": self.surroundings,
+            "wavelengths": self.wavelengths,
+        }
+
+    @staticmethod
+    def of(facts: dict) -> "Heat":
+        """Make the conditions that `facts` gave."""
+        one, other = (np.array([np.nan if v is None else v for v in facts[key]], float) for key in ("temperature", "flux"))
+        emissivity = tuple(None if value is None else tuple(value) for value in facts["emissivity"])
+        isothermal = np.array(facts["isothermal"], bool)
+        return Heat(one, other, emissivity, isothermal, facts["surroundings"], tuple(facts["wavelengths"]))
