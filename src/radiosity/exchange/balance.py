@@ -51,7 +51,7 @@ def above(temperature, reference: float):
 
 def kelvin(emission: np.ndarray, reference: float) -> np.ndarray:
     """Return the temperature of an emission that is ``emission`` above that of the reference; NaN below 0 K."""
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):  # 0 K is the logarithm of zero
         if reference == 0:
             return np.where(emission < 0, np.nan, np.abs(emission) / SIGMA) ** 0.25
         return reference * (1 + np.expm1(np.log1p(emission / (SIGMA * reference**4)) / 4))

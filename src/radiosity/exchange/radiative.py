@@ -169,6 +169,7 @@ def _result(patches: Patches, conditions: Conditions, found: Estimate, lines, st
         rays=int(lines.rays),
         replicates=int(lines.replicates),
         seed=int(lines.seed),
+        quanta=int(lines.quanta),
         seconds=seconds,
         status=status,
         provenance=dict(lines.provenance),

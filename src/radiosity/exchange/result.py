@@ -35,6 +35,7 @@ class RadiativeExchange:
         patch_temperature: (n_patches,) K; NaN where a patch exchanges nothing.
         patches: the patches.
         rays, replicates, seed: lines in all, and what made them.
+        quanta: lines of each replicate, by which `trace_lines` makes the same again.
         seconds: of tracing and solving.
         status: "complete", "not reached" (the error asked for) or "interrupted".
         provenance: what made the result.
@@ -67,6 +68,7 @@ class RadiativeExchange:
     rays: int
     replicates: int
     seed: int
+    quanta: int
     seconds: float
     status: str = "complete"
     provenance: dict = field(default_factory=dict)

@@ -13,7 +13,16 @@ FORMAT = 1
 SURFACES = ("area", "net", "net_standard_error", "temperature", "temperature_standard_error")
 PATCHES = ("patch_net", "patch_net_standard_error", "patch_temperature")
 MATRICES = ("exchange", "exchange_standard_error")
-SCALARS = ("surroundings", "surroundings_net", "surroundings_net_standard_error", "rays", "replicates", "seed", "seconds")
+SCALARS = (
+    "surroundings",
+    "surroundings_net",
+    "surroundings_net_standard_error",
+    "rays",
+    "replicates",
+    "seed",
+    "quanta",
+    "seconds",
+)
 REST = ("names", "conditions", "wavelengths", "status", "provenance")
 
 
