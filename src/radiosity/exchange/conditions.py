@@ -55,15 +55,15 @@ class Conditions:
         names, heat = list(scene.names), scene.heat or Heat.none(len(scene.names))
         kelvin, watts = heat.temperature.copy(), heat.flux.copy()
         adiabatic = dict.fromkeys(_list(adiabatic, "adiabatic"), 0.0)
-        given: dict[int, tuple[bool, str]] = {}
+        given: dict[int, tuple[int, str]] = {}
         for what, values in (("temperature", temperature), ("flux", flux), ("adiabatic", adiabatic)):
-            for i, (value, exact) in _by_name(values, names, what).items():
-                before, kind = given.get(i, (False, ""))
-                if kind and before == exact:
+            for i, (value, rank) in _by_name(values, names, what).items():
+                before, kind = given.get(i, (-1, ""))
+                if before == rank:
                     raise SceneError(f"surface '{names[i]}' has both {kind} and {what}; give one")
-                if kind and before:
-                    continue  # its own name goes before a pattern
-                given[i] = exact, what
+                if before > rank:
+                    continue
+                given[i] = rank, what
                 number = _number(value, what, names[i])
                 kelvin[i], watts[i] = (number, np.nan) if what == "temperature" else (np.nan, number)
         one = heat.isothermal.copy()
@@ -107,27 +107,27 @@ def _list(given, what: str) -> list[str]:
     return [str(name) for name in given]
 
 
-def _by_name(given, names: list[str], what: str) -> dict[int, tuple[Any, bool]]:
-    """Values by the number of the surface, and whether it is given by its own name, which goes before a pattern."""
+def _by_name(given, names: list[str], what: str) -> dict[int, tuple[Any, int]]:
+    """Values by the number of the surface, and their rank: an exact name, 2, goes before a pattern, and that before "*", 0."""
     if given is None:
         return {}
     if what == "emissivity" and not isinstance(given, Mapping):
-        return dict.fromkeys(range(len(names)), (given, False))
+        return dict.fromkeys(range(len(names)), (given, 0))
     if not isinstance(given, Mapping):
         raise SceneError(f"{what} is {given!r}; give values by names of surfaces, such as {{'{names[0]}': ...}}")
-    found: dict[int, tuple[Any, bool]] = {}
+    found: dict[int, tuple[Any, int]] = {}
     for pattern, value in ((str(key), value) for key, value in given.items()):
         here = surfaces_called(names, pattern)
         if what == "flux" and len(here) > 1:
             raise SceneError(f"flux of '{pattern}' is W of one whole surface; give {shown(names[i] for i in here)} one each")
         for i in here:
-            exact = names[i] == pattern
-            before = found.get(i)
-            if before is not None and not before[1] and not exact and before[0] != value:
-                text = f"is given by two patterns, as {before[0]!r} and {value!r}; give it by its own name"
+            rank = 2 if names[i] == pattern else 0 if pattern == "*" else 1
+            before, its_rank = found.get(i, (None, -1))
+            if its_rank == rank and before != value:
+                text = f"is given by two patterns, as {before!r} and {value!r}; give it by its own name"
                 raise SceneError(f"{what} of surface '{names[i]}' {text}")
-            if before is None or exact:
-                found[i] = value, exact
+            if its_rank < rank:
+                found[i] = value, rank
     return found
 
 

@@ -48,7 +48,7 @@ def radiative_exchange(
     """Solve for the heat that surfaces exchange by radiation.
 
     Each surface has a temperature, a flux, or is adiabatic: from the arguments, or from the scene's .toml file. Arguments go
-    first. Names of surfaces may be patterns such as ``"wall*"``; an exact name goes before a pattern.
+    first. Names of surfaces may be patterns such as ``"wall*"``; an exact name goes before a pattern, and that before ``"*"``.
 
     Args:
         scene: a `Scene` (cut into about 2 000 patches), the `Patches` of one, or a `LineSet` whose lines are taken.

@@ -15,7 +15,7 @@ from ...combine import combine
 from ...model import Back, Camera, Scene
 from ..beside import in_any_case, warn_of_case
 from ..units import UNITS
-from .heat import heat_of, reflecting
+from .heat import check_bands, heat_of, reflecting
 
 BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
 SIDES = {1: Back.ABSORBS, 2: Back.RADIATES}
@@ -35,6 +35,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
         hint = "; save it as UTF-8" if isinstance(error, UnicodeDecodeError) else ""
         raise SceneError(f"{path}: is no TOML ({error}){hint}") from None
     asked = checked(values, str(path))
+    check_bands(asked, str(path))
     factors = [UNITS[entry.unit or asked.unit] * (entry.scale or asked.scale) for entry in asked.geometry]
 
     def dressed(looks: Looks) -> list[Scene]:

@@ -10,6 +10,21 @@ from ...heat import Heat
 from ...parts import Material
 
 
+def check_bands(asked, source: str) -> None:
+    """Refuse emissivities of another number of bands than the file has.
+
+    Raises:
+        SceneError: there are some.
+    """
+    bands = len(asked.wavelengths) + 1
+    for number, entry in enumerate(asked.surface, 1):
+        if len(entry.emissivity or [0]) not in (1, bands):
+            raise SceneError(
+                f"{source}: surface {number} ('{entry.name}'): emissivity has {len(entry.emissivity)} numbers; wavelengths = "
+                f"{list(asked.wavelengths)} makes {bands} {'bands' if bands > 1 else 'band'}: give one number, or {bands}"
+            )
+
+
 def heat_of(asked, names: tuple[str, ...], means: Callable[[object, str], bool], source: str) -> Heat | None:
     """Return the conditions of surfaces, or None where the file says nothing about heat.
 
@@ -22,7 +37,7 @@ def heat_of(asked, names: tuple[str, ...], means: Callable[[object, str], bool],
         source: the file's name, for messages.
 
     Raises:
-        SceneError: emissivities of another number of bands than the file has, or a flux for several surfaces.
+        SceneError: a flux for several surfaces.
     """
     heat, bands = Heat.none(len(names)), len(asked.wavelengths) + 1
     emissivity, said = list(heat.emissivity), asked.surroundings is not None or bands > 1
@@ -38,11 +53,6 @@ def heat_of(asked, names: tuple[str, ...], means: Callable[[object, str], bool],
         if entry.isothermal is not None:
             heat.isothermal[here] = entry.isothermal
         if entry.emissivity is not None:
-            if len(entry.emissivity) not in (1, bands):
-                raise SceneError(
-                    f"{what}: emissivity has {len(entry.emissivity)} numbers; wavelengths = {list(asked.wavelengths)} makes "
-                    f"{bands} {'bands' if bands > 1 else 'band'}: give one number, or {bands}"
-                )
             for i in here:
                 emissivity[i] = tuple(entry.emissivity)
     whole = replace(heat, emissivity=tuple(emissivity), surroundings=asked.surroundings, wavelengths=tuple(asked.wavelengths))
