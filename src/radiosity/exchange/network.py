@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from ..factors.balance import scaling
 from ..factors.counted import CountedPairs
 from ..factors.counts import WORD, split
-from ..factors.solve import of_both_ways
+from ..factors.solve import SCALINGS
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,9 +60,11 @@ class Network:
 class Pooled:
     """Counted lines of all replicates together, and of all but one.
 
+    A line between patches counts for both directions, as in `factors.solve.of_both_ways`. Which pairs there are is found once.
+
     Attributes:
         area: (n_patches,) m².
-        counts: (m,) lines of each pair, of all replicates.
+        counts: (m,) lines of each key, of all replicates.
         lost: (n_patches,) share of a patch's lines that ended on absorbing backs.
         lines: (n_patches,) lines that left each patch.
     """
@@ -70,15 +73,24 @@ class Pooled:
         n = len(pairs.patches)
         self.area, self.replicates = pairs.patches.area, pairs.replicates
         rows, columns = split(pairs.keys)
-        self._replicate = rows // n
-        keys = ((rows % n).astype(np.uint64) << WORD) | columns.astype(np.uint64)
-        self._keys, self._place = np.unique(keys, return_inverse=True)
-        self._each = pairs.counts
-        self.counts = np.bincount(self._place, weights=pairs.counts, minlength=len(self._keys))
-        rows, columns = split(self._keys)
-        self.lines = np.bincount(rows, self.counts, n)
-        backs = columns == n + 1
-        self.lost = np.bincount(rows[backs], self.counts[backs], n) / np.maximum(self.lines, 1)
+        self._replicate, self._each = rows // n, pairs.counts
+        keys, self._place = np.unique(((rows % n).astype(np.uint64) << WORD) | columns.astype(np.uint64), return_inverse=True)
+        self.counts = np.bincount(self._place, weights=pairs.counts, minlength=len(keys))
+        self._rows, self._columns = split(keys)
+        self.lines = np.bincount(self._rows, self.counts, n)
+        self.lost = self._share(self.counts, n + 1)
+
+        self._apart = (self._columns < n) & (self._columns != self._rows)
+        rows, columns = self._rows[self._apart], self._columns[self._apart]
+        low, high = np.minimum(rows, columns).astype(np.uint64), np.maximum(rows, columns).astype(np.uint64)
+        both, self._pair = np.unique((low << WORD) | high, return_inverse=True)
+        self._low, self._high = split(both)
+        # each pair stands twice in the symmetric matrix
+        rows, columns = np.r_[self._low, self._high], np.r_[self._high, self._low]
+        self._order = np.lexsort((columns, rows))
+        self._indices = columns[self._order]
+        self._begin = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=n))])
+        self._order %= max(len(both), 1)
 
     @cached_property
     def network(self) -> Network:
@@ -94,22 +106,31 @@ class Pooled:
 
     def between(self, labels: np.ndarray, k: int) -> np.ndarray:
         """Return how many lines joined two groups, in both directions, (k, k + 1); the last column is lines that escaped."""
-        n = len(labels)
-        rows, columns = split(self._keys)
-        found = columns <= n  # not those absorbed by backs
-        ends = np.append(labels, k)[columns[found]]
-        counts = np.bincount(labels[rows[found]] * (k + 1) + ends, self.counts[found], k * (k + 1)).reshape(k, k + 1)
+        found = self._columns <= len(labels)  # not those absorbed by backs
+        ends = np.append(labels, k)[self._columns[found]]
+        keys = labels[self._rows[found]] * (k + 1) + ends
+        counts = np.bincount(keys, self.counts[found], k * (k + 1)).reshape(k, k + 1)
         counts[:, :k] += counts[:, :k].T.copy()
         return counts
 
+    def _share(self, counts: np.ndarray, code: int) -> np.ndarray:
+        """Share of each patch's lines that ended at the column ``code``."""
+        n, here = len(self.area), self._columns == code
+        lines = np.bincount(self._rows, counts, n)
+        return np.bincount(self._rows[here], counts[here], n) / np.maximum(lines, 1)
+
     def _network(self, counts: np.ndarray) -> Network:
-        from scipy.sparse import coo_array
+        """Conductances by both ends of each line, scaled until those of a patch sum to what does not escape."""
+        from scipy.sparse import csr_array
 
         n = len(self.area)
-        found = of_both_ways(self._keys, counts, n, self.area)
-        apart = found.rows != found.columns
-        rows, columns = found.rows[apart], found.columns[apart]
-        one = coo_array((self.area[rows] * found.values[apart], (rows, columns)), shape=(n, n)).tocsr()
-        exchange = ((one + one.T) / 2).tocsr()
-        exchange.eliminate_zeros()
-        return Network(exchange, self.area * found.escaped, self.area)
+        escaped, lost = self._share(counts, n), self._share(counts, n + 1)
+        density = np.bincount(self._rows, counts, n) / self.area
+        trust = density[self._low] + density[self._high]
+        joined = np.bincount(self._pair, counts[self._apart], len(trust))
+        value = np.divide(joined, trust, out=np.zeros(len(trust)), where=trust > 0)
+        exchange = csr_array((value[self._order], self._indices, self._begin), shape=(n, n))
+        scale = scaling(lambda d: d * (exchange @ d), self.area * np.maximum(1 - escaped - lost, 0), SCALINGS)
+        value *= scale[self._low] * scale[self._high]
+        exchange = csr_array((value[self._order], self._indices, self._begin), shape=(n, n))
+        return Network(exchange, self.area * escaped, self.area)

@@ -75,10 +75,10 @@ class Nodes:
 
         n, floating = len(self.node), np.flatnonzero(~self.fixed)
         held = self.fixed | (network.escaping > 0 if surroundings else False)
-        pairs = network.exchange.tocoo()
+        pairs, joined = network.exchange.tocoo(), network.exchange.data > 0
         # patches, then nodes, then one end for all that is held
-        rows = np.concatenate([pairs.row, floating, np.flatnonzero(held)])
-        columns = np.concatenate([pairs.col, n + self.node[floating], np.full(held.sum(), n + len(self.heat))])
+        rows = np.concatenate([pairs.row[joined], floating, np.flatnonzero(held)])
+        columns = np.concatenate([pairs.col[joined], n + self.node[floating], np.full(held.sum(), n + len(self.heat))])
         size = n + len(self.heat) + 1
         _, label = connected_components(coo_array((np.ones(len(rows)), (rows, columns)), shape=(size, size)), directed=False)
         return label[:n] != label[-1]
