@@ -14,7 +14,7 @@ from radiosity.scene.shapes import box, quad
 from validation.closed_forms.enclosures import box_factors, net
 from validation.closed_forms.rectangles import parallel, perpendicular
 
-WALLS = ("x low", "x high", "y low", "y high", "z low", "z high")
+WALLS: tuple[str, ...] = ("x low", "x high", "y low", "y high", "z low", "z high")
 ORDER = (2, 3, 0, 1, 4, 5)  # of these walls among the faces of `box`
 
 

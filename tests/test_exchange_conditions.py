@@ -81,6 +81,8 @@ def test_names_go_before_patterns_and_arguments_before_the_scene(patches):
     assert found.temperature.tolist()[:5] == [310, 300, 300, 300, 300]
     assert np.isnan(found.temperature[5])
     assert found.flux[5] == 0
+    insulated = Conditions.of(patches, temperature={"x low": 310}, adiabatic=["*"], emissivity=0.5)
+    assert np.isnan(insulated.temperature).tolist() == [False, True, True, True, True, True]
     assert found.emissivity[0].tolist() == [0.5, 0.5, 0.9, 0.5, 0.5, 0.5]
 
 
@@ -111,6 +113,7 @@ geometry = "oven.obj"
 [[surface]]
 name = "*"
 sides = 1
+temperature = 290
 emissivity = 0.8
 [[surface]]
 name = "walls*"
@@ -171,6 +174,23 @@ def test_a_default_reflectance_is_no_emissivity(tmp_path):
         scene = rd.load_scene(tmp_path / "plain.obj")
     with pytest.raises(rd.SceneError, match=r"no emissivity is given for 'walls.*', and no file gives a reflectance"):
         rd.radiative_exchange(scene, {"*": 300}, surroundings=300)
+
+
+@pytest.mark.parametrize("gap", [0.0005, 0.05])
+def test_what_slips_through_seams_is_told_and_more_is_refused(gap):
+    """A box whose lid is a little small; no surroundings are given."""
+    quads = box((0, 0, 0), (1, 1, 1), inward=True)
+    lid = quad((gap, gap, 1), (0, 1 - 2 * gap, 0), (1 - 2 * gap, 0, 0))
+    patches = rd.subdivide(scene_of([("walls", quads[:5]), ("lid", [lid])]), cells=1)
+    given, options = {"walls": 300, "lid": 500}, {"emissivity": 0.8, "rays": 200_000}
+    if gap > 0.01:
+        with pytest.raises(rd.SceneError, match=r"% of what leaves walls leaves the scene; give surroundings, in K"):
+            rd.radiative_exchange(patches, given, **options)
+        return
+    with pytest.warns(rd.RadiosityWarning, match="'walls': up to .* of their lines escape through seams"):
+        heat = rd.radiative_exchange(patches, given, **options)
+    assert abs(heat.net.sum()) < 1e-9 * heat.net[1]
+    assert heat.surroundings_net == 0
 
 
 def test_one_way_backs_are_refused():

@@ -1,10 +1,13 @@
 """Files of radiative exchange, and the command."""
 
 import csv
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
+from test_docs import blocks
 from test_exchange import big_box
 from test_exchange_conditions import oven
 
@@ -79,6 +82,17 @@ def test_pictures_of_heat(heat, tmp_path):
         assert picture.size[0] > 300
     with pytest.raises(rd.OutputError, match=r"unknown output format '.glb'"):
         heat.export(tmp_path / "heat.glb")
+
+
+def test_the_page_runs(tmp_path, monkeypatch):
+    """The furnace of the page, in order, with its assertions; its table shows the same watts."""
+    monkeypatch.chdir(tmp_path)
+    page = Path(__file__).parents[1] / "docs" / "radiative-exchange.md"
+    names: dict = {"__name__": "page"}
+    for block in blocks(page):
+        exec(compile(block, str(page), "exec"), names)
+    (watts,) = (float(found) for found in re.findall(r"^heater .* (\d+) ± 19 ", page.read_text(encoding="utf-8"), re.MULTILINE))
+    assert names["heat"]["heater"]["net"] == pytest.approx(watts, abs=30)
 
 
 def run(capsys, *arguments):
