@@ -50,6 +50,13 @@ CASES = {
     "crossings of spans": ("cube", [f"solve a.toml {ONE_REPLICATE} --method global-form-factors --lines spans --quanta 96"]),
     "crossings of chords": ("plates", [f"solve a.toml {ONE_REPLICATE} --method global-form-factors --quanta 58"]),
     "one face that lines pass": ("triangle", ["check a.toml"]),
+    **{
+        f"lines of {scene}": (
+            scene,
+            [f"lines a.toml --cells 1 --quanta {quanta} --replicates 1 -o l.npz", "relight l.npz --set *.emission=1 -o o.csv"],
+        )
+        for scene, quanta in (("one, radiates", 1), ("one, passes", 64), ("plates", 58), ("cube", 96), ("coloured", 1024))
+    },
 }
 
 

@@ -11,6 +11,7 @@ from radiosity.device import memory
 from radiosity.lab.footprint import Footprint, footprints, scene_of
 from radiosity.problem.model import Problem
 from radiosity.run import memory_estimate
+from radiosity.run.budget import Budget
 
 GIB = 2**30
 needs_proc = pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="peaks are measured by Linux's /proc")
@@ -136,6 +137,19 @@ def test_expected_memory_grows_with_bands_replicates_and_patches(method):
     more = len(many) - len(few)
     expected = more * (one.patch + one.band + 2 * (one.replicate + one.group))
     assert wanted(many, 1, 2) - wanted(few, 1, 2) == pytest.approx(expected)
+
+
+def test_counted_lines_take_memory_by_their_number_however_it_is_given():
+    """Of lines of the patches that is known; each patch has 4 in each replicate at least. Of global ones it is known for rays."""
+    patches, matrix = rd.subdivide(rd.load_scene("room"), cells=20), rd.Method(order="matrix")
+    n, pair = len(patches), memory_estimate.PAIR
+    few, more, most = (memory_estimate.memory_needed(matrix, patches, 1, 8, rays) for rays in (1, 10**6, None))
+    assert more - few == pytest.approx(pair * (10**6 - 4 * 8 * n))
+    assert most - few == pytest.approx(pair * (memory_estimate.LIMIT - 4 * 8 * n))
+    assert memory_estimate.lines_of(matrix, Budget(quanta=1000), 8) == 8000
+    assert memory_estimate.lines_of(matrix, Budget(rays=500), 8) == 500
+    assert memory_estimate.lines_of(rd.Method(order="matrix", lines="spans"), Budget(quanta=1000), 8) is None
+    assert memory_estimate.lines_of(matrix, Budget(seconds=1), 8) is None
 
 
 def test_what_will_not_fit_is_refused_before_it_begins(monkeypatch):

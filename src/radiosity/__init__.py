@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .exchange.result import RadiativeExchange
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
+    from .run.line_set.loading import load_lines
     from .run.line_set.model import LineSet
     from .run.line_set.trace import trace_lines
     from .run.merge import merge
@@ -49,6 +50,7 @@ _HOMES = {
     "exchange.loading": ("load_exchange",),
     "exchange.radiative": ("radiative_exchange",),
     "exchange.result": ("RadiativeExchange",),
+    "run.line_set.loading": ("load_lines",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
     "run.merge": ("merge",),
@@ -82,6 +84,7 @@ __all__ = [
     "Solution",
     "check",
     "load_exchange",
+    "load_lines",
     "load_scene",
     "load_solution",
     "merge",

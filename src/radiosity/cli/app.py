@@ -13,7 +13,9 @@ from .check import check
 from .doctor import doctor
 from .exchange import exchange
 from .experiment import experiment
+from .lines import lines
 from .methods import methods
+from .relight import relight
 from .render import render
 from .solve import solve
 from .streams import say, silence
@@ -35,7 +37,7 @@ app = App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-for place, command in enumerate((solve, exchange, methods, render, check, experiment, doctor)):
+for place, command in enumerate((solve, exchange, methods, lines, relight, render, check, experiment, doctor)):
     app.command(command, sort_key=place)
 
 

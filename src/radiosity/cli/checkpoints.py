@@ -9,21 +9,25 @@ from ..errors import OutputError, RadiosityWarning
 MINUTE = 60.0  # seconds from which a run is long; also the time between two checkpoints that nobody asked for
 
 
-def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None):
+def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None, save=None):
     """The checkpoint that was named, or one beside the first output: ``box.glb`` -> ``box.checkpoint.npz``; or None.
+
+    Args:
+        save: writes the results of the run; default: solutions.
 
     Raises:
         OutputError: the one that was named cannot be written, or is an output too.
         MethodError: no run can continue from it.
     """
-    from ..run.checkpoint import Checkpoint, resumable
+    from ..run.checkpoint import Checkpoint, resumable, save_solution
 
+    save = save_solution if save is None else save
     if path is not None:
         if off:
             raise OutputError(f"--checkpoint {path} and --no-checkpoint exclude each other; give one")
         if _place(path) in map(_place, outputs):
             raise OutputError(f"{path} is named twice; give the checkpoint a name of its own, since it is removed in the end")
-        keeper = Checkpoint(path)
+        keeper = Checkpoint(path, save=save)
         keeper.check(method)
         _point_at_earlier(path, resume, "half a minute")
         return keeper
@@ -32,7 +36,7 @@ def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None):
     beside: Path = outputs[0].with_name(f"{outputs[0].stem}.checkpoint.npz")
     if _place(beside) in map(_place, outputs):
         return None
-    keeper = Checkpoint(beside, MINUTE)
+    keeper = Checkpoint(beside, MINUTE, save)
     try:
         keeper.check(method)
     except OutputError:  # nobody asked for it

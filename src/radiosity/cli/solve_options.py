@@ -56,20 +56,29 @@ class Budget:
 
 
 @dataclass(frozen=True)
-class Cut:
-    """How faces are cut into patches.
+class Size:
+    """How large patches are.
 
     Attributes:
         patch_size: Longest edge of a patch, in metres. Default: about 20 000 patches in all; 2 000 for baselines.
         cells: Cut every face into CELLS x CELLS patches.
+    """
+
+    patch_size: Length = None
+    cells: Count = None
+
+
+@dataclass(frozen=True)
+class Cut(Size):
+    """How faces are cut into patches.
+
+    Attributes:
         powers_of_two: Cut faces into 1, 2, 4, 8 ... cells along each edge. Hierarchical radiosity always does; with this option
             other methods have the same patches, to compare with it.
         refine_check: Solve on patches cut into four, too, and report sampling and discretisation errors apart. With a .csv
             output also as NAME.refine.csv.
     """
 
-    patch_size: Length = None
-    cells: Count = None
     powers_of_two: Flag = False
     refine_check: Flag = False
 
@@ -80,30 +89,39 @@ class Cut:
 
 
 @dataclass(frozen=True)
-class Running:
+class Machine:
+    """What every run has.
+
+    Attributes:
+        seed: Seed of all random numbers. Equal seeds give equal results.
+        device: auto, cpu or cuda.
+        memory: Memory limit, such as 8G or none. A run that needs more is refused before it begins. Default: 70 % of what is
+            free.
+    """
+
+    seed: Seed = 0
+    device: DeviceName = "auto"
+    memory: str | None = None
+
+
+@dataclass(frozen=True)
+class Running(Machine):
     """What concerns the run.
 
     Attributes:
         replicates: Number of independent randomised runs, from which errors are found. Default: 8; 1 for baselines.
-        seed: Seed of all random numbers. Equal seeds give equal results.
-        device: auto, cpu or cuda.
         resume: Continue from this .npz file of the same scene, method, seed and replicates, finished or interrupted. Its lines
             count. It reuses its patches unless you set others. Not for full-matrix and hierarchical.
         checkpoint: An .npz file that keeps the state of the run, written about every 30 seconds, for --resume after a crash, a
             kill or a power cut. It is removed when all outputs are written. Default: for runs of a minute and more, beside the
             first output: out/box.glb -> out/box.checkpoint.npz.
         no_checkpoint: Write no checkpoint.
-        memory: Memory limit, such as 8G or none. A run that needs more is refused before it begins. Default: 70 % of what is
-            free.
     """
 
     replicates: Count = None
-    seed: Seed = 0
-    device: DeviceName = "auto"
     resume: Path | None = None
     checkpoint: Path | None = None
     no_checkpoint: Flag = False
-    memory: str | None = None
 
 
 @dataclass(frozen=True)
@@ -164,7 +182,8 @@ MethodOptions = Annotated[MethodChoices, Parameter(name="*", group=METHODS)]
 BaselineOptions = Annotated[
     BaselineChoices, Parameter(name="*", group=Group("Methods that form the matrix (baselines)", sort_key=3))
 ]
-CutOptions = Annotated[Cut, Parameter(name="*", group=Group("Patches", sort_key=4))]
+PATCHES = Group("Patches", sort_key=4)
+CutOptions = Annotated[Cut, Parameter(name="*", group=PATCHES)]
 RunOptions = Annotated[Running, Parameter(name="*", group=RUN)]
 SceneOptions = Annotated[Reading, Parameter(name="*", group=Group("The scene", sort_key=6))]
 

@@ -13,6 +13,9 @@ from .counts import WORD, split
 from .model import Factors
 from .solve import irradiance, of_both_ways, of_own_light, of_rows
 
+ENTRY = 36  # bytes of an entry of form factors, and of its place in a sparse array
+KEPT = 1 << 28  # bytes
+
 
 @dataclass(frozen=True, eq=False)
 class Received:
@@ -41,6 +44,7 @@ class CountedPairs:
         replicates: the number of replicates.
         both_ways: each line counts at both its ends, see `solve.of_both_ways`.
         directed: a patch need not see a patch that sees it, see `Factors.sent`.
+        keeps: form factors are made once and kept for the next light, unless they take more than `KEPT` bytes.
     """
 
     patches: Patches
@@ -49,6 +53,7 @@ class CountedPairs:
     replicates: int
     both_ways: bool
     directed: bool = False
+    keeps: bool = False
 
     @cached_property
     def lines(self) -> np.ndarray:
@@ -65,6 +70,14 @@ class CountedPairs:
 
     def factors(self) -> Iterator[Factors]:
         """Yield the form factors of each replicate."""
+        entries = len(self.keys) * (2 if self.both_ways else 1)
+        return iter(self._kept) if self.keeps and entries * ENTRY <= KEPT else self._made()
+
+    @cached_property
+    def _kept(self) -> list[Factors]:
+        return list(self._made())
+
+    def _made(self) -> Iterator[Factors]:
         n = len(self.patches)
         bounds = np.searchsorted(self.keys, np.arange(self.replicates + 1).astype(np.uint64) * np.uint64(n) << WORD)
         for replicate, (begin, end) in enumerate(pairwise(bounds)):

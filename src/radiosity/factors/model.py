@@ -1,6 +1,7 @@
 """Sparse form factors."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -31,7 +32,20 @@ class Factors:
 
     def gather(self, radiosity: np.ndarray) -> np.ndarray:
         """Return irradiance, sum_j F_ij B_j, (n,)."""
+        if self._ordered is not None:
+            return self._ordered @ radiosity
         return np.bincount(self.rows, weights=self.values * radiosity[self.columns], minlength=len(radiosity))
+
+    @cached_property
+    def _ordered(self):
+        """A CSR array of the entries as they stand, which adds up as `numpy.bincount` does; None where they are not by rows."""
+        if (self.rows[1:] < self.rows[:-1]).any():
+            return None
+        from scipy.sparse import csr_array
+
+        n = len(self.escaped)
+        first = np.searchsorted(self.rows, np.arange(n + 1))
+        return csr_array((self.values, self.columns, first), shape=(n, n))
 
     def sparse(self, n: int):
         """Return an (n, n) scipy CSR array, F_ij in row i."""

@@ -36,15 +36,23 @@ class Patches:
     def __len__(self) -> int:
         return int(self.first[-1])
 
+    @property
+    def cut_hash(self) -> str:
+        """SHA-256 of the way in which the scene is cut."""
+        return self._cut().hexdigest()
+
     @cached_property
     def hash(self) -> str:
         """SHA-256 of the way in which the scene is cut, and of values that patches have of their own."""
-        digest = hashlib.sha256(self.columns.tobytes() + self.rows.tobytes())
+        digest = self._cut()
         for name in ("own_reflectance", "own_emission"):
             own = getattr(self, name)
             if own is not None:
                 digest.update(f"{name}{own.shape}".encode() + own.tobytes())
         return digest.hexdigest()
+
+    def _cut(self):
+        return hashlib.sha256(self.columns.tobytes() + self.rows.tobytes())
 
     @cached_property
     def cells_per_face(self) -> np.ndarray:

@@ -10,10 +10,11 @@ import numpy as np
 
 from ..algorithms.matrix.algorithm import LIMIT
 from ..device import memory
+from ..factors.lines import FEW
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.local_linear import Regions
-from .budget import first_stage
+from .budget import Budget, first_stage
 
 FACE = 800  # bytes a face, for the BVH and the hit records
 REACHED = 100  # bytes a cell within a kernel, while planes are fitted; 76 to 100 were measured, and 12 are kept
@@ -68,7 +69,8 @@ def memory_needed(method: Method, patches: Patches, groups: int, replicates: int
     if method.reconstruction == "smooth":
         total += n * (SMOOTHED + replicates * (SMOOTHED_ONE + 8 * groups))
     if method.machine == "matrix":
-        total += PAIR * min(replicates * n * (n + 2.0), rays or LIMIT, LIMIT)
+        lines = LIMIT if rays is None else max(rays, FEW * n * replicates)
+        total += PAIR * min(replicates * n * (n + 2.0), lines, LIMIT)
     return total
 
 
@@ -78,6 +80,13 @@ def _cells_reached(patches: Patches, hit_tally: float) -> float:
     width = regions.bandwidth(hit_tally * patches.area / patches.area.sum())
     share = np.minimum(np.pi * width**2 / regions.area, 1.0)
     return float((share * np.bincount(regions.of, minlength=regions.count) ** 2.0).sum())
+
+
+def lines_of(method: Method | Baseline, budget: Budget, replicates: int) -> float | None:
+    """Return the lines of a budget, where they are known before the run; else None."""
+    if budget.quanta is not None and method.machine == "matrix" and isinstance(method, Method) and method.lines == "local":
+        return float(budget.quanta) * replicates
+    return budget.rays
 
 
 def check(method: Method | Baseline, patches: Patches, groups: int, replicates: int, rays: float | None) -> None:

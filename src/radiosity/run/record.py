@@ -11,6 +11,7 @@ from ..errors import DeviceError
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import Solution
+from ..solution.npz import SOLUTION
 from ..solution.without_results import without_results
 from ..tracing.geometry import TRACING
 from .part import Part
@@ -35,6 +36,7 @@ class AbstractRecord(ABC, Generic[R]):
         device: its name.
         budget: as it was given, without what was not.
         choice: what is known of the choice of the method, where it was left to the program.
+        kind: what the results are called.
         has_errors: True where results have an error, which a run may tell or aim at.
     """
 
@@ -44,6 +46,7 @@ class AbstractRecord(ABC, Generic[R]):
     device: str
     budget: dict
     choice: dict | None = None
+    kind: ClassVar[str] = SOLUTION
     has_errors: ClassVar[bool] = True
 
     @property

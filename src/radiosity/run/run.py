@@ -76,7 +76,8 @@ class Run(Generic[R]):
                 f"order '{method.order}' cannot carry {bands} different bands: "
                 "band power travels with whole wavefronts; take breadth-first, or solve one band at a time"
             )
-        memory_estimate.check(method, patches, bands, part.replicates, budget.rays)
+        lines = memory_estimate.lines_of(method, budget, part.replicates)
+        memory_estimate.check(method, patches, bands, part.replicates, lines)
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = part.rung(method.order, self.problem.source.share)
         part.check(method, budget, self.rung)
@@ -89,7 +90,7 @@ class Run(Generic[R]):
         given = {name: value for name, value in {**vars(budget), "error_of": error_of}.items() if value is not None}
         self.record = record(patches, method, part, self.device.name, given, None if choice is None else choice.facts)
         if resume is not None:
-            check_same(resume.provenance, self.record.provenance)
+            check_same(resume.provenance, self.record.provenance, self.record.kind)
         made = None if choice is None else choice.geometry
         self.geometry = Geometry(patches, self.device) if made is None else made
 

@@ -8,7 +8,7 @@ SAME = ("scene", "geometry", "sources", "cut", "seed", "replicates", "first_repl
 WHOLE = {"first_replicate": 0}  # where nothing is said
 
 
-def check_same(before: dict, now: dict) -> None:
+def check_same(before: dict, now: dict, what: str = "solution") -> None:
     """Refuse to go on from a run of another scene, method, seed or number of replicates, by their provenance.
 
     Raises:
@@ -16,7 +16,7 @@ def check_same(before: dict, now: dict) -> None:
     """
     different = differences(before, now, SAME, ("then", "now"))
     if different:
-        raise MethodError(f"cannot go on from that solution: {'; '.join(different)}")
+        raise MethodError(f"cannot go on from that {what}: {'; '.join(different)}")
 
 
 def differences(before: dict, now: dict, keys: tuple[str, ...], when: tuple[str, str]) -> list[str]:

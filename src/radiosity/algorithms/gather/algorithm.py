@@ -18,6 +18,7 @@ from ..base import AbstractAlgorithm, Swept
 from ..state import Arrays, Sizes
 from .chances import Chances
 from .lines import UNITS, Lines
+from .near import Near
 from .packets import Packets
 from .pilot import LINES, Pilot
 from .reading import Reading
@@ -58,7 +59,8 @@ class Gather(AbstractAlgorithm[GatherState]):
 
     @property
     def tally(self) -> GatherTally | SmoothTally:
-        return SmoothTally(GatherTally()) if self.method.reconstruction == "smooth" else GatherTally()
+        plain = GatherTally(Near.of(self.chances))
+        return SmoothTally(plain) if self.method.reconstruction == "smooth" else plain
 
     @property
     def groups(self) -> int:

@@ -67,12 +67,27 @@ class Boxes:
         there = np.clip(back / distance + spread, GRAZING, 1)
         return here * there / (np.maximum(square, 0) + 2 / 3 * radius**2 + lamps.area / np.pi)
 
+    def largest_kernel(self, lamps: Lamps) -> np.ndarray:
+        """Return a bound of cos cos' / (pi r^2) between points of clusters and of lamps, (k, n_lamps) float64."""
+        corners, facing = lamps.corners, lamps.facing
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        apart = np.abs(self.middle[:, None] - (low + high) / 2) - self.half[:, None] - (high - low) / 2
+        distance = np.maximum(np.linalg.norm(np.maximum(apart, 0.0), axis=2), 1e-9)
+        there = self.middle @ facing.T + self.half @ np.abs(facing).T - (corners[:, 0] * facing).sum(axis=1)
+        here = self._heights(lamps)
+        here = np.where((self.lean > 1 - 1e-9)[:, None], here, np.inf)
+        return np.clip(here / distance, 0, 1) * np.clip(there / distance, 0, 1) / (np.pi * distance**2)
+
+    def _heights(self, lamps: Lamps) -> np.ndarray:
+        """Return how high lamps reach above the lowest point of boxes along their normals, (k, n_lamps) float64."""
+        lowest = (self.middle * self.normal).sum(axis=1) - (self.half * np.abs(self.normal)).sum(axis=1)
+        highest = (self.normal @ lamps.corners.reshape(-1, 3).T).reshape(len(self.normal), -1, 4).max(axis=2)
+        return highest - lowest[:, None]
+
     def behind(self, lamps: Lamps) -> np.ndarray:
         """Return where no light can arrive, (k, n_lamps) bool: the cluster is behind the lamp, or the lamp behind the cluster."""
         corners, facing = lamps.corners, lamps.facing
         slack = SLACK * (np.abs(corners).max() + np.abs(self.middle).max())
         reach = self.middle @ facing.T + self.half @ np.abs(facing).T  # the box's highest corner above the lamp's plane
         below = reach < (corners[:, 0] * facing).sum(axis=1) - slack
-        lowest = (self.middle * self.normal).sum(axis=1) - (self.half * np.abs(self.normal)).sum(axis=1)
-        highest = (self.normal @ corners.reshape(-1, 3).T).reshape(len(self.normal), -1, 4).max(axis=2)
-        return below | ((self.lean > 1 - 1e-9)[:, None] & (highest < lowest[:, None] - slack))
+        return below | ((self.lean > 1 - 1e-9)[:, None] & (self._heights(lamps) < -slack))

@@ -102,7 +102,7 @@ class Shares:
 
     @cached_property
     def _later(self) -> tuple[Factors, np.ndarray, np.ndarray]:
-        """The same of all lines of a longer run."""
+        """Factors and limits of all lines of a longer run."""
         least = self._counts(self.stored_quanta, *self._first).astype(float)
         most = np.full_like(least, np.inf)
         return Factors.of(self.weights, self.packets.sizes, least, most), least, most

@@ -1,5 +1,7 @@
 """Results of a gather, read from its sums."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...problem.model import Problem
@@ -7,16 +9,24 @@ from ...solution.books import by_difference, exact_sum
 from ..base import AbstractBiasedTally
 from .balance import factors
 from .lines import UNITS, most_read
+from .near import Near
 from .pilot import LINES
 from .state import GatherState
 
 ROUNDED = 2.0**-20  # of a value: less is lost in single precision
 
 
+@dataclass(frozen=True)
 class GatherTally(AbstractBiasedTally[GatherState]):
-    """Reads means over the lines of each patch: what shadow rays bring, and what cosine lines meet."""
+    """Reads means over the lines of each patch: what shadow rays bring, and what cosine lines meet.
+
+    Attributes:
+        near: light that few cosine lines find; None leaves it out.
+    """
 
     counts_hits = False
+
+    near: Near | None = None
 
     def lines(self, problem: Problem, state: GatherState) -> int:
         return len(problem.patches) * LINES + (exact_sum(state.cosine) + exact_sum(state.rays)) * state.sizes.replicates
@@ -48,11 +58,18 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         """Return the power that one of a patch's lines brings where it hits the brightest lamp."""
         return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(state.cosine, 1)
 
-    def bias(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
+    def bias_of_sums(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
         first, left = (np.abs(x[..., group].mean(axis=0, dtype=np.float64)) for x in (state.first_bias, state.bias_left))
         of_all = state.stored / np.maximum(state.cosine, 1)  # that of the solution by all lines goes as 1 / m
         rounded = ROUNDED * self.irradiance(problem, state, group)[0].mean(axis=0)
         return (np.maximum(left, first * of_all) + state.unsolved.mean()) * problem.patches.area + rounded
+
+    def bias(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
+        bias = self.bias_of_sums(problem, state, group)
+        if self.near is None:
+            return bias
+        unseen = self.near.unseen(state.cosine.astype(np.float64) * state.sizes.replicates)[:, group]
+        return np.hypot(bias, np.sqrt(unseen) * problem.patches.area)
 
     def books(self, problem: Problem, state: GatherState, group: int) -> dict:
         values, unit = self.irradiance(problem, state, group)

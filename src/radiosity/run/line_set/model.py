@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from ...algorithms.matrix.state import MatrixState
 from ...algorithms.matrix.tally import MatrixTally
@@ -18,6 +19,9 @@ from ..part import Part
 from ..record import Record
 from ..shortfall import warn_of_few_ends
 from ..snapshot import Snapshot
+from .adding import fields_of_sum
+from .saving import save_lines
+from .starved import warn_of_starved
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -112,12 +116,35 @@ class LineSet:
         problem = Problem.of(patches)
         tally = MatrixTally(self.pairs.both_ways, directed=self.pairs.directed, pairs=self.pairs)
         snapshot = Snapshot(problem, tally, self._state(problem.groups.n_groups), self.replicates)
-        record = Record(patches, self.method, self.parts[0], self.provenance["device"], self.provenance["budget"])
+        part = Part(self.parts[0].seed, self.replicates)
+        record = Record(patches, self.method, part, self.provenance["device"], self.provenance["budget"])
         solution = record.result(snapshot, self.status, snapshot.state, self.seconds)
         unmet.warn(patches, self.pairs.lines)
+        if self.method.lines == "local":
+            warn_of_starved(patches, self.pairs.lines)
         warn_of_few_ends(self.method, self.rays / self.replicates / len(patches))
         about = {"line_set": self.provenance, "solve_seconds": time.perf_counter() - begun}
         return replace(solution, state={}, provenance=solution.provenance | about)
+
+    def save(self, path) -> None:
+        """Write an NPZ file that `radiosity.load_lines` reads.
+
+        Raises:
+            OutputError: the file cannot be written; one that was there stays as it was.
+        """
+        save_lines(self, Path(path))
+
+    def __add__(self, other: "LineSet") -> "LineSet":
+        """Return a set of all replicates of two, which have other replicates or other seeds, and equal quanta.
+
+        Parts of one seed that follow each other become the set of one run, to the bit. Light is that of the first.
+
+        Raises:
+            MethodError: replicates overlap, or geometry, cut, sources, method, device or versions differ.
+        """
+        if not isinstance(other, LineSet):
+            return NotImplemented
+        return replace(self, **fields_of_sum(self, other))
 
     def _state(self, groups: int) -> MatrixState:
         sizes = Sizes(self.replicates, len(self.patches), groups)

@@ -7,6 +7,7 @@ from ...algorithms.matrix.state import MatrixState
 from ...algorithms.state import AbstractState
 from ...factors.counted import CountedPairs
 from ...method import Method
+from ...solution.npz import LINES
 from ..record import AbstractRecord
 from ..snapshot import Snapshot
 from .model import LineSet
@@ -24,12 +25,14 @@ class LineRecord(AbstractRecord[LineSet]):
 
     sources: tuple[str, ...] = ()
     both_ways: bool = True
+    kind: ClassVar[str] = LINES
     has_errors: ClassVar[bool] = False
 
     @property
     def provenance(self) -> dict:
         scene = self.patches.scene
-        return {"geometry": scene.geometry_hash, "source": scene.source, "sources": list(self.sources), **self._run}
+        what = {"geometry": scene.geometry_hash, "source": scene.source, "sources": list(self.sources)}
+        return what | self._run | {"cut": self.patches.cut_hash}
 
     def result(self, snapshot: Snapshot, status: str, state: AbstractState, seconds: float) -> LineSet:
         return self.unfinished(None, status, state, seconds)
@@ -39,6 +42,6 @@ class LineRecord(AbstractRecord[LineSet]):
         assert isinstance(self.method, Method)
         directed = some_backs_pass(self.patches)
         both = self.both_ways and self.method.lines == "local" and not directed
-        pairs = CountedPairs(self.patches, state.keys, state.counts, state.replicates, both, directed)
+        pairs = CountedPairs(self.patches, state.keys, state.counts, state.replicates, both, directed, keeps=True)
         rays, parts = int(state.counts.sum(dtype="u8")), (self.part,)
         return LineSet(pairs, rays, state.reached, seconds, status, self.method, parts, self.sources, self.provenance)

@@ -22,6 +22,7 @@ from ..solve import patches_of, refuse_open
 from ..whole_number import whole
 from .model import LineSet
 from .problem import Sources, problem_of
+from .saving import save_lines
 
 ENDED = ("complete", "interrupted")  # what needs no warning
 
@@ -81,6 +82,8 @@ def trace_lines(
     """
     method = Method(order="matrix", lines=lines, numbers=numbers)
     part = Part(Seed(whole(seed, "seed", 0), whole(first_replicate, "first_replicate", 0)), whole(replicates, "replicates", 1))
+    if sum(given is not None for given in (rays, seconds, quanta)) != 1:
+        raise MethodError("give exactly one of rays, seconds and quanta to trace_lines")
     asked = Budget(rays, seconds, None, quanta)
     asked.check(part.replicates)
     if not isinstance(both_ways, bool):
@@ -99,7 +102,7 @@ def trace_lines(
         chosen = Sources.of(patches, sources)
         if chosen.names and lines != "local":
             raise MethodError(f"sources get more local lines, and lines '{lines}' begin at no surface; leave one of the two out")
-        keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, method)
+        keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, method, save_lines)
         tell(patches.scene)
         from ..run import Run
         from .record import LineRecord
