@@ -24,6 +24,7 @@ FLOORS = (  # a folder, or a file of the package's own folder, imports what is a
     "algorithms",
     "run",
     "image",
+    "exchange",  # heat from counted lines: it runs them, and its pictures take cameras and false colours
     "lab",
     "",  # __init__.py of the package: the public names, which what is outside the core may use
     "cli",

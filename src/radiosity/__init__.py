@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     __version__: str
 
     from .diagnostics.check import check
+    from .exchange.loading import load_exchange
+    from .exchange.radiative import radiative_exchange
+    from .exchange.result import RadiativeExchange
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
     from .run.line_set.loading import load_lines
@@ -44,6 +47,9 @@ HOOKS["export"] = _export  # of `Solution.export`
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
     "diagnostics.check": ("check",),
+    "exchange.loading": ("load_exchange",),
+    "exchange.radiative": ("radiative_exchange",),
+    "exchange.result": ("RadiativeExchange",),
     "run.line_set.loading": ("load_lines",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
@@ -69,6 +75,7 @@ __all__ = [
     "MethodError",
     "OutputError",
     "Patches",
+    "RadiativeExchange",
     "RadiosityError",
     "RadiosityWarning",
     "RefineCheck",
@@ -76,10 +83,12 @@ __all__ = [
     "SceneError",
     "Solution",
     "check",
+    "load_exchange",
     "load_lines",
     "load_scene",
     "load_solution",
     "merge",
+    "radiative_exchange",
     "refine_check",
     "solve",
     "subdivide",

@@ -11,6 +11,7 @@ from ..errors import INSTALL, DeviceError, RadiosityError, RadiosityWarning
 from . import interrupts
 from .check import check
 from .doctor import doctor
+from .exchange import exchange
 from .experiment import experiment
 from .lines import lines
 from .methods import methods
@@ -36,7 +37,7 @@ app = App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-for place, command in enumerate((solve, methods, lines, relight, render, check, experiment, doctor)):
+for place, command in enumerate((solve, exchange, methods, lines, relight, render, check, experiment, doctor)):
     app.command(command, sort_key=place)
 
 

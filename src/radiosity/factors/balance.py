@@ -44,7 +44,7 @@ def restored(factors: Factors, area: np.ndarray, weight: np.ndarray | None = Non
     def row_sums(values: np.ndarray) -> np.ndarray:
         return np.bincount(rows, weights=values, minlength=len(area))
 
-    scale = _scaling(lambda d: d * row_sums(exchange * d[columns]), wanted, scalings)
+    scale = scaling(lambda d: d * row_sums(exchange * d[columns]), wanted, scalings)
     values = exchange * scale[rows] * scale[columns]
     return Factors(rows, columns, values * _ratio(wanted, row_sums(values))[rows] / area[rows], factors.escaped, factors.lost)
 
@@ -60,12 +60,12 @@ def restored_matrix(matrix: np.ndarray, area: np.ndarray, missed: np.ndarray, we
     trust = weight[:, None] + weight
     exchange = np.divide(power + power.T, trust, out=np.zeros_like(power), where=trust > 0)
     wanted = area * np.maximum(1 - missed, 0)
-    scale = _scaling(lambda d: d * (exchange @ d), wanted, SCALINGS)
+    scale = scaling(lambda d: d * (exchange @ d), wanted, SCALINGS)
     values = exchange * scale * scale[:, None]
     return values * (_ratio(wanted, values.sum(axis=1)) / area)[:, None]
 
 
-def _scaling(row_sums: Callable[[np.ndarray], np.ndarray], wanted: np.ndarray, scalings: int) -> np.ndarray:
+def scaling(row_sums: Callable[[np.ndarray], np.ndarray], wanted: np.ndarray, scalings: int) -> np.ndarray:
     """Return d, (n,), such that rows of d_i X_ij d_j, summed by ``row_sums``, come to what is wanted."""
     scale = np.ones(len(wanted))
     for _ in range(scalings):

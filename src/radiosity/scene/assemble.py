@@ -42,6 +42,7 @@ def assemble(
     if options.edit is not None:
         parts = options.edit(parts)
     bands = ("red", "green", "blue") if any(part.n_bands == 3 for part in parts) else ("grey",)
+    assumed = tuple(dict.fromkeys(part.name for part in parts if part.material.reflectance is None))
     parts = [straightened(part) for part in settle(parts, source, options)]
     names = tuple(dict.fromkeys(part.name for part in parts))
     index = {name: i for i, name in enumerate(names)}
@@ -86,7 +87,8 @@ def assemble(
     for part in parts:
         if np.isfinite(part.patch_size):
             sizes_asked[index[part.name]] = part.patch_size
-    return replace(merge_triangles(scene.without_degenerate_faces()), patch_size=sizes_asked, scale=scale)
+    whole = merge_triangles(scene.without_degenerate_faces())
+    return replace(whole, patch_size=sizes_asked, scale=scale, assumed=assumed)
 
 
 def _check_indices(part: Part, source: str) -> None:

@@ -42,6 +42,7 @@ def combine(scenes: list[Scene], *, source: str, photometric: bool, scale: float
         cameras=tuple(camera for scene in scenes for camera in scene.cameras),
         scale=scale,
         source=source,
+        assumed=tuple(dict.fromkeys(name for scene in scenes for name in scene.assumed)),
     )
 
 

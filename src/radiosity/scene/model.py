@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from .back import Back
 from .camera import Camera
+from .heat import Heat
 from .paint import Paint
 from .precision import median_centre, plane_reach
 from .sampler import DEFAULT_SAMPLER
@@ -37,6 +38,8 @@ class Scene:
         cameras: cameras found in the file.
         scale: metres per unit of length of the file (already applied).
         source: where the scene comes from, for messages.
+        heat: what the file says about temperatures, or None; light does not depend on it.
+        assumed: names of surfaces whose reflectance no file gives; a default was taken.
 
     Example:
         >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -62,6 +65,8 @@ class Scene:
     cameras: tuple[Camera, ...] = ()
     scale: float = 1.0
     source: str = "arrays"
+    heat: Heat | None = None
+    assumed: tuple[str, ...] = ()
 
     @staticmethod
     def from_arrays(

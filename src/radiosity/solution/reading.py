@@ -9,11 +9,15 @@ import numpy as np
 
 from ..errors import SceneError
 from .archive import check_sizes
-from .npz import LINES, READERS, SOLUTION
+from .npz import EXCHANGE, LINES, READERS, SOLUTION
 
 LAST_CHARACTER = 0x10FFFF
-AGAIN = {SOLUTION: "solve the scene again", LINES: "trace the lines again"}
-FIRST = {SOLUTION: "solve a scene with -o {name} first", LINES: "trace the lines of a scene with -o {name} first"}
+AGAIN = {SOLUTION: "solve the scene again", LINES: "trace the lines again", EXCHANGE: "make it again"}
+FIRST = {
+    SOLUTION: "solve a scene with -o {name} first",
+    LINES: "trace the lines of a scene with -o {name} first",
+    EXCHANGE: "radiosity exchange SCENE -o {name} writes one",
+}
 
 T = TypeVar("T")
 
@@ -22,7 +26,7 @@ def read(path: Path, kind: str, formats: tuple[int, ...], restore: Callable[[dic
     """Return what a function makes of a file's arrays and facts.
 
     Args:
-        kind: "solution" or "line set".
+        kind: "solution", "line set" or "radiative exchange".
         formats: the formats that can be read.
         restore: takes arrays by key, and facts; any error of it means that the file is damaged.
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..patches.model import Patches
 from ..scene.camera import Camera
+from ..scene.heat import Heat
 from ..scene.model import Scene
 from ..scene.paint import Paint
 from ..scene.sampler import Sampler
@@ -38,6 +39,10 @@ def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
         "source": scene.source,
         "cameras": [asdict(camera) for camera in scene.cameras],
     }
+    if scene.heat is not None:
+        facts["heat"] = scene.heat.facts()
+    if scene.assumed:
+        facts["assumed"] = scene.assumed
     return arrays, {"paints": paints, "scene": facts}
 
 
@@ -60,6 +65,8 @@ def restored(arrays: dict[str, Any], meta: dict[str, Any]) -> Patches:
         photometric=described["photometric"],
         scale=described["scale"],
         source=described["source"],
+        heat=Heat.of(described["heat"]) if "heat" in described else None,
+        assumed=tuple(described.get("assumed", ())),
     )
     own = {name: arrays.get(f"patches_{name}") for name in OWN_ARRAYS}
     return Patches(scene, arrays["patches_columns"], arrays["patches_rows"], **own)

@@ -15,6 +15,7 @@ from ...combine import combine
 from ...model import Back, Camera, Scene
 from ..beside import in_any_case, warn_of_case
 from ..units import UNITS
+from .heat import check_bands, heat_of, reflecting
 
 BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
 SIDES = {1: Back.ABSORBS, 2: Back.RADIATES}
@@ -34,6 +35,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
         hint = "; save it as UTF-8" if isinstance(error, UnicodeDecodeError) else ""
         raise SceneError(f"{path}: is no TOML ({error}){hint}") from None
     asked = checked(values, str(path))
+    check_bands(asked, str(path))
     factors = [UNITS[entry.unit or asked.unit] * (entry.scale or asked.scale) for entry in asked.geometry]
 
     def dressed(looks: Looks) -> list[Scene]:
@@ -64,7 +66,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
         gaze = np.subtract(camera.target, camera.origin)
         if not np.linalg.norm(np.cross(gaze, camera.up)) > 1e-9 * np.linalg.norm(gaze) * np.linalg.norm(camera.up):
             raise SceneError(f"{path}: camera {number} looks along its up vector, or nowhere; move target or turn up")
-    return looks.with_powers(replace(scene, cameras=cameras + scene.cameras), str(path))
+    heat = heat_of(asked, scene.names, looks.means, str(path))
+    return looks.with_powers(replace(scene, cameras=cameras + scene.cameras, heat=heat), str(path))
 
 
 class Looks:
@@ -81,12 +84,17 @@ class Looks:
         self.entries, self.source, self.called = entries, source, called
         self.powers: dict[str, int] = {}
 
+    def means(self, entry, name: str) -> bool:
+        """Return whether an entry holds for the surface of this name."""
+        return name == entry.name if entry.name in self.called else _matches(name, entry.name)
+
     def apply(self, part: Part) -> Part:
         """A part with what the entries say, but for powers: they need the areas of all parts."""
-        material, flipped = part.material, False
+        material, flipped, emissivity = part.material, False, None
         for number, entry in enumerate(self.entries):
-            if not (part.name == entry.name if entry.name in self.called else _matches(part.name, entry.name)):
+            if not self.means(entry, part.name):
                 continue
+            emissivity = emissivity if entry.emissivity is None else entry.emissivity
             if entry.reflectance is not None:
                 of_side = {"reflectance": tuple(entry.reflectance), "back_reflectance": None, "diffuse": True}
                 material = replace(material, **of_side, given=max(entry.reflectance) < 1, origin=self.source)
@@ -105,6 +113,7 @@ class Looks:
             flipped = flipped if entry.flip is None else entry.flip
             if entry.patch_size is not None:
                 part = replace(part, patch_size=entry.patch_size)
+        material = reflecting(material, emissivity, self.source)
         return replace(part, material=material, faces=_turned(np.asarray(part.faces)) if flipped else part.faces)
 
     def with_powers(self, scene: Scene, source: str) -> Scene:

@@ -1,10 +1,12 @@
 """The schema of a .toml scene (docs/scene-toml.md), checked by pydantic; its errors become ours."""
 
+from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from ....errors import SceneError, shown
+from ...heat import HOTTEST
 
 Unit = Literal["m", "cm", "mm", "in", "ft"]
 Positive = Annotated[float, Field(gt=0)]
@@ -22,7 +24,14 @@ def _one_or_three(value: list[float]) -> list[float]:
     return value
 
 
+def _ascending(value: list[float]) -> list[float]:
+    if any(one >= other for one, other in pairwise(value)):
+        raise ValueError("expected edges between bands in micrometres, ascending")
+    return value
+
+
 Bands = Annotated[list[NotNegative], BeforeValidator(_listed), AfterValidator(_one_or_three)]
+Emissivities = Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1), BeforeValidator(_listed)]
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 
 
@@ -56,13 +65,18 @@ class Surface(_Table):
     back: Literal["absorbs", "radiates", "passes", "open"] | None = None
     flip: bool | None = None
     patch_size: Positive | None = None
+    temperature: Annotated[float, Field(ge=0, le=HOTTEST)] | None = None
+    flux: float | None = None
+    adiabatic: Literal[True] | None = None
+    isothermal: bool | None = None
+    emissivity: Emissivities | None = None
 
     @model_validator(mode="after")
     def _once(self) -> "Surface":
-        for keys in (("emission", "radiance", "power"), ("sides", "back")):
+        for keys in (("emission", "radiance", "power"), ("sides", "back"), ("temperature", "flux", "adiabatic")):
             given = [key for key in keys if getattr(self, key) is not None]
             if len(given) > 1:
-                raise ValueError(f"{' and '.join(given)} say the same thing; give one")
+                raise ValueError(f"{' and '.join(given)} exclude each other; give one")
         return self
 
 
@@ -84,6 +98,8 @@ class SceneFile(_Table):
     unit: Unit = "m"
     scale: Positive = 1.0
     photometric: bool | None = None
+    surroundings: Annotated[float, Field(ge=0, le=HOTTEST)] | None = None
+    wavelengths: Annotated[list[Positive], AfterValidator(_ascending), BeforeValidator(_listed)] = []
     surface: list[Surface] = []
     camera: list[View] = []
 

@@ -1,0 +1,1 @@
+"""Heat between surfaces, from counted lines: what depends on temperatures, emissivities and heat flows."""

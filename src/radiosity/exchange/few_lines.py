@@ -1,0 +1,31 @@
+"""What few lines cannot show: a pair of surfaces that no line joined is not known to exchange nothing.
+
+Replicates agree about such a pair. By Poisson's distribution a count of c lines is known to its square root, and that of no line
+to one line. So where fewer than `FEW` lines joined two surfaces, so many lines' worth of exchange is added to the standard error.
+"""
+
+import numpy as np
+
+from ..solution.intervals import FEW
+from .network import Pooled
+
+
+def watts(pooled: Pooled, labels: np.ndarray, radiosity: np.ndarray, around: float | None) -> np.ndarray:
+    """Return W that exchanges may be off by, (k + 1, k + 1), symmetric; the last row and column are the surroundings.
+
+    Args:
+        labels: (n_patches,) the surface of each patch.
+        radiosity: (k,) W/m² of the surfaces.
+        around: W/m² of the surroundings, None where there are none.
+    """
+    k = len(radiosity)
+    counts = pooled.between(labels, k)
+    density = np.bincount(labels, pooled.lines, k) / np.maximum(np.bincount(labels, pooled.area, k), np.finfo(float).tiny)
+    lines = np.where(counts < FEW, np.sqrt(np.maximum(counts, 1)), 0)
+    result = np.zeros((k + 1, k + 1))
+    with np.errstate(divide="ignore"):
+        worth = 1 / (density[:, None] + density)
+        result[:k, :k] = lines[:, :k] * worth * np.abs(radiosity[:, None] - radiosity)
+        if around is not None:
+            result[:k, k] = result[k, :k] = lines[:, k] / density * np.abs(radiosity - around)
+    return np.where(np.isfinite(result), result, 0.0)

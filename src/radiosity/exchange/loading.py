@@ -1,0 +1,43 @@
+"""Loading of a saved radiative exchange."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..solution.npz import EXCHANGE
+from ..solution.reading import read
+from ..solution.stored_patches import restored
+from .result import RadiativeExchange
+from .saving import FORMAT, MATRICES, PATCHES, REST, SCALARS, SURFACES
+
+
+def load_exchange(path) -> RadiativeExchange:
+    """Read a radiative exchange saved by `RadiativeExchange.save`.
+
+    Raises:
+        SceneError: the file is missing, damaged, or something else.
+
+    Example:
+        >>> maze = rd.subdivide(rd.load_scene("labyrinth"), cells=1)
+        >>> heat = rd.radiative_exchange(maze, {"floor": 310, "*": 290}, emissivity=0.9, rays=20_000)
+        >>> path = heat.save("maze.npz")
+        >>> bool((rd.load_exchange(path).net == heat.net).all())
+        True
+    """
+    return read(Path(path), EXCHANGE, (FORMAT,), _restored)
+
+
+def _restored(arrays: dict[str, Any], meta: dict[str, Any]) -> RadiativeExchange:
+    patches = restored(arrays, meta)
+    n, k, bands = len(patches), len(patches.scene.names), len(meta["wavelengths"]) + 1
+    shapes = dict.fromkeys(SURFACES, (k,)) | dict.fromkeys(PATCHES, (n,)) | dict.fromkeys(MATRICES, (k + 1, k + 1))
+    shapes |= {"emissivity": (k, bands)}
+    for name, shape in shapes.items():
+        if arrays[name].shape != shape or arrays[name].dtype != np.float64:
+            raise ValueError(f"'{name}' has shape {arrays[name].shape}, expected {shape} of float64")
+    if len(meta["conditions"]) != k or len(meta["names"]) != k:
+        raise ValueError(f"{len(meta['conditions'])} conditions of {k} surfaces")
+    meta |= {name: tuple(meta[name]) for name in ("names", "conditions", "wavelengths")}
+    fields = {name: arrays[name] for name in shapes} | {name: meta[name] for name in (*SCALARS, *REST)}
+    return RadiativeExchange(patches=patches, **fields)

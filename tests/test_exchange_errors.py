@@ -1,0 +1,108 @@
+"""Stated errors of radiative exchange are true, and hold what few lines cannot show."""
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+from test_exchange import WALLS, big_box, black, net, scene_of
+
+import radiosity as rd
+from radiosity.exchange.jackknife import Jackknife
+from radiosity.scene.shapes import box, quad
+
+KELVIN = np.array([300.0, 310, 320, 290, 400, 350])
+
+
+def test_the_jackknife_of_a_square_of_means():
+    """The square of a mean of R values is too large by s²/R, which a jackknife takes away to the last bit."""
+    values = np.array([1.0, 2.5, 3.0, 7.0, 4.0])
+    found = Jackknife(np.array([values.mean() ** 2]))
+    for i in range(5):
+        found.add(np.array([np.delete(values, i).mean() ** 2]))
+    assert found.value[0] == pytest.approx(values.mean() ** 2 - values.var(ddof=1) / 5, rel=1e-12)
+    linear = Jackknife(np.array([values.mean()]))
+    for i in range(5):
+        linear.add(np.array([np.delete(values, i).mean()]))
+    assert linear.value[0] == pytest.approx(values.mean(), rel=1e-14)
+    assert linear.error[0] == pytest.approx(values.std(ddof=1) / np.sqrt(5), rel=1e-12)
+
+
+def test_errors_are_true_where_walls_reflect_nearly_all():
+    """40 runs of few lines at emissivity 0.05 to 0.3, against exact factors.
+
+    (mean - exact) / error follows Student's t with 7 degrees of freedom, of variance 7/5. The mean square of the 40 values of a
+    wall, over 7/5, must lie below the 99.9 % point for normal values, widened by the fourth moment of t (5 where it is 3).
+    """
+    patches, area, factors = big_box()
+    shine = np.array([0.05, 0.1, 0.3, 0.05, 0.2, 0.1])
+    exact = net(area, factors, shine, black(KELVIN))
+    given, runs = dict(zip(WALLS, KELVIN, strict=True)), 40
+    found = []
+    for seed in range(runs):
+        lines = rd.trace_lines(patches, rays=3_000, seed=seed, numbers="random")
+        heat = rd.radiative_exchange(lines, given, emissivity=dict(zip(WALLS, shine, strict=True)))
+        found.append((heat.net - exact) / heat.net_standard_error)
+    z = np.array(found)
+    most = 1 + 2.2 * (chi2.ppf(0.999, runs) / runs - 1)
+    assert ((z**2).mean(axis=0) / 1.4 < most).all()
+    assert ((z**2).mean(axis=0) / 1.4 > 0.3).all()
+    assert (np.abs(z.mean(axis=0)) < 4 * np.sqrt(1.4 / runs)).all()  # no bias
+
+
+def far_apart() -> rd.Patches:
+    """A hot plate, and a small one 60 m away that few lines find, in the open."""
+    parts = [("hot", [quad((0, 0, 0), (1, 0, 0), (0, 1, 0))]), ("far", [quad((0, 0, 60), (0, 0.01, 0), (0.01, 0, 0))])]
+    return rd.subdivide(scene_of(parts), cells=1)
+
+
+def test_a_pair_that_no_line_joined_is_not_known_to_exchange_nothing():
+    patches = far_apart()
+    heat = rd.radiative_exchange(patches, {"hot": 1000, "far": 300}, emissivity=1, surroundings=300, rays=2_000)
+    exact = 1e-4 / (np.pi * 60**2) * (black(1000) - black(300))
+    assert heat.exchange[0, 1] == 0
+    assert heat.exchange_standard_error[0, 1] > exact
+    assert heat.net_standard_error[1] > exact
+    low, high = heat.net_interval()
+    assert low[1] < -exact < high[1]
+
+
+def test_one_replicate_tells_no_error():
+    patches, *_ = big_box()
+    heat = rd.radiative_exchange(patches, {"*": 300, "z low": 400}, emissivity=0.5, rays=5_000, replicates=1)
+    assert np.isnan(heat.net_standard_error).all()
+    assert "± unknown" in str(heat)
+    assert "one replicate" in str(heat)
+
+
+@pytest.mark.parametrize("error_of", ["net:z low", "temperature:y *", None])
+def test_an_error_is_reached(error_of):
+    patches, *_ = big_box()
+    options = {"adiabatic": ["y *"], "emissivity": 0.5, "error": 0.002 if error_of != "net:z low" else 0.004}
+    heat = rd.radiative_exchange(patches, {"z *": 300, "x *": 310, "z low": 400}, error_of=error_of, **options)
+    assert heat.status == "complete"
+    low, high = heat.net_interval()
+    if error_of == "net:z low":
+        assert (high - low)[4] / 2 <= 0.004 * heat.net[4]
+    elif error_of is None:
+        assert (high - low).max() / 2 <= 0.002 * heat.net[4]
+    else:
+        assert ((heat.temperature_interval()[1] - heat.temperature)[2:4] <= 0.002 * heat.temperature[2:4]).all()
+    lines = rd.trace_lines(patches, quanta=heat.quanta)
+    again = rd.radiative_exchange(lines, {"z *": 300, "x *": 310, "z low": 400}, adiabatic=["y *"], emissivity=0.5)
+    assert np.array_equal(again.net, heat.net)  # in any stages
+
+
+def test_an_error_that_is_not_reached_is_told():
+    patches = far_apart()
+    options = {"emissivity": 1, "surroundings": 0, "error": 0.01, "rays": 20_000}
+    with pytest.warns(rd.RadiosityWarning, match=r"was not reached with .* cannot be judged|was not reached with"):
+        heat = rd.radiative_exchange(patches, {"hot": 1000}, flux={"far": 0}, error_of="temperature:far", **options)
+    assert heat.status == "not reached"
+
+
+def test_lines_of_small_heaters_are_not_few():
+    """A heater of a hundredth of the area gets a share of a quarter of the lines."""
+    parts = [("walls", box((0, 0, 0), (1, 1, 1), inward=True)), ("heater", box((0.48, 0.48, 0.48), (0.52, 0.52, 0.52)))]
+    patches = rd.subdivide(scene_of(parts), cells=1)
+    heat = rd.radiative_exchange(patches, {"walls": 300, "heater": 1200}, emissivity=0.8, rays=20_000)
+    exact = (black(1200) - black(300)) * heat.area[1] / (1 / 0.8 + heat.area[1] / heat.area[0] * (1 / 0.8 - 1))
+    assert heat.net[1] == pytest.approx(exact, rel=1e-3)
