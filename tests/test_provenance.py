@@ -14,5 +14,5 @@ def test_a_source_tree_that_is_not_installed_loses_nothing(monkeypatch):
 
     monkeypatch.setattr(record, "version", missing)
     monkeypatch.setattr(record, "_version", record._version.__wrapped__)
-    solution = rd.solve(rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1), "random-walk", rays=1000)
+    solution = rd.solve(rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1), "random-walk", rays=20_000)
     assert set(solution.provenance["versions"].values()) == {"unknown"}
