@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     __version__: str
 
     from .diagnostics.check import check
+    from .exchange.compute import view_factors
+    from .exchange.load_factors import load_view_factors
+    from .exchange.view_factors import ViewFactors
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
     from .run.line_set.loading import load_lines
@@ -45,6 +48,9 @@ HOOKS["export"] = _export  # of `Solution.export`
 _HOMES = {
     "diagnostics.check": ("check",),
     "run.line_set.loading": ("load_lines",),
+    "exchange.compute": ("view_factors",),
+    "exchange.load_factors": ("load_view_factors",),
+    "exchange.view_factors": ("ViewFactors",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
     "run.merge": ("merge",),
@@ -75,15 +81,18 @@ __all__ = [
     "Scene",
     "SceneError",
     "Solution",
+    "ViewFactors",
     "check",
     "load_lines",
     "load_scene",
     "load_solution",
+    "load_view_factors",
     "merge",
     "refine_check",
     "solve",
     "subdivide",
     "trace_lines",
+    "view_factors",
 ]
 
 

@@ -1,0 +1,1 @@
+"""Exchange between surfaces: view factors and what follows from them, as values with errors."""
