@@ -23,8 +23,8 @@ FLOORS = (  # a folder, or a file of the package's own folder, imports what is a
     "factors",
     "algorithms",
     "run",
-    "exchange",  # view factors and heat, from lines that a run has counted
     "image",
+    "exchange",  # heat from counted lines: it runs them, and its pictures take cameras and false colours
     "lab",
     "",  # __init__.py of the package: the public names, which what is outside the core may use
     "cli",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from .diagnostics.check import check
     from .exchange.compute import view_factors
+    from .exchange.gebhart import GebhartFactors, gebhart_factors
     from .exchange.load_factors import load_view_factors
     from .exchange.view_factors import ViewFactors
     from .method import BASELINES, PRESETS, Baseline, Method
@@ -49,6 +50,7 @@ _HOMES = {
     "diagnostics.check": ("check",),
     "run.line_set.loading": ("load_lines",),
     "exchange.compute": ("view_factors",),
+    "exchange.gebhart": ("GebhartFactors", "gebhart_factors"),
     "exchange.load_factors": ("load_view_factors",),
     "exchange.view_factors": ("ViewFactors",),
     "run.line_set.model": ("LineSet",),
@@ -70,6 +72,7 @@ __all__ = [
     "Baseline",
     "Camera",
     "DeviceError",
+    "GebhartFactors",
     "LineSet",
     "Method",
     "MethodError",
@@ -84,6 +87,7 @@ __all__ = [
     "ViewFactors",
     "check",
     "load_lines",
+    "gebhart_factors",
     "load_scene",
     "load_solution",
     "load_view_factors",
