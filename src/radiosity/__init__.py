@@ -48,18 +48,18 @@ HOOKS["export"] = _export  # of `Solution.export`
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
     "diagnostics.check": ("check",),
-    "run.line_set.loading": ("load_lines",),
     "exchange.compute": ("view_factors",),
     "exchange.gebhart": ("GebhartFactors", "gebhart_factors"),
     "exchange.load_factors": ("load_view_factors",),
     "exchange.view_factors": ("ViewFactors",),
+    "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
+    "patches": ("Patches", "subdivide"),
+    "run.line_set.loading": ("load_lines",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
     "run.merge": ("merge",),
     "run.refine": ("refine_check",),
     "run.solve": ("solve",),
-    "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
-    "patches": ("Patches", "subdivide"),
     "scene": ("Back", "Camera", "Scene", "load_scene"),
     "solution": ("RefineCheck", "Solution", "load_solution"),
 }

@@ -13,6 +13,7 @@ from .check import check
 from .doctor import doctor
 from .experiment import experiment
 from .lines import lines
+from .factors import factors
 from .methods import methods
 from .relight import relight
 from .render import render
@@ -36,7 +37,7 @@ app = App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-for place, command in enumerate((solve, methods, lines, relight, render, check, experiment, doctor)):
+for place, command in enumerate((solve, methods, lines, relight, factors, render, check, experiment, doctor)):
     app.command(command, sort_key=place)
 
 

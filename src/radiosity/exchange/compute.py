@@ -90,14 +90,16 @@ def view_factors(
                 spent = Rays.of(work, len(patches), len(pairs.one), replicates)
                 return _polygons(pairs, groups, spent, replicates, number, facts)
             pilot = trace_lines(patches, rays=few, progress=progress, **arguments)
-            some = from_lines(pilot.pairs, groups, pilot.rays, {})
+            some = from_lines(pilot.pairs, groups, pilot.rays, {"line_set": pilot.provenance}, pilot.status)
+            if pilot.status == "interrupted":
+                return some
             if some.reciprocal:
                 spent, predicted = polygons_are_better(some.restored(), geometry, groups, work, replicates, number)
                 facts |= {"predicted": predicted}
                 if spent is not None:
                     return _polygons(FacingPairs.of(geometry, replicates), groups, spent, replicates, number, facts)
         lines = trace_lines(patches, rays=work, progress=progress, resume=pilot, **arguments)
-        return from_lines(lines.pairs, groups, lines.rays, facts | {"line_set": lines.provenance})
+        return from_lines(lines.pairs, groups, lines.rays, facts | {"line_set": lines.provenance}, lines.status)
 
 
 def _cut(scene: Scene | Patches, group) -> Patches:
@@ -115,7 +117,7 @@ def _of_lines(lines: LineSet, rays, group, method: str) -> ViewFactors:
     if method == "polygons" or rays is not None:
         word = "polygons need the patches themselves" if method == "polygons" else "rays were traced already"
         raise MethodError(f"view_factors of a line set: {word}; give its patches (lines.patches), or leave method and rays out")
-    return from_lines(lines.pairs, groups_of(lines.patches, group), lines.rays, {"line_set": lines.provenance})
+    return from_lines(lines.pairs, groups_of(lines.patches, group), lines.rays, {"line_set": lines.provenance}, lines.status)
 
 
 def _polygons(pairs: FacingPairs, groups: Groups, spent: Rays, replicates: int, seed: Seed, facts: dict) -> ViewFactors:

@@ -14,7 +14,7 @@ from ..solution.whole import whole_file
 from .restoration import SAMPLED
 
 KIND, FORMAT = "view factors", 1
-TEXTS = ("names", "replicates", "method", "reciprocal", "restoration", "rays", "provenance")
+TEXTS = ("names", "replicates", "method", "reciprocal", "restoration", "rays", "status", "provenance")
 DERIVED = ("matrix", "standard_error", "escaped", "escaped_standard_error", "lost", "lost_standard_error")
 
 

@@ -14,7 +14,7 @@ from .restoration import SAMPLED
 from .view_factors import ViewFactors
 
 
-def from_lines(pairs: CountedPairs, groups: Groups, rays: int, provenance: dict) -> ViewFactors:
+def from_lines(pairs: CountedPairs, groups: Groups, rays: int, provenance: dict, status: str = "complete") -> ViewFactors:
     """Return F_ij = n_ij / n_i, patches of a group weighted by their area.
 
     Every row comes from its own lines alone. So its sum, escaped and lost among it, is one by counting, and the errors of F_ij
@@ -69,6 +69,7 @@ def from_lines(pairs: CountedPairs, groups: Groups, rays: int, provenance: dict)
         apart=apart(patches, groups, (rows * n + columns)[columns < n]),
         reciprocal=not pairs.directed,
         rays=rays,
+        status=status,
         provenance=provenance,
     )
 

@@ -127,6 +127,13 @@ def _trust_of_none(factors, place, one, other, variance) -> np.ndarray:
     return np.divide(1, own * ratio, out=np.zeros(len(own)), where=own > 0)
 
 
+def _share_of_a_line(factors, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Return the share that one line makes of an entry, both directions together, (k,)."""
+    n, own = len(factors), 1 / (factors.line * factors.area)
+    back = np.where((columns < n) & (columns != rows), own[np.minimum(columns, n - 1)], 0)
+    return 1 / (own[rows] + back) / factors.area[rows]
+
+
 def _from(factors, found: Nearest, one, other, samples: np.ndarray, place: np.ndarray):
     """Return the factors of exchange areas: both directions of each pair that is not zero."""
     twice = (other < len(factors)) & (other != one)
@@ -148,6 +155,9 @@ def _from(factors, found: Nearest, one, other, samples: np.ndarray, place: np.nd
         lucky = by_luck(mean, spread) & (hits >= 0) & (hits < FEW)  # few counts that agree by chance
         least = np.where(lucky, np.sqrt(found.unknowns.variance[pair]) / area, LEAST * values)
         errors = np.maximum(mean_and_error(of_samples)[1], least)
+        fixed = by_luck(values, errors - least) & ~lucky  # closure alone gives the value: lines know it to a whole line
+        share = _share_of_a_line(factors, rows, columns) * np.sqrt(factors.replicates / 12)
+        errors = np.where(fixed & (values > 0), np.maximum(errors, share), errors)
     else:
         errors = np.full(len(rows), np.nan)
     return replace(

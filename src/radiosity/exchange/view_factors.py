@@ -33,6 +33,7 @@ class ViewFactors:
         reciprocal: False where backs let lines pass, so that A_i F_ij and A_j F_ji may differ.
         restoration: "" (as measured), "least squares" or "scaling": how reciprocity was restored.
         rays: lines that were traced, all replicates together.
+        status: "complete" or "interrupted", where there are fewer lines than were asked for.
         provenance: what the factors were made of.
 
     Example:
@@ -56,6 +57,7 @@ class ViewFactors:
     reciprocal: bool = True
     restoration: str = RAW
     rays: int = 0
+    status: str = "complete"
     provenance: dict = field(default_factory=dict)
 
     def __len__(self) -> int:
@@ -64,13 +66,13 @@ class ViewFactors:
 
     def __repr__(self) -> str:
         """The factors in four lines."""
-        by = "counted lines" if self.method == "lines" else "exact factors of polygons with visible shares"
+        by = "lines" if self.method == "lines" else "polygons and visible shares, rays"
         worst = f"{self.errors.max(initial=0.0):.2g}" if self.replicates > 1 else "unknown (one replicate)"
         how = "as measured" if self.restoration == RAW else f"restored by {self.restoration}"
         return "\n".join(
             [
                 f"View factors between {len(self):,} groups: {printable(shown(self.names, 6))}",
-                f"  made by     {by}, {self.rays:,} in {self.replicates} replicates",
+                f"  made by     {by}: {self.rays:,} in {self.replicates} replicates, status: {self.status}",
                 f"  rows        {how}; largest standard error {worst}",
                 f"  missed      at most {self.escaped.max():.2g} of a row escapes, and {self.lost.max():.2g} is lost on backs",
             ]
