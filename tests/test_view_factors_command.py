@@ -38,7 +38,9 @@ def test_merged_raw_long_and_patches(capsys, tmp_path):
     assert "as measured" in out
     header = next(line for line in out.splitlines() if "escaped" in line and "lost" in line and "walls" in line)
     assert header.split()[:2] == ["walls", "boxes"]
-    status, out, _ = run(capsys, "factors", "room", *few, "--group", "patch", "--cells", "1", "--layout", "long", "-o", tmp_path / "f.csv")
+    status, out, _ = run(
+        capsys, "factors", "room", *few, "--group", "patch", "--cells", "1", "--layout", "long", "-o", tmp_path / "f.csv"
+    )
     assert (status, (tmp_path / "f.csv").read_text(encoding="utf-8").splitlines()[0]) == (
         0,
         "from,to,area m²,view factor,standard error,lines",
