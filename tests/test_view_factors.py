@@ -350,3 +350,42 @@ def test_many_groups_are_restored_by_scaling(monkeypatch):
     assert distance(found, squares.matrix) < 0.02
     ratio = found.standard_error[squares.matrix > 0.05] / squares.standard_error[squares.matrix > 0.05]
     assert 0.5 < np.median(ratio) < 2
+
+
+# 1 - F of equal squares, by their distance over their width: C-11 in 40 digits, since 16 are not enough
+GAPS = {1e-2: 0.019583397074026676, 1e-3: 0.0019943680924202623, 1e-4: 0.00019992902221144249, 1e-5: 1.9999143635152095e-05}
+
+
+def plates(width: float, length: float, distance: float) -> rd.Scene:
+    low, high = quad((0, 0, 0), (length, 0, 0), (0, width, 0)), quad((0, 0, distance), (0, width, 0), (length, 0, 0))
+    return scene(("low", 0.5, 1.0, [low]), ("high", 0.5, 0.0, [high]))
+
+
+@pytest.mark.parametrize(("gap", "escapes"), GAPS.items())
+def test_what_thin_gaps_let_escape(gap, escapes):
+    """By lines within their errors; by polygons to 1e-4 of itself, and not zero where no line found it."""
+    lines = rd.view_factors(plates(1, 1, gap), rays=300_000, method="lines", replicates=16)
+    assert (np.abs(lines.escaped - escapes) < 5 * lines.escaped_standard_error).all()
+    assert (lines.interval()[1][:, 2] > escapes).all()
+    exact = rd.view_factors(plates(1, 1, gap), rays=300_000)
+    assert exact.method == "polygons"
+    assert exact.escaped == pytest.approx([escapes] * 2, rel=1e-4)
+    assert (exact.escaped_standard_error < 1e-6).all()
+
+
+def test_faces_too_near_for_lines_are_told():
+    with pytest.warns(rd.RadiosityWarning, match=r"nearer than single precision holds apart.*'low' and 'high'"):
+        rd.view_factors(plates(1, 1, 1e-7), rays=10_000)
+
+
+def test_strips_of_an_aspect_of_a_hundred_thousand():
+    """Crossed strings (C-1), but for the ends. Lines begin inside the edges, which are a large part of it, and tell so."""
+    narrow, exact = plates(1e-5, 1, 1e-5), np.sqrt(2) - 1
+    factors = rd.view_factors(narrow, rays=200_000)
+    assert factors.method == "polygons"
+    assert factors.matrix[0, 1] == pytest.approx(exact, abs=2e-5)
+    with pytest.warns(rd.RadiosityWarning, match="lines leave out a part of their area along the edges .'low: [34].%"):
+        lines = rd.view_factors(narrow, rays=200_000, method="lines")
+    assert abs(lines.matrix[0, 1] - exact) < 0.1 * exact
+    wider = rd.view_factors(plates(1e-3, 1, 1e-3), rays=200_000, method="lines", replicates=16)
+    assert abs(wider.matrix[0, 1] - exact) < 5 * wider.standard_error[0, 1] + 2e-3

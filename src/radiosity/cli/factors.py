@@ -103,8 +103,9 @@ def factors(
     options: dict[str, Any] = asdict(tracing) | {"sources": tracing.sources or None}
     for name in ("patch_size", "cells"):
         del options[name]
+    chosen: str | dict = _merged(merge) if merge else group
     with bar() as progress:
-        found = rd.view_factors(cut, group=_merged(merge) if merge else group, progress=progress, **options)
+        found = rd.view_factors(cut, group=chosen, progress=progress, **options)
     result = found if raw or not found.reciprocal else found.restored()
     tasks: list = [("the report", lambda: _print(result))]
     failures = outputs.attempt([*tasks, *((path, partial(_write, result, path, zone, layout)) for path in output)])

@@ -2,8 +2,9 @@
 
 Work is counted in lines, so that no clock decides. A ray of a visible share costs about as much as a line. The test whether two
 patches face each other, and an exact factor, cost as many lines as was measured (`FACES`, `EXACT`). The errors are predicted.
-That of lines follows from a pilot that traces a sixteenth of them, by the standard errors of its factors. That of polygons
-follows from the visible shares of some pairs, drawn at random. Both are the root of the summed variances of all exchange areas.
+That of lines follows from the standard errors of a pilot that traces a sixteenth of them, and from what they leave out of narrow
+faces. That of polygons follows from the visible shares of some pairs, drawn at random. Both are the root of the summed
+variances of all exchange areas.
 """
 
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from ..sampling.streams import Purpose, Seed, stream
 from ..tracing.geometry import Geometry
 from .from_polygons import FacingPairs
 from .groups import Groups
+from .narrow import left_out
 from .view_factors import ViewFactors
 
 FACES, EXACT = 5, 60  # lines: work of a pair of patches, and of one that face each other
@@ -103,11 +105,15 @@ def polygons_are_better(
     sample = Sample.of(geometry, seed)
     spent = Rays.of(rays, len(patches), sample.facing, replicates)
     area = pilot.area[pilot.rows]
-    lines = float(np.sqrt(np.nansum((pilot.errors * area) ** 2) * (pilot.rays / rays) ** SLOPE))
+    off = (left_out(geometry, groups)[pilot.rows] * pilot.values * area) ** 2
+    lines = float(np.sqrt(np.nansum((pilot.errors * area) ** 2) * (pilot.rays / rays) ** SLOPE + off.sum()))
     whole = float(np.sqrt(((pilot.values * area) ** 2).sum()))
     if spent.pair == 0:
         return None, {"lines": lines / whole, "polygons": "too little work"}
     gone = (pilot.escaped * (1 - pilot.escaped) + pilot.lost * (1 - pilot.lost))[groups.labels]
+    of_pairs = 2 * sample.variance / GAIN / (replicates * spent.pair)
     of_missed = float((patches.area**2 * gone).sum()) / (replicates * spent.missed)
-    polygons = float(np.sqrt(2 * sample.variance / GAIN / (replicates * spent.pair) + of_missed))
+    if not (pilot.escaped.any() and pilot.lost.any()):  # closure then tells it as well as the pairs are known
+        of_missed = min(of_missed, of_pairs)
+    polygons = float(np.sqrt(of_pairs + of_missed))
     return spent if polygons < lines else None, {"lines": lines / whole, "polygons": polygons / whole}

@@ -1,8 +1,11 @@
 """`view_factors`, which makes view factors from a scene or from lines that were traced before."""
 
+import numpy as np
+
 from ..device.backend import choose
 from ..device.memory import limited
 from ..device.turn import turn
+from ..diagnostics.contact_findings import tell
 from ..errors import MethodError
 from ..patches import Patches, subdivide
 from ..run.budget import Budget
@@ -17,6 +20,7 @@ from .choice import FEWEST, PILOT, Rays, polygons_are_better
 from .from_lines import from_lines
 from .from_polygons import FacingPairs, from_polygons
 from .groups import Groups, groups_of
+from .narrow import warn_of_narrow
 from .view_factors import ViewFactors
 
 METHODS = ("auto", "lines", "polygons")
@@ -28,7 +32,7 @@ def view_factors(
     scene: Scene | Patches | LineSet,
     *,
     rays: float | None = None,
-    group="surface",
+    group: str | dict | np.ndarray | list = "surface",
     method: str = "auto",
     replicates: int = 8,
     seed: int = 0,
@@ -84,6 +88,7 @@ def view_factors(
         pilot = None
         few = max(work // PILOT, LEAST * replicates * len(patches))
         if method == "polygons" or (method == "auto" and replicates > 1 and few <= work // 2):
+            tell(patches.scene)
             geometry = Geometry(patches, choose(device))
             if method == "polygons":
                 pairs = FacingPairs.of(geometry, replicates)
@@ -98,6 +103,7 @@ def view_factors(
                 facts |= {"predicted": predicted}
                 if spent is not None:
                     return _polygons(FacingPairs.of(geometry, replicates), groups, spent, replicates, number, facts)
+        warn_of_narrow(Geometry(patches, choose(device)), groups)
         lines = trace_lines(patches, rays=work, progress=progress, resume=pilot, **arguments)
         return from_lines(lines.pairs, groups, lines.rays, facts | {"line_set": lines.provenance}, lines.status)
 
@@ -117,7 +123,10 @@ def _of_lines(lines: LineSet, rays, group, method: str) -> ViewFactors:
     if method == "polygons" or rays is not None:
         word = "polygons need the patches themselves" if method == "polygons" else "rays were traced already"
         raise MethodError(f"view_factors of a line set: {word}; give its patches (lines.patches), or leave method and rays out")
-    return from_lines(lines.pairs, groups_of(lines.patches, group), lines.rays, {"line_set": lines.provenance}, lines.status)
+    groups = groups_of(lines.patches, group)
+    if lines.method.lines == "local":
+        warn_of_narrow(Geometry(lines.patches, choose("auto")), groups)
+    return from_lines(lines.pairs, groups, lines.rays, {"line_set": lines.provenance}, lines.status)
 
 
 def _polygons(pairs: FacingPairs, groups: Groups, spent: Rays, replicates: int, seed: Seed, facts: dict) -> ViewFactors:

@@ -25,7 +25,8 @@ from ..tracing.visibility import Polygons, visible_share
 from .apart import apart
 from .from_lines import combined, gathered
 from .groups import Groups
-from .restored import PRIOR, restored
+from .restored import PRIOR
+from .small_gaps import closed
 from .view_factors import ViewFactors
 
 CHUNK = 1 << 18  # pairs at a time
@@ -122,28 +123,26 @@ def from_polygons(
         mixed = ((replicates - 1) * seen + PRIOR * model) / (replicates - 1 + PRIOR)
         errors = np.sqrt(np.where(columns < n, mixed, errors**2))
     errors = np.sqrt(errors**2 + of_pairs(_of_one_ray(pairs, shares, rays) ** 2 + (EXACT * pairs.values) ** 2))
-    errors = np.where(
-        columns >= n, np.maximum(errors, _of_one_line(patches.area, labels, area, lines * replicates)[rows]), errors
-    )
+    one_line = _of_one_line(patches.area, labels, area, lines * replicates)
+    errors = np.where(columns >= n, np.maximum(errors, one_line[rows]), errors)
     some = np.isin(columns, np.unique(columns[(values > 0) & (columns >= n)])) | (columns < n)
-    return restored(
-        ViewFactors(
-            names=groups.names,
-            area=area,
-            rows=rows[some],
-            columns=columns[some],
-            values=values[some],
-            errors=errors[some],
-            replicates=replicates,
-            samples=samples[:, some],
-            line=np.full(n, np.nan),
-            hits=np.full(int(some.sum()), -1),
-            apart=apart(patches, groups, (rows * n + columns)[columns < n]),
-            method="polygons",
-            rays=replicates * (rays * len(pairs.one) + lines * len(patches)),
-            provenance=provenance,
-        )
+    raw = ViewFactors(
+        names=groups.names,
+        area=area,
+        rows=rows[some],
+        columns=columns[some],
+        values=values[some],
+        errors=errors[some],
+        replicates=replicates,
+        samples=samples[:, some],
+        line=np.full(n, np.nan),
+        hits=np.full(int(some.sum()), -1),
+        apart=apart(patches, groups, (rows * n + columns)[columns < n]),
+        method="polygons",
+        rays=replicates * (rays * len(pairs.one) + lines * len(patches)),
+        provenance=provenance,
     )
+    return closed(raw, one_line)
 
 
 def _of_one_ray(pairs: FacingPairs, shares: np.ndarray, rays: int) -> np.ndarray:

@@ -92,7 +92,7 @@ def _variance(factors, place: np.ndarray) -> np.ndarray:
     """Return the variance of each entry, (m,), see the head of this file."""
     if factors.method != "lines":
         known = factors.errors if factors.replicates > 1 else UNKNOWN * factors.values
-        return np.where(factors.values > 0, known**2, 0)
+        return np.where((factors.values > 0) | (factors.columns >= len(factors)), known**2, 0)
     model = _poisson(factors, place)
     if factors.replicates < 2:
         return model
