@@ -14,6 +14,7 @@ from .doctor import doctor
 from .exchange import exchange
 from .experiment import experiment
 from .lines import lines
+from .factors import factors
 from .methods import methods
 from .relight import relight
 from .render import render
@@ -37,7 +38,7 @@ app = App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-for place, command in enumerate((solve, exchange, methods, lines, relight, render, check, experiment, doctor)):
+for place, command in enumerate((solve, exchange, factors, methods, lines, relight, render, check, experiment, doctor)):
     app.command(command, sort_key=place)
 
 
