@@ -13,8 +13,8 @@ from .check import check
 from .doctor import doctor
 from .exchange import exchange
 from .experiment import experiment
-from .lines import lines
 from .factors import factors
+from .lines import lines
 from .methods import methods
 from .relight import relight
 from .render import render
