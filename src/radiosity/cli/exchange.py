@@ -70,17 +70,6 @@ class Running(Machine):
     replicates: Count = 8
 
 
-@dataclass(frozen=True)
-class Running(Machine):
-    """What concerns the run.
-
-    Attributes:
-        replicates: Number of independent randomised runs, from which errors are found.
-    """
-
-    replicates: Count = 8
-
-
 ConditionOptions = Annotated[Conditions, Parameter(name="*", group=Group("The conditions", sort_key=1))]
 TracingOptions = Annotated[Tracing, Parameter(name="*", group=Group("Lines and patches", sort_key=2))]
 RunningOptions = Annotated[Running, Parameter(name="*", group=RUN)]
@@ -131,8 +120,8 @@ def exchange(
         raise MethodError(f"{scene} holds lines that are there already: leave {', '.join(changed)} out, or give the scene")
     cut = {"size": options.pop("patch_size"), "cells": options.pop("cells")}
     loaded = rd.load_lines(scene) if of_lines else rd.load_scene(scene, **asdict(reading))
-    is_cut = isinstance(loaded, rd.Scene) and any(value is not None for value in cut.values())
-    patches = rd.subdivide(loaded, **cut) if is_cut else loaded
+    asked = any(value is not None for value in cut.values())
+    patches = rd.subdivide(loaded, **cut) if isinstance(loaded, rd.Scene) and asked else loaded
     conditions = {
         "temperature": _values(given.temperature, "temperature"),
         "emissivity": _values(given.emissivity, "emissivity", several=True),
