@@ -65,7 +65,7 @@ def test_one_lies_beside_the_first_output_and_goes_when_all_is_written(capsys, t
 def test_a_named_one_goes_too(capsys, tmp_path, monkeypatch, written):
     monkeypatch.setattr(engine_checkpoints, "TIMES", 0)
     named = engine_checkpoints.Checkpoint(tmp_path / "c.npz", 0)
-    monkeypatch.setattr(engine_checkpoints, "Checkpoint", lambda path: named)
+    monkeypatch.setattr(engine_checkpoints, "Checkpoint", lambda path, **_: named)
     assert run(capsys, *RUN, "--checkpoint", tmp_path / "c.npz")[0] == 0
     assert set(written) == {"c.npz"}
     assert list(tmp_path.iterdir()) == []

@@ -50,6 +50,16 @@ def test_parts_of_a_run_are_merged_as_the_page_shows(tmp_path, monkeypatch):
     assert np.array_equal(names["solution"].irradiance_standard_error, whole.irradiance_standard_error)
 
 
+def test_a_line_set_is_solved_as_the_page_shows(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names: dict = {"__name__": "lines"}
+    (block,) = blocks(DOCS / "line-sets.md")
+    exec(compile(block, "line-sets.md", "exec"), names)
+    assert names["dim"].radiosity == pytest.approx(names["day"].radiosity / 8, rel=1e-9)
+    assert names["warm"].bands == ("red", "green", "blue")
+    assert rd.load_lines("room.npz").rays == names["lines"].rays
+
+
 @pytest.mark.parametrize("name", [name for name in rd.__all__ if name not in TABLES])
 def test_examples_of_public_names(name, tmp_path, monkeypatch):
     """Each public name has an example in its docstring, and it shows what it says."""

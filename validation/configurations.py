@@ -7,7 +7,7 @@ import numpy as np
 
 import radiosity as rd
 
-from .closed_forms import offset_rectangles, rectangles, round, strings
+from .closed_forms import obstructed, offset_rectangles, rectangles, round, strings
 from .shapes import Facets, ball, disc, moved, quad, ring, scene, tube, turned
 
 LONG = 400.0  # over the width: how long "infinitely long" bodies are; the emitter is a piece of length one in the middle
@@ -253,5 +253,128 @@ def curved() -> list[Configuration]:
     ]
 
 
+def two_dimensional() -> list[Configuration]:
+    """Plates 400 widths long, in the catalogue's order."""
+    half, wedge = 0.4, (float(np.cos(0.8)), float(np.sin(0.8)))
+    ends = ((0.5 - half / 2, 0.6), (0.5 + half / 2, 0.6))
+    return [
+        Configuration(
+            "long opposed strips of one width (C-1)",
+            float(np.hypot(1, 0.7) - 0.7),
+            lambda _: _long(((0, 0), (1, 0)), ((1, 0.7), (0, 0.7))),
+            bound=_ends(1.5),
+            flat=True,
+        ),
+        Configuration(
+            "long opposed strips of other widths (C-2a)",
+            strings.crossed(((0, 0), (1, 0)), ends),
+            lambda _: _long(((0, 0), (1, 0)), (ends[1], ends[0])),
+            bound=_ends(1.5),
+            flat=True,
+        ),
+        Configuration(
+            "long strips square on each other (C-3)",
+            strings.triangle(1.0, 0.6, float(np.hypot(1, 0.6))),
+            lambda _: _long(((0, 0), (1, 0)), ((0, 0.6), (0, 0))),
+            bound=_ends(1.5),
+            flat=True,
+        ),
+        Configuration(
+            "long wedge of equal sides (C-5)",
+            float(1 - np.sin(0.4)),
+            lambda _: _long(((0, 0), (1, 0)), (wedge, (0, 0))),
+            bound=_ends(1.5),
+            flat=True,
+        ),
+    ]
+
+
+def hindered() -> list[Configuration]:
+    """Bodies with something between them."""
+
+    def long_tube(radius: float, x: float, z: float, n: int) -> Facets:
+        return [f[:, [0, 2, 1]][::-1] + np.array([x, 0, z]) for f in tube(radius, -LONG / 2, LONG / 2, n)]
+
+    def past_a_cylinder(n: int) -> rd.Scene:
+        strips = [quad((-0.5, -0.5, -0.5), (1, 0, 0), (0, 1, 0)), quad((-0.5, -LONG / 2, 0.5), (0, LONG, 0), (1, 0, 0))]
+        return scene(
+            ("emitter", 0.0, 1.0, strips[:1]), ("receiver", 0.0, 0.0, strips[1:]), ("cylinder", 0.0, 0.0, long_tube(0.2, 0, 0, n))
+        )
+
+    def through_a_slit(_: int) -> rd.Scene:
+        screens = [((-0.15, 0.5), (-LONG / 2, 0.5)), ((LONG / 2, 0.5), (0.15, 0.5))]
+        both = [*screens, *(((b, c) for c, b in screens))]  # seen from below and from above
+        return _long(((-0.5, 0), (0.5, 0)), ((0.5, 1), (-0.5, 1)), *both)
+
+    def tubes(n: int) -> rd.Scene:
+        row = [facet for k in range(-30, 31) for facet in long_tube(0.25, k, 1.0, n)]
+        return _facing([quad((-0.5, -0.5, 0), (1, 0, 0), (0, 1, 0))], row)
+
+    def coaxial(n: int) -> rd.Scene:
+        return _facing(turned(tube(1.2, 0.0, 2.0, n)), tube(0.5, 0.0, 2.0, n))
+
+    def between_ends(n: int) -> rd.Scene:
+        parts = ("emitter", 0.0, 1.0, ring(0.5, 1.2, 0.0, n)), ("receiver", 0.0, 0.0, turned(ring(0.5, 1.2, 2.0, n)))
+        return scene(*parts, ("body", 0.0, 0.0, tube(0.5, 0.0, 2.0, n)))
+
+    def cube(size: float, *, inward: bool) -> Facets:
+        h = size / 2
+        corners = quad((-h, -h, -h), (size, 0, 0), (0, size, 0))
+        faces = [corners, *(_rolled(corners, times) for times in (1, 2))]
+        faces += [-face[::-1] for face in faces]
+        return faces if inward else turned(faces)
+
+    inner = ball(1.0, 2)
+    return [
+        Configuration(
+            "long opposed strips past a cylinder",
+            obstructed.past_a_cylinder(1.0, 1.0, 0.2),
+            past_a_cylinder,
+            24,
+            bound=_ends(1.5),
+        ),
+        Configuration(
+            "long opposed strips through a slit",
+            obstructed.through_a_slit(1.0, 1.0, 0.3),
+            through_a_slit,
+            bound=_ends(1.5),
+            flat=True,
+        ),
+        Configuration(
+            "plane to a row of tubes",
+            obstructed.plane_to_tubes(1.0, 0.5),
+            tubes,
+            12,
+            bound=1 / (2 * 30**2) + _ends(1.5),
+            flat=True,
+        ),
+        Configuration("coaxial cylinders, outer to itself", obstructed.outer_to_itself(0.5, 1.2, 2.0), coaxial, 48, receiver=0),
+        Configuration("coaxial cylinders, an end to the other", obstructed.end_to_end(0.5, 1.2, 2.0), between_ends, 48),
+        Configuration(
+            "cube to itself round a cube",
+            1 - 1 / 9,
+            lambda _: _facing(cube(3.0, inward=True), cube(1.0, inward=False)),
+            receiver=0,
+        ),
+        Configuration(
+            "cube to itself round a sphere",
+            1 - _area(inner) / (6 * 16),
+            lambda _: _facing(cube(4.0, inward=True), inner),
+            receiver=0,
+        ),
+        Configuration(
+            "sphere to a tube about it",
+            obstructed.sphere_to_tube(1.0, 1.5),
+            lambda n: _facing(ball(0.5, n), turned(tube(1.0, -0.75, 0.75, 96 * 2 ** (n - 3)))),
+            3,
+        ),
+    ]
+
+
+def _rolled(corners: np.ndarray, times: int) -> np.ndarray:
+    """The same corners with their axes exchanged in turn."""
+    return np.roll(corners, times, axis=1)
+
+
 def every() -> list[Configuration]:
-    return [*flat(), *convex(), *long(), *curved()]
+    return [*flat(), *convex(), *long(), *curved(), *two_dimensional(), *hindered()]

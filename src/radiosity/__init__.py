@@ -19,9 +19,13 @@ if TYPE_CHECKING:
     __version__: str
 
     from .diagnostics.check import check
+    from .exchange.compute import view_factors
+    from .exchange.gebhart import GebhartFactors, gebhart_factors
+    from .exchange.load_factors import load_view_factors
     from .exchange.loading import load_exchange
     from .exchange.radiative import radiative_exchange
     from .exchange.result import RadiativeExchange
+    from .exchange.view_factors import ViewFactors
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
     from .run.line_set.loading import load_lines
@@ -47,17 +51,21 @@ HOOKS["export"] = _export  # of `Solution.export`
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
     "diagnostics.check": ("check",),
+    "exchange.compute": ("view_factors",),
+    "exchange.gebhart": ("GebhartFactors", "gebhart_factors"),
+    "exchange.load_factors": ("load_view_factors",),
     "exchange.loading": ("load_exchange",),
     "exchange.radiative": ("radiative_exchange",),
     "exchange.result": ("RadiativeExchange",),
+    "exchange.view_factors": ("ViewFactors",),
+    "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
+    "patches": ("Patches", "subdivide"),
     "run.line_set.loading": ("load_lines",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
     "run.merge": ("merge",),
     "run.refine": ("refine_check",),
     "run.solve": ("solve",),
-    "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
-    "patches": ("Patches", "subdivide"),
     "scene": ("Back", "Camera", "Scene", "load_scene"),
     "solution": ("RefineCheck", "Solution", "load_solution"),
 }
@@ -70,6 +78,7 @@ __all__ = [
     "Baseline",
     "Camera",
     "DeviceError",
+    "GebhartFactors",
     "LineSet",
     "Method",
     "MethodError",
@@ -82,17 +91,21 @@ __all__ = [
     "Scene",
     "SceneError",
     "Solution",
+    "ViewFactors",
     "check",
+    "gebhart_factors",
     "load_exchange",
     "load_lines",
     "load_scene",
     "load_solution",
+    "load_view_factors",
     "merge",
     "radiative_exchange",
     "refine_check",
     "solve",
     "subdivide",
     "trace_lines",
+    "view_factors",
 ]
 
 

@@ -13,6 +13,7 @@ from .check import check
 from .doctor import doctor
 from .exchange import exchange
 from .experiment import experiment
+from .factors import factors
 from .lines import lines
 from .methods import methods
 from .relight import relight
@@ -37,7 +38,7 @@ app = App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-for place, command in enumerate((solve, exchange, methods, lines, relight, render, check, experiment, doctor)):
+for place, command in enumerate((solve, exchange, factors, methods, lines, relight, render, check, experiment, doctor)):
     app.command(command, sort_key=place)
 
 

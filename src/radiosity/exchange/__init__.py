@@ -1,1 +1,1 @@
-"""Heat between surfaces, from counted lines: what depends on temperatures, emissivities and heat flows."""
+"""Exchange between surfaces by radiation: view factors, net heat and temperatures, from counted lines, as values with errors."""

@@ -52,14 +52,14 @@ class Checkpoint:
     _sized: bool = field(init=False, default=False)
     _warned: bool = field(init=False, default=False)
 
-    @staticmethod
-    def of(given, every, method: "Method | Baseline", save: Callable[[Any, Path], None] = save_solution) -> "Checkpoint":
+    @classmethod
+    def of(cls, given, every, method: "Method | Baseline", save: Callable[[Any, Path], None] = save_solution) -> "Checkpoint":
         """Return a checked checkpoint from what a caller gave: a path, or a `Checkpoint`.
 
         Raises:
             MethodError: arguments of other types, or there is no state to go on from. OutputError: see `check`.
         """
-        if isinstance(given, Checkpoint):
+        if isinstance(given, cls):
             given.check(method)
             return given
         try:
@@ -69,7 +69,7 @@ class Checkpoint:
         if not good:
             raise MethodError(f"checkpoint_every is {every!r}; it must be a number of seconds")
         try:
-            keeper = Checkpoint(Path(given), float(every), save)
+            keeper = cls(Path(given), float(every), save)
         except TypeError:
             raise MethodError(f"checkpoint is {given!r}; it must be the path of an .npz file") from None
         keeper.check(method)

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from typing import ClassVar, Generic
 
 from ..algorithms.state import AbstractState
@@ -121,5 +121,8 @@ class Record(AbstractRecord[Solution]):
 
 @cache
 def _version(name: str) -> str:
-    """Return the version of an installed package; to read it from its files takes milliseconds."""
-    return version(name)
+    """Return the version of a package, ``unknown`` where it is not installed: to read it from its files takes milliseconds."""
+    try:
+        return version(name)
+    except PackageNotFoundError:  # a source tree on the path is enough to run; what was computed must not be lost here
+        return "unknown"

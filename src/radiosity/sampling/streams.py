@@ -57,6 +57,7 @@ class Purpose(IntEnum):
     SHADOW_RAYS = 9  # gather: shadow rays
     PILOT = 10  # gather: cosine lines of the pilot
     PILOT_SHADOW = 11  # gather: shadow rays of the pilot
+    VIEW_FACTORS = 12  # pairs that tell whether polygons are better than lines
     ROUNDING = 2  # iterations: how many lines a patch fires, a child each step; they never meet the other purpose of this number
 
 

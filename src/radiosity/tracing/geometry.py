@@ -86,22 +86,33 @@ class Geometry:
         return bool((self.patches.columns == 1).all() and (self.patches.rows == 1).all())
 
     @cached_property
-    def face_records(self):
-        """Origin, edges of a cell, normal, tangent and least offset of faces drawn in from their edges, (n_faces * 16,) Float."""
+    def starts(self) -> np.ndarray:
+        """The part of faces where lines begin, drawn in from the edges: low ends and sizes along both, (4, n_faces), shares."""
         scene = self.scene
-        origin, first, second = self.faces.frames
+        _, first, second = self.faces.frames
         area = np.linalg.norm(np.cross(first, second), axis=1)
         lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, second - first)]
         inset = self.faces.offset(np.arange(scene.n_faces), self.faces.corners) * (INSET / OFFSET)
         # a triangle is drawn in by a share about its centroid, a parallelogram by a margin on each side
         share = np.minimum(3 * inset * np.max(lengths, axis=0) / area, 0.75)
         margins = [np.minimum(inset * lengths[1 - i] / area, 0.375) for i in (0, 1)]
-        low_u, low_v = (np.where(scene.is_quad, m, share / 3) for m in margins)
-        size_u, size_v = (np.where(scene.is_quad, 1 - 2 * m, 1 - share) for m in margins)
+        low = (np.where(scene.is_quad, m, share / 3) for m in margins)
+        return np.array([*low, *(np.where(scene.is_quad, 1 - 2 * m, 1 - share) for m in margins)])
+
+    @property
+    def left_out(self) -> np.ndarray:
+        """The share of each face's area along its edges where no line begins, (n_faces,)."""
+        return 1 - self.starts[2] * self.starts[3]
+
+    @cached_property
+    def face_records(self):
+        """Origin, edges of a cell, normal, tangent and least offset of faces drawn in from their edges, (n_faces * 16,) Float."""
+        origin, first, second = self.faces.frames
+        low_u, low_v, size_u, size_v = self.starts
         drawn = origin + low_u[:, None] * first + low_v[:, None] * second
         cell_first = first * (size_u / self.patches.columns)[:, None]
         cell_second = second * (size_v / self.patches.rows)[:, None]
-        tangent = first / lengths[0][:, None]
+        tangent = first / np.linalg.norm(first, axis=1)[:, None]
         record = np.concatenate(
             [drawn, cell_first, cell_second, self.faces.normals, tangent, self.faces.plane_offsets[:, None]], axis=1
         )

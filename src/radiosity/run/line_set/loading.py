@@ -27,7 +27,8 @@ def load_lines(path) -> LineSet:
         SceneError: the file is missing, damaged, or no line set; or its geometry is not the one that its lines were traced in.
 
     Example:
-        >>> rd.trace_lines(rd.subdivide(rd.load_scene("room"), cells=1), rays=10_000).save("lines.npz")
+        >>> patches = rd.subdivide(rd.load_scene("room"), cells=1)
+        >>> rd.trace_lines(patches, rays=10_000, sources=["light"]).save("lines.npz")
         >>> rd.load_lines("lines.npz").solve(reflectance=0.3).status
         'complete'
     """

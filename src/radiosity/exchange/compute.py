@@ -1,0 +1,135 @@
+"""`view_factors`, which makes view factors from a scene or from lines that were traced before."""
+
+import numpy as np
+
+from ..device.backend import choose
+from ..device.memory import limited
+from ..device.turn import turn
+from ..diagnostics.contact_findings import tell
+from ..errors import MethodError
+from ..patches import Patches, subdivide
+from ..run.budget import Budget
+from ..run.line_set.model import LineSet
+from ..run.line_set.trace import trace_lines
+from ..run.progress import Listener
+from ..run.whole_number import whole
+from ..sampling.streams import Seed
+from ..scene.model import Scene
+from ..tracing.geometry import Geometry
+from .choice import FEWEST, PILOT, Rays, polygons_are_better
+from .from_lines import from_lines
+from .from_polygons import FacingPairs, from_polygons
+from .groups import Groups, groups_of
+from .narrow import warn_of_narrow
+from .view_factors import ViewFactors
+
+METHODS = ("auto", "lines", "polygons")
+USUAL = 1_000_000  # lines
+LEAST = 16  # lines of a patch and replicate in the pilot; runs that are not twice as long count lines without one
+
+
+def view_factors(
+    scene: Scene | Patches | LineSet,
+    *,
+    rays: float | None = None,
+    group: str | dict | np.ndarray | list = "surface",
+    method: str = "auto",
+    replicates: int = 8,
+    seed: int = 0,
+    sources=None,
+    numbers: str = "halton",
+    device: str = "auto",
+    progress: Listener | None = None,
+    memory: str | float | None = None,
+) -> ViewFactors:
+    """Return view factors between surfaces, groups of surfaces or patches.
+
+    Emission and reflectance do not matter. Surfaces are diffuse, and what is between them does nothing.
+
+    Args:
+        scene: a `Scene`, its `Patches`, or lines that `trace_lines` has counted. A scene is not cut for factors between surfaces;
+            between patches it is cut into about 20 000.
+        rays: lines in all, replicates together; the default is a million. It is also the work of polygons, see ``method``.
+        group: "surface" (a surface of two radiating sides is two groups, such as ``shield (front)`` and ``shield (back)``),
+            "patch", a dictionary of names to names of surfaces or patterns, such as ``{"walls": ["north", "south"]}`` (surfaces
+            that it does not name are groups of their own), or a whole number for each patch.
+        method: "lines" are counted. "polygons" have exact factors without obstacles, and rays find the visible share of each
+            pair, 16 at least. "auto" takes what has the smaller predicted error after the work of as many lines.
+        replicates: independent randomised runs; from 2 on there are standard errors. Of lines that were counted: theirs.
+        seed: with the same inputs, the same bits.
+        sources: names of small surfaces that get more lines, as of `trace_lines`.
+        numbers: the sequence of points of lines, as of `Method`.
+        device, progress, memory: as of `solve`.
+
+    Returns:
+        The factors. Those of lines are as counted, see `ViewFactors.restored`; those of polygons are restored.
+
+    Raises:
+        MethodError: a choice or budget that makes no sense, a group that does not exist, or polygons that cannot be taken.
+
+    Example:
+        >>> factors = rd.view_factors(rd.load_scene("room"), rays=100_000, method="lines").restored()
+        >>> floor, ceiling = factors.names.index("floor"), factors.names.index("ceiling")
+        >>> 0.1 < factors.matrix[floor, ceiling] < 0.5, bool(factors.standard_error[floor, ceiling] < 0.01)
+        (True, True)
+    """
+    if method not in METHODS:
+        raise MethodError(f"method '{method}' does not exist; known are {', '.join(METHODS)}")
+    if isinstance(scene, LineSet):
+        return _of_lines(scene, rays, group, method)
+    Budget(rays=USUAL if rays is None else rays)  # refuses what is no number of lines
+    work = int(USUAL if rays is None else rays)
+    replicates, number = whole(replicates, "replicates", 1), Seed(whole(seed, "seed", 0))
+    with limited(memory), turn():
+        patches = _cut(scene, group)
+        groups = groups_of(patches, group)
+        facts = {"scene": patches.scene.source, "geometry": patches.hash, "seed": number.value, "work": work}
+        arguments = {"replicates": replicates, "seed": number.value, "sources": sources, "numbers": numbers, "device": device}
+        pilot = None
+        few = max(work // PILOT, LEAST * replicates * len(patches))
+        if method == "polygons" or (method == "auto" and replicates > 1 and few <= work // 2):
+            tell(patches.scene)
+            geometry = Geometry(patches, choose(device))
+            if method == "polygons":
+                pairs = FacingPairs.of(geometry, replicates)
+                spent = Rays.of(work, len(patches), len(pairs.one), replicates)
+                return _polygons(pairs, groups, spent, replicates, number, facts)
+            pilot = trace_lines(patches, rays=few, progress=progress, **arguments)
+            some = from_lines(pilot.pairs, groups, pilot.rays, {"line_set": pilot.provenance}, pilot.status)
+            if pilot.status == "interrupted":
+                return some
+            if some.reciprocal:
+                spent, predicted = polygons_are_better(some.restored(), geometry, groups, work, replicates, number)
+                facts |= {"predicted": predicted}
+                if spent is not None:
+                    return _polygons(FacingPairs.of(geometry, replicates), groups, spent, replicates, number, facts)
+        warn_of_narrow(Geometry(patches, choose(device)), groups)
+        lines = trace_lines(patches, rays=work, progress=progress, resume=pilot, **arguments)
+        return from_lines(lines.pairs, groups, lines.rays, facts | {"line_set": lines.provenance}, lines.status)
+
+
+def _cut(scene: Scene | Patches, group) -> Patches:
+    """Return patches; a scene is cut where its patches themselves are asked for."""
+    if isinstance(scene, Scene):
+        return subdivide(scene) if isinstance(group, str) and group == "patch" else subdivide(scene, cells=1)
+    if not isinstance(scene, Patches):
+        raise MethodError(
+            f"view_factors takes a Scene, Patches or a LineSet, not {type(scene).__name__}; load a file with load_scene"
+        )
+    return scene
+
+
+def _of_lines(lines: LineSet, rays, group, method: str) -> ViewFactors:
+    if method == "polygons" or rays is not None:
+        word = "polygons need the patches themselves" if method == "polygons" else "rays were traced already"
+        raise MethodError(f"view_factors of a line set: {word}; give its patches (lines.patches), or leave method and rays out")
+    groups = groups_of(lines.patches, group)
+    if lines.method.lines == "local":
+        warn_of_narrow(Geometry(lines.patches, choose("auto")), groups)
+    return from_lines(lines.pairs, groups, lines.rays, {"line_set": lines.provenance}, lines.status)
+
+
+def _polygons(pairs: FacingPairs, groups: Groups, spent: Rays, replicates: int, seed: Seed, facts: dict) -> ViewFactors:
+    rays = max(spent.pair, FEWEST)
+    facts = facts | {"rays_of_a_pair": rays, "lines_of_a_patch": spent.missed}
+    return from_polygons(pairs, groups, rays, spent.missed, replicates, seed, facts)

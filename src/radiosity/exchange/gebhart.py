@@ -1,0 +1,202 @@
+"""Gebhart factors: the share of what a group emits that another absorbs, after all reflections.
+
+B. Gebhart, "Surface temperature calculations in radiant surroundings of arbitrary complexity", International Journal of Heat and
+Mass Transfer 3, 1961. Every group emits in turn, in proportion to the emissivity of its patches, and the counted lines carry it:
+one solution a group and replicate. The lines carry power from where they begin, so that all of it ends somewhere: rows, with what
+escapes and is lost, sum to one. The conductor e_i A_i G_ij of a pair is the same both ways as far as counts are reciprocal.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..device import memory
+from ..errors import MethodError, SceneError, shown
+from ..factors.counted import CountedPairs
+from ..patches.model import Patches
+from ..run.line_set.model import LineSet
+from ..scene.named import surfaces_called
+from ..solution.csv_rows import write_rows
+from ..solution.errors import mean_and_error
+from .groups import Groups, groups_of
+
+ESCAPED, LOST = "(escaped)", "(lost)"
+AT_ONCE = 16  # groups that emit in one call of the solver
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class GebhartFactors:
+    """The share G_ij of what group i emits that group j absorbs, after all reflections. `gebhart_factors` makes them.
+
+    Every row, with escaped and lost, sums to one.
+
+    Attributes:
+        names: the names of the n groups.
+        area: (n,) m², radiating sides alone.
+        emissivity: (n,) means over the area of each group.
+        values: (n, n + 2) shares; the last two columns are escaped and lost.
+        errors: (n, n + 2) standard errors; NaN: unknown, since there is one replicate.
+        replicates: independent randomised runs.
+
+    Example:
+        >>> lines = rd.trace_lines(rd.subdivide(rd.load_scene("room"), cells=1), rays=100_000)
+        >>> shares = rd.gebhart_factors(lines, emissivity=0.8)
+        >>> shares.matrix.shape, bool(abs(shares.values.sum(axis=1) - 1).max() < 1e-8)
+        ((17, 17), True)
+    """
+
+    names: tuple[str, ...]
+    area: np.ndarray
+    emissivity: np.ndarray
+    values: np.ndarray
+    errors: np.ndarray
+    replicates: int
+
+    def __repr__(self) -> str:
+        """The factors in two lines."""
+        worst = f"{self.errors.max(initial=0.0):.2g}" if self.replicates > 1 else "unknown (one replicate)"
+        return f"Gebhart factors between {len(self.names):,} groups: {shown(self.names, 6)}\n  largest standard error {worst}"
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """G_ij in row i, (n, n)."""
+        return self.values[:, :-2]
+
+    @property
+    def standard_error(self) -> np.ndarray:
+        """Standard errors of `matrix`, (n, n)."""
+        return self.errors[:, :-2]
+
+    @property
+    def conductors(self) -> np.ndarray:
+        """Radiative conductors GR_ij = e_i A_i G_ij, (n, n) m²: the heat from i to j is sigma GR_ij (T_i⁴ - T_j⁴)."""
+        return (self.emissivity * self.area)[:, None] * self.matrix
+
+    def to_csv(self, path) -> None:
+        """Write a CSV file with a row for each pair that exchanges heat: shares and conductors (m²), with standard errors.
+
+        What escapes, or is lost on backs, is a conductor to ``(escaped)`` or ``(lost)``.
+
+        Raises:
+            OutputError: the file cannot be written.
+
+        Example:
+            >>> lines = rd.trace_lines(rd.load_scene("room"), rays=10_000)
+            >>> rd.gebhart_factors(lines, emissivity=0.9, group={"all": ["*"]}).to_csv("conductors.csv")
+        """
+        columns, whole = [*self.names, ESCAPED, LOST], self.emissivity * self.area
+        rows = [
+            {
+                "from": self.names[i],
+                "to": columns[j],
+                "Gebhart factor": float(self.values[i, j]),
+                "standard error": float(self.errors[i, j]),
+                "conductor m²": float(whole[i] * self.values[i, j]),
+                "conductor standard error m²": float(whole[i] * self.errors[i, j]),
+            }
+            for i, j in zip(*np.nonzero(self.values), strict=True)
+        ]
+        write_rows(rows, path)
+
+
+def gebhart_factors(lines: LineSet, *, emissivity, group="surface") -> GebhartFactors:
+    """Return the shares of what groups emit that others absorb, after all reflections. No line is traced.
+
+    Surfaces are diffuse and grey, and each group has one temperature. Irradiance is taken as uniform over each patch, not over a
+    group: cut large surfaces into several patches.
+
+    Args:
+        lines: what `trace_lines` has counted.
+        emissivity: one number above 0 and at most 1, a dictionary of names of surfaces (or patterns) to numbers, which must name
+            every surface, or a number for each patch.
+        group: as of `view_factors`.
+
+    Raises:
+        MethodError: no lines, a group or surface that does not exist, a surface without an emissivity, a patch without lines, or
+            more groups than fit in memory. SceneError: an emissivity out of range.
+
+    Example:
+        >>> patches = rd.subdivide(rd.load_scene("room"), cells=1)
+        >>> lines = rd.trace_lines(patches, rays=100_000)
+        >>> shares = rd.gebhart_factors(lines, emissivity={"*": 0.9, "floor": 0.5}, group={"walls": ["*wall"]})
+        >>> shares.names[0], bool(shares.conductors[0, 0] > 0)
+        ('walls', True)
+    """
+    if not isinstance(lines, LineSet):
+        raise MethodError(f"gebhart_factors takes a LineSet, not {type(lines).__name__}; count lines with trace_lines")
+    patches, groups = lines.patches, groups_of(lines.patches, group)
+    share = _emissivities(patches, emissivity)
+    n, replicates = len(groups.names), lines.replicates
+    memory.refuse(8.0 * (replicates + 4) * n * (n + 2), f"Gebhart factors of {n} groups", "take fewer groups")
+    if not lines.pairs.lines.all():
+        without = patches.scene.names[patches.surface[int(np.argmin(lines.pairs.lines.min(axis=0)))]]
+        raise MethodError(
+            f"a patch of '{without}' has no lines in some replicate, and cannot pass on what it reflects: take more rays"
+        )
+    values = np.zeros((replicates, n, n + 2))
+    bias = np.zeros((n, n + 2))
+    carried = replace(lines.pairs, directed=True)  # from where lines begin: all that is sent ends somewhere
+    for begin in range(0, n, AT_ONCE):
+        some = np.arange(begin, min(begin + AT_ONCE, n))
+        values[:, some], bias[some] = _absorbed(carried, groups, share, some)
+    mean, error = mean_and_error(values)
+    area = groups.area(patches)
+    return GebhartFactors(
+        groups.names,
+        area,
+        np.bincount(groups.labels, share * patches.area, n) / area,
+        mean,
+        np.hypot(error, bias),
+        replicates,
+    )
+
+
+def _absorbed(pairs: CountedPairs, groups: Groups, share: np.ndarray, some: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return what is absorbed of the emission of some groups, (replicates, k, n + 2), and the size of its bias, (k, n + 2)."""
+    area, labels, n = pairs.patches.area, groups.labels, len(groups.names)
+    emission = np.where(labels[:, None] == some, share[:, None], 0.0)
+    emitted = area @ emission
+    values, bias = np.zeros((pairs.replicates, len(some), n + 2)), np.zeros((len(some), n + 2))
+    for k, found in enumerate(pairs.solve(emission, np.repeat(1 - share[:, None], len(some), axis=1))):
+        for replicate, (power, missed) in enumerate(zip(found.power, found.missed, strict=True)):
+            values[replicate, k, :n] = np.bincount(labels, share * power, n) / emitted[k]
+            values[replicate, k, n:] = missed / emitted[k]
+        bias[k, :n] = np.bincount(labels, share * found.bias.mean(axis=0), n) / emitted[k]
+    return values, bias
+
+
+def _emissivities(patches: Patches, given) -> np.ndarray:
+    """Return the emissivity of each patch, (n_patches,).
+
+    Raises:
+        MethodError: a surface that does not exist, or one without an emissivity. SceneError: a value out of range.
+    """
+    names = patches.scene.names
+    if isinstance(given, dict):
+        of_surface = np.full(len(names), np.nan)
+        named = {name: surfaces_called(names, str(name)) for name in given}
+        for name in sorted(given, key=lambda name: name not in names, reverse=True):  # patterns first, then single surfaces
+            of_surface[named[name]] = _number(given[name], name)
+        lacking = [names[s] for s in np.unique(patches.surface) if np.isnan(of_surface[s])]
+        if lacking:
+            raise MethodError(f"emissivity: none is given for {shown(lacking)}; name them, or '*' for all others")
+        return of_surface[patches.surface]
+    values = np.asarray(given, dtype=object)
+    if values.ndim == 0:
+        return np.full(len(patches), _number(given, "all surfaces"))
+    if values.shape != (len(patches),):
+        raise MethodError(
+            f"emissivity has shape {values.shape}; give one number, a dictionary by names of surfaces, or ({len(patches)},) for "
+            "patches"
+        )
+    return np.array([_number(value, names[s]) for value, s in zip(values, patches.surface, strict=True)])
+
+
+def _number(value, name) -> float:
+    try:
+        number = float("nan") if isinstance(value, bool | np.bool) else float(value)
+    except (TypeError, ValueError):
+        number = float("nan")
+    if not 0 < number <= 1:
+        raise SceneError(f"emissivity of {name} is {value!r}; it must be above 0 and at most 1")
+    return number

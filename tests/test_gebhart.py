@@ -1,0 +1,96 @@
+"""Gebhart factors against closed forms: two and three surfaces, boxes by the exact view factors, and what is refused.
+
+About 60 comparisons at 6 standard errors (Student with 15 degrees of freedom: p = 2.4e-5), and seeds are fixed.
+"""
+
+import csv
+
+import numpy as np
+import pytest
+from enclosures import parallel_squares, sphere_in_box
+
+import radiosity as rd
+from radiosity.scene.shapes import box
+from validation.closed_forms.enclosures import box_factors
+from validation.closed_forms.rectangles import parallel, perpendicular
+from validation.shapes import scene
+
+
+def exact(factors: np.ndarray, emissivity: np.ndarray) -> np.ndarray:
+    """G = F e + F (1 - e) G, by which what arrives is absorbed or sent on; irradiance is the same all over a surface."""
+    n = len(emissivity)
+    return np.linalg.solve(np.eye(n) - factors * (1 - emissivity), factors * emissivity)
+
+
+def check(found: rd.GebhartFactors, expected: np.ndarray, least: float = 1e-9) -> None:
+    assert found.values.sum(axis=1) == pytest.approx(np.ones(len(found.names)), abs=1e-8)
+    assert (np.abs(found.matrix - expected) <= 6 * found.standard_error + least).all()
+    conductors = found.conductors
+    assert np.abs(conductors - conductors.T).max() < 1e-4 * conductors.max()
+
+
+@pytest.mark.parametrize("emissivity", [(0.9, 0.1), (0.02, 1.0), (0.05, 0.05)])
+def test_a_sphere_in_a_box_is_two_surfaces(emissivity):
+    """All six walls see the sphere alike, and one patch a wall has one irradiance: shares follow from two areas."""
+    inside, view = sphere_in_box()
+    lines = rd.trace_lines(rd.subdivide(inside, cells=1), rays=300_000, replicates=16)
+    body, wall = lines.patches.scene.names
+    found = rd.gebhart_factors(lines, emissivity={body: emissivity[0], wall: emissivity[1]})
+    factors = np.array([[0.0, 1.0], [view, 1 - view]])
+    check(found, exact(factors, np.array(emissivity)))
+    assert found.names == (body, wall)
+    assert found.emissivity == pytest.approx(emissivity)
+
+
+def test_a_box_of_six_patches_is_a_network_of_six_surfaces_and_grouped_one_of_three():
+    """Black walls absorb at once: the shares are view factors. Between grey walls of one patch each, irradiance is uniform."""
+    sizes, names = (4.0, 3.0, 2.5), ("x0", "x1", "y0", "y1", "z0", "z1")
+    areas, factors = box_factors(sizes, parallel, perpendicular)
+    walls = box((0, 0, 0), sizes, inward=True)
+    order = [2, 3, 0, 1, 4, 5]  # `box` begins with y
+    room = scene(*((name, 0.5, 0.0, [walls[i]]) for name, i in zip(names, order, strict=True)))
+    lines = rd.trace_lines(rd.subdivide(room, cells=1), rays=400_000, replicates=16)
+    black = rd.gebhart_factors(lines, emissivity=1.0)
+    assert black.area == pytest.approx(areas)
+    check(black, factors)
+    assert black.standard_error.max() < 2e-3
+    grey = rd.gebhart_factors(lines, emissivity=0.8)
+    check(grey, exact(factors, np.full(6, 0.8)))
+    check(rd.gebhart_factors(lines, emissivity=0.05), exact(factors, np.full(6, 0.05)))
+    together = rd.gebhart_factors(lines, emissivity=0.8, group={"ends": ["x0", "x1"], "sides": ["y*"], "flat": ["z*"]})
+    power = grey.conductors.reshape(3, 2, 3, 2).sum(axis=(1, 3))
+    assert together.conductors == pytest.approx(power, rel=1e-7)  # three surfaces
+
+
+def test_what_escapes_is_a_conductor_to_the_surroundings(tmp_path):
+    squares, view = parallel_squares()
+    lines = rd.trace_lines(rd.subdivide(squares, cells=1), rays=200_000, replicates=16)
+    found = rd.gebhart_factors(lines, emissivity={"emitter": 0.5, "*": 0.25})
+    check(found, exact(np.array([[0, view], [view, 0]]), np.array([0.5, 0.25])))
+    found.to_csv(tmp_path / "g.csv")
+    with (tmp_path / "g.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    sums = {name: sum(float(r["conductor m²"]) for r in rows if r["from"] == name) for name in found.names}
+    assert list(sums.values()) == pytest.approx([0.5, 0.25], rel=1e-8)  # e A
+    assert {r["to"] for r in rows} == {*found.names, "(escaped)"}
+    first = next(r for r in rows if (r["from"], r["to"]) == (found.names[0], found.names[1]))
+    assert float(first["conductor standard error m²"]) == 0.5 * float(first["standard error"]) > 0
+
+
+def test_wrong_emissivities_are_refused():
+    lines = rd.trace_lines(rd.subdivide(parallel_squares()[0], cells=1), rays=1000)
+    for wrong in (0.0, 1.5, -0.1, float("nan"), "half", None, True):
+        with pytest.raises(rd.SceneError, match=r"emissivity of .* must be above 0 and at most 1"):
+            rd.gebhart_factors(lines, emissivity={"*": wrong})
+        with pytest.raises(rd.SceneError, match="emissivity of all surfaces"):
+            rd.gebhart_factors(lines, emissivity=wrong)
+    with pytest.raises(rd.MethodError, match="none is given for 'receiver'"):
+        rd.gebhart_factors(lines, emissivity={"emitter": 0.5})
+    with pytest.raises(rd.MethodError, match="no surface is called 'lamp'"):
+        rd.gebhart_factors(lines, emissivity={"lamp": 0.5, "*": 0.5})
+    with pytest.raises(rd.MethodError, match=r"emissivity has shape \(3,\)"):
+        rd.gebhart_factors(lines, emissivity=[0.5, 0.5, 0.5])
+    with pytest.raises(rd.MethodError, match="takes a LineSet, not Patches"):
+        rd.gebhart_factors(lines.patches, emissivity=0.5)  # pyright: ignore[reportArgumentType]
+    one = rd.trace_lines(lines.patches, rays=1000, replicates=1)
+    assert np.isnan(rd.gebhart_factors(one, emissivity=[0.5, 0.4]).errors).all()
