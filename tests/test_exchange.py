@@ -6,12 +6,12 @@ seeds one in ten runs would fail by chance. Seeds are fixed, and the runs pass.
 
 import numpy as np
 import pytest
-from enclosures import sphere_in_box
+from enclosures import sphere, sphere_in_box
 
 import radiosity as rd
 from radiosity.exchange.planck import SIGMA
 from radiosity.scene.shapes import box, quad
-from validation.closed_forms.enclosures import box_factors, net
+from validation.closed_forms.enclosures import box_factors, net, two_spheres
 from validation.closed_forms.rectangles import parallel, perpendicular
 
 WALLS: tuple[str, ...] = ("x low", "x high", "y low", "y high", "z low", "z high")
@@ -130,10 +130,10 @@ def test_a_convex_body_in_another(emissivity):
     assert near(heat.net[0], exact, heat.net_standard_error[0], of=1e-5)  # some lines slip through edges of the sphere
 
 
-@pytest.mark.parametrize("shields", [1, 2])
+@pytest.mark.parametrize("shields", [1, 2, 4])
 def test_radiation_shields(shields):
     """Sheets of low emissivity between two cubes: they float, with one temperature on both sides."""
-    edges, shine = [1.0, 1.2, 1.5, 2.0][: shields + 2], [0.8, 0.05, 0.1, 0.9][: shields + 1]
+    edges, shine = [1.0, 1.2, 1.5, 2.0, 2.2, 2.5][: shields + 2], [0.8, 0.05, 0.1, 0.02, 0.02][: shields + 1]
     shine = [*shine, 0.9]
     names = [f"cube {i}" for i in range(shields + 2)]
     heat = rd.radiative_exchange(
@@ -149,6 +149,71 @@ def test_radiation_shields(shields):
     inner = black(800) - exact * resistance(edges[:2], shine[:2])
     assert heat.temperature[1] == pytest.approx((inner / SIGMA) ** 0.25, rel=1e-3)
     assert heat.exchange[0, 1] == pytest.approx(heat.net[0], rel=1e-6)
+
+
+def test_concentric_spheres():
+    """Polyhedra of 320 faces: their radiosity is nearly uniform."""
+    ball = sphere(0.5, 0.0, 2)
+    n = ball.n_faces
+    triangles = ball.faces[:, :3]
+    scene = rd.Scene.from_arrays(
+        np.concatenate([0.4 * ball.vertices, ball.vertices]),
+        np.concatenate([triangles[:, ::-1], triangles + len(ball.vertices)]),
+        0.5,
+        0.0,
+        surface=np.repeat([0, 1], n),
+        names=["inner", "outer"],
+    )
+    heat = rd.radiative_exchange(
+        rd.subdivide(scene, cells=1), {"inner": 500, "outer": 300}, emissivity={"inner": 0.7, "outer": 0.2}, rays=200_000
+    )
+    radii = np.sqrt(heat.area / (4 * np.pi))  # of spheres of these areas
+    exact = two_spheres(*radii, (0.7, 0.2), tuple(black([500, 300])))
+    assert heat.net[0] == pytest.approx(exact, rel=1e-3)
+
+
+def prism(radius: float, length: float, sides: int, *, inward: bool) -> list[np.ndarray]:
+    """The mantle of a regular prism along z."""
+    angle = 2 * np.pi * np.arange(sides + 1) / sides
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    quads = [quad((x[i], y[i], 0), (x[i + 1] - x[i], y[i + 1] - y[i], 0), (0, 0, length)) for i in range(sides)]
+    return [corners[::-1] for corners in quads] if inward else quads
+
+
+@pytest.mark.parametrize("emissivity", [(0.9, 0.3), (0.05, 0.05)])
+def test_long_concentric_cylinders(emissivity):
+    """Prisms of 12 sides, closed by adiabatic rings 400 gaps apart: as if they had no end, to one over that."""
+    length, sides, one, other = 200.0, 12, 0.5, 1.0
+    angle = 2 * np.pi * np.arange(sides + 1) / sides
+    ring = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(sides + 1)])
+    caps = []
+    for i in range(sides):
+        low = np.array([one * ring[i], other * ring[i], other * ring[i + 1], one * ring[i + 1]])
+        caps += [low, (low + np.array([0, 0, length]))[::-1]]
+    parts = [("inner", prism(one, length, sides, inward=False)), ("outer", prism(other, length, sides, inward=True))]
+    patches = rd.subdivide(scene_of([*parts, ("ends", caps)]), cells=1)
+    shine = dict(zip(("inner", "outer"), emissivity, strict=True)) | {"ends": 0.5}
+    heat = rd.radiative_exchange(patches, {"inner": 400, "outer": 300}, adiabatic=["ends"], emissivity=shine, rays=200_000)
+    area = heat.area[0]
+    exact = (black(400) - black(300)) * area / (1 / emissivity[0] + one / other * (1 / emissivity[1] - 1))
+    assert near(heat.net[0], exact, heat.net_standard_error[0], of=1 / 400)
+    assert heat.net_standard_error[0] < 2e-3 * exact
+
+
+@pytest.mark.parametrize("emissivity", [0.3, 1.0])
+def test_re_radiating_walls_of_a_cube(emissivity):
+    """The three-surface enclosure of textbooks: heat goes from floor to ceiling straight, or by way of adiabatic walls."""
+    quads = box((0, 0, 0), (1, 1, 1), inward=True)
+    scene = scene_of([("walls", quads[:4]), ("floor", [quads[4]]), ("ceiling", [quads[5]])])
+    heat = rd.radiative_exchange(
+        rd.subdivide(scene, cells=1), {"floor": 700, "ceiling": 400}, adiabatic=["walls"], emissivity=emissivity, rays=200_000
+    )
+    straight = float(parallel(1.0, 1.0))
+    space = 1 / (straight + 1 / (2 / (1 - straight)))
+    exact = (black(700) - black(400)) / (2 * (1 - emissivity) / emissivity + space)
+    assert near(heat.net[1], exact, heat.net_standard_error[1])
+    assert heat.net_standard_error[1] < 2e-3 * exact
+    assert heat.temperature[0] == pytest.approx(((black(700) + black(400)) / 2 / SIGMA) ** 0.25, rel=1e-3)  # by symmetry
 
 
 @pytest.mark.parametrize("emissivity", [0.02, 0.1])

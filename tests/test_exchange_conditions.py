@@ -95,6 +95,17 @@ def test_a_reflectance_of_the_file_is_taken_and_told(patches):
         Conditions.of(rd.subdivide(coloured, cells=1), temperature={"*": 300})
 
 
+def test_a_name_without_faces_takes_no_part(patches):
+    scene = patches.scene
+    more = rd.Scene.from_arrays(
+        scene.vertices, scene.faces, 0.5, 0.0, surface=scene.surface, names=[*scene.names, "nothing"], back=scene.back
+    )
+    heat = rd.radiative_exchange(rd.subdivide(more, cells=1), {"z*": 300, "x*": 400, "y*": 300}, emissivity=0.5, **FEW)
+    assert heat.conditions[6] == "none"
+    assert len(heat.table()) == 6
+    assert abs(heat.net.sum()) < 1e-9 * heat.net[0]
+
+
 def obj(path, **boxes):
     """An .obj file of boxes, (corners, inward) by name."""
     lines, n = [], 0

@@ -116,6 +116,20 @@ def test_the_command(capsys, tmp_path):
     assert "surroundings" in out
 
 
+def test_the_command_takes_lines(capsys, tmp_path):
+    scene = oven(tmp_path, "temperature = 600")
+    assert main(["lines", str(scene), "--cells", "1", "--rays", "20k", "-o", str(tmp_path / "lines.npz")]) == 0
+    capsys.readouterr()
+    status, out, err = run(capsys, "exchange", tmp_path / "lines.npz", "--temperature", "load*=700")
+    assert (status, err) == (0, "")
+    patches = rd.subdivide(rd.load_scene(scene), cells=1)
+    heat = rd.radiative_exchange(rd.trace_lines(patches, rays=20_000), {"load*": 700})
+    assert out.splitlines()[1:] == str(heat).splitlines()[1:]
+    status, _, err = run(capsys, "exchange", tmp_path / "lines.npz", "--rays", "1M")
+    assert status == 2
+    assert "leave --rays out" in err
+
+
 @pytest.mark.parametrize(
     ("options", "status", "text"),
     [

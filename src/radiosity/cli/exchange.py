@@ -6,11 +6,11 @@ from typing import Annotated
 
 from cyclopts import Group, Parameter
 
-from ..errors import OutputError, SceneError, printable
+from ..errors import MethodError, OutputError, SceneError, printable
 from . import outputs
-from .options import Count, DeviceName, Length, Outputs, Seed, Share
+from .options import Count, Length, Outputs, Share
 from .solve import NOT_REACHED
-from .solve_options import SceneOptions, Unset
+from .solve_options import RUN, Machine, SceneOptions, Unset
 from .streams import tell
 
 Names = Annotated[tuple[str, ...], Parameter(consume_multiple=(1, None), negative=(), show_default=False)]
@@ -50,10 +50,6 @@ class Tracing:
         error_of: What --error is the error of: net:NAME or temperature:NAME. Default: all net heat, relative to the largest.
         patch_size: Longest edge of a patch, in metres. Default: about 2 000 patches in all.
         cells: Cut every face into CELLS x CELLS patches.
-        replicates: Number of independent randomised runs, from which errors are found.
-        seed: Seed of all random numbers. Equal seeds give equal results.
-        device: auto, cpu or cuda.
-        memory: Memory limit, such as 8G or none. Default: 70 % of what is free.
     """
 
     rays: Count = None
@@ -61,15 +57,23 @@ class Tracing:
     error_of: str | None = None
     patch_size: Length = None
     cells: Count = None
+
+
+@dataclass(frozen=True)
+class Running(Machine):
+    """What concerns the run.
+
+    Attributes:
+        replicates: Number of independent randomised runs, from which errors are found.
+    """
+
     replicates: Count = 8
-    seed: Seed = 0
-    device: DeviceName = "auto"
-    memory: str | None = None
 
 
 ConditionOptions = Annotated[Conditions, Parameter(name="*", group=Group("The conditions", sort_key=1))]
 TracingOptions = Annotated[Tracing, Parameter(name="*", group=Group("Lines and patches", sort_key=2))]
-NO_CONDITIONS, USUAL = Conditions(), Tracing()
+RunningOptions = Annotated[Running, Parameter(name="*", group=RUN)]
+NO_CONDITIONS, USUAL, PLAIN = Conditions(), Tracing(), Running()
 
 
 def exchange(
@@ -79,6 +83,7 @@ def exchange(
     output: Outputs = (),
     given: ConditionOptions = NO_CONDITIONS,
     tracing: TracingOptions = USUAL,
+    running: RunningOptions = PLAIN,
     reading: SceneOptions = Unset.reading,
 ) -> int:
     """Find the heat that surfaces exchange by radiation: net watts and temperatures, with error bars.
@@ -88,7 +93,8 @@ def exchange(
     Parameters
     ----------
     scene
-        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml) or a built-in scene.
+        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .toml), a built-in scene, or an .npz file of `radiosity lines`, whose
+        lines are taken.
     output
         Files to write: .csv (the table; beside it NAME.exchange.csv, watts from surface to surface), .npz, .png (a view of net
         heat; beside it NAME.exchange.png, a matrix of watts).
@@ -107,10 +113,15 @@ def exchange(
 
     from .progress import bar
 
-    options = asdict(tracing)
+    of_lines = Path(scene).suffix.lower() == ".npz"
+    options, usual = (asdict(one) | asdict(other) for one, other in ((tracing, running), (USUAL, PLAIN)))
+    if of_lines and options != usual:
+        changed = [f"--{key.replace('_', '-')}" for key, value in options.items() if value != usual[key]]
+        raise MethodError(f"{scene} holds lines that are there already: leave {', '.join(changed)} out, or give the scene")
     cut = {"size": options.pop("patch_size"), "cells": options.pop("cells")}
-    loaded = rd.load_scene(scene, **asdict(reading))
-    patches = rd.subdivide(loaded, **cut) if any(value is not None for value in cut.values()) else loaded
+    loaded = rd.load_lines(scene) if of_lines else rd.load_scene(scene, **asdict(reading))
+    asked = any(value is not None for value in cut.values())
+    patches = rd.subdivide(loaded, **cut) if isinstance(loaded, rd.Scene) and asked else loaded
     conditions = {
         "temperature": _values(given.temperature, "temperature"),
         "emissivity": _values(given.emissivity, "emissivity", several=True),

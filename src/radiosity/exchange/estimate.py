@@ -16,6 +16,8 @@ from .network import Network, Pooled
 from .nodes import Nodes
 from .planck import SIGMA
 
+MOST = 4000  # surfaces: their matrices then take 1 GB
+
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
@@ -47,6 +49,11 @@ class Estimator:
 
     def __init__(self, patches: Patches, conditions: Conditions):
         openings.refuse_one_way(patches)
+        if len(patches.scene.names) > MOST:
+            raise SceneError(
+                f"{len(patches.scene.names):,} surfaces would exchange heat in a matrix of as many rows; {MOST:,} are the "
+                "most: give surfaces that belong together one name"
+            )
         self.patches, self.conditions = patches, conditions
 
     @cached_property
@@ -105,7 +112,7 @@ class Estimator:
         error = {name: one.error for name, one in sums.items()}
         of_net = np.sqrt((few**2).sum(axis=1))
         net, net_error = value["net"], np.hypot(error["net"], of_net)
-        net[:k][self.floats], net_error[:k][self.floats] = conditions.flux[self.floats], 0.0
+        net[:k][self.floats], net_error[:k][self.floats] = np.nan_to_num(conditions.flux[self.floats]), 0.0  # NaN: no patch
         conductance = np.bincount(surface, network.whole, k)
         slope = 4 * SIGMA * np.maximum(value["temperature"], np.finfo(float).tiny) ** 3 * conductance
         with np.errstate(divide="ignore", invalid="ignore"):

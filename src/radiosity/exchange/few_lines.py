@@ -23,7 +23,7 @@ def watts(pooled: Pooled, labels: np.ndarray, radiosity: np.ndarray, around: flo
     density = np.bincount(labels, pooled.lines, k) / np.maximum(np.bincount(labels, pooled.area, k), np.finfo(float).tiny)
     lines = np.where(counts < FEW, np.sqrt(np.maximum(counts, 1)), 0)
     result = np.zeros((k + 1, k + 1))
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):  # a surface without patches has no lines
         worth = 1 / (density[:, None] + density)
         result[:k, :k] = lines[:, :k] * worth * np.abs(radiosity[:, None] - radiosity)
         if around is not None:

@@ -105,8 +105,10 @@ def radiative_exchange(
     options = {"replicates": replicates, "seed": seed, "device": device, "progress": progress, "memory": memory}
     status = "complete"
     if error is None:
-        lines = lines if lines is not None else trace(patches, conditions, RAYS if rays is None else rays, None, **options)
-        found, status = estimator.estimate(lines.pairs), lines.status
+        if lines is None:
+            lines = trace(patches, conditions, RAYS if rays is None else rays, None, **options)
+            status = lines.status
+        found = estimator.estimate(lines.pairs)
     else:
         target = Target.of(patches.scene.names, estimator.floats, error, error_of)
         if replicates < 2:
@@ -128,7 +130,7 @@ def _until(target: Target, estimator: Estimator, rays: float | None, options: di
             return lines, found, "complete"
         if lines.status == "interrupted":
             return lines, found, "interrupted"
-        if goal >= most:
+        if goal >= most or lines.status != "complete":
             break
         known = np.isfinite(bound) and bound > 0
         doublings = np.log2(bound / target.error) / SLOPE if known else 1.0
@@ -147,6 +149,7 @@ def _result(patches: Patches, conditions: Conditions, found: Estimate, lines, st
     area = np.bincount(patches.surface, patches.area, k)
     mean = [_means(patches, band) for band in conditions.emissivity]
     kind = np.where(~np.isnan(conditions.temperature), "temperature", np.where(conditions.flux == 0, "adiabatic", "flux"))
+    kind = np.where(area > 0, kind, "none")
     return RadiativeExchange(
         names=patches.scene.names,
         conditions=tuple(kind.tolist()),

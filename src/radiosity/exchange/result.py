@@ -21,7 +21,7 @@ class RadiativeExchange:
 
     Attributes:
         names: names of the surfaces.
-        conditions: of each surface "temperature", "flux" or "adiabatic", whatever was given.
+        conditions: of each surface "temperature", "flux" or "adiabatic", whatever was given; "none" where it has no patch.
         area: (n,) m² that radiate.
         emissivity: (n, n_bands) area mean.
         net, net_standard_error: (n,) W; the error is NaN where it is unknown (a single replicate).
@@ -101,6 +101,8 @@ class RadiativeExchange:
         (low, high), (cold, hot) = self.net_interval(level), self.temperature_interval(level)
         rows = []
         for i, name in enumerate(self.names):
+            if not self.area[i] > 0:
+                continue  # no patch has this name
             bands = self.emissivity[i].tolist()
             rows.append(
                 {
@@ -116,7 +118,7 @@ class RadiativeExchange:
                     "net error": float(self.net_standard_error[i]),
                     "net low": float(low[i]),
                     "net high": float(high[i]),
-                    "flux": float(self.net[i] / self.area[i]) if self.area[i] > 0 else float("nan"),
+                    "flux": float(self.net[i] / self.area[i]),
                 }
             )
         if self.surroundings is not None:
