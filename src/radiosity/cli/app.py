@@ -12,8 +12,8 @@ from . import interrupts
 from .check import check
 from .doctor import doctor
 from .experiment import experiment
-from .lines import lines
 from .factors import factors
+from .lines import lines
 from .methods import methods
 from .relight import relight
 from .render import render
