@@ -15,6 +15,34 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "exchange/restored.py",
+        "trust = np.where(variance > 0, 1 / np.where(variance > 0, variance, 1), 0)",
+        "trust = np.where(variance > 0, 1, 0)",
+        ("test_view_factors.py",),
+        "both directions of a pair count alike, whatever their errors",
+    ),
+    Mistake(
+        "exchange/view_factors.py",
+        "        return np.where(columns < n, 1 / (1 / own + 1 / back), own)\n",
+        "        return own\n",
+        ("test_view_factors.py",),
+        "restored factors without lines have the bound of one direction",
+    ),
+    Mistake(
+        "exchange/gebhart.py",
+        "carried = replace(lines.pairs, directed=True)",
+        "carried = lines.pairs",
+        ("test_gebhart.py",),
+        "what groups emit is lost where counts are not reciprocal",
+    ),
+    Mistake(
+        "exchange/small_gaps.py",
+        "MOVED = 6",
+        "MOVED = 1e9",
+        ("test_view_factors.py",),
+        "polygons across a thin gap see each other whole",
+    ),
+    Mistake(
         "algorithms/gather/tally.py",
         "count.mean(axis=0) / np.maximum(state.cosine, 1)",
         "count.mean(axis=0) / np.maximum(state.stored, 1)",
