@@ -117,6 +117,20 @@ MISTAKES = (
         "a checkpoint that is an output",
     ),
     Mistake(
+        "factors/model.py",
+        "if (self.rows[1:] < self.rows[:-1]).any():",
+        "if (self.rows[1:] < self.rows[:-1]).all():",
+        ("test_matrix.py::test_light_goes_through_backs_that_pass_although_it_does_not_come_back",),
+        "rows in any order are read as if they were sorted",
+    ),
+    Mistake(
+        "run/line_set/starved.py",
+        "(share > DIM) & (each < FEW)",
+        "(share > DIM) & (each < 1)",
+        ("test_line_set.py",),
+        "lights that few lines begin at are not told",
+    ),
+    Mistake(
         "run/line_set/problem.py",
         "rows, prefers_sources=True)",
         "rows)",
