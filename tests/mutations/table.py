@@ -145,6 +145,20 @@ MISTAKES = (
         "a checkpoint that is an output",
     ),
     Mistake(
+        "factors/model.py",
+        "if (self.rows[1:] < self.rows[:-1]).any():",
+        "if (self.rows[1:] < self.rows[:-1]).all():",
+        ("test_matrix.py::test_backs_that_let_lines_pass_are_counted_one_way",),
+        "rows in any order are read as if they were sorted",
+    ),
+    Mistake(
+        "run/line_set/starved.py",
+        "(share > DIM) & (each < FEW)",
+        "(share > DIM) & (each < 1)",
+        ("test_line_set.py",),
+        "lights that few lines begin at are not told",
+    ),
+    Mistake(
         "run/line_set/problem.py",
         "rows, prefers_sources=True)",
         "rows)",
