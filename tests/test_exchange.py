@@ -87,6 +87,17 @@ def test_six_walls_of_a_box(emissivity):
     assert heat.exchange.sum(axis=1)[:6] == pytest.approx(heat.net, rel=1e-9)
 
 
+def test_conductors_of_gebharts_factors_say_the_same():
+    """Net heat is the sum of e_i A_i G_ij (M_i - M_j): from the same lines, another way."""
+    patches, *_ = big_box()
+    kelvin = np.array([300.0, 310, 320, 290, 400, 350])
+    lines = rd.trace_lines(patches, rays=200_000)
+    heat = rd.radiative_exchange(lines, dict(zip(WALLS, kelvin, strict=True)), emissivity=0.4)
+    conductors = rd.gebhart_factors(lines, emissivity=0.4).conductors
+    watts = (conductors * (black(kelvin)[:, None] - black(kelvin))).sum(axis=1)
+    assert (np.abs(heat.net - watts) < 2 * heat.net_standard_error).all()
+
+
 def test_walls_that_float():
     """Two walls of given temperature, one of given flux, three adiabatic: J = H + q there, by the exact form factors."""
     patches, area, factors = big_box()

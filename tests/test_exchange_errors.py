@@ -65,6 +65,14 @@ def test_a_pair_that_no_line_joined_is_not_known_to_exchange_nothing():
     assert low[1] < -exact < high[1]
 
 
+def test_planes_that_look_away_from_each_other_exchange_nothing_for_certain():
+    parts = [("up", [quad((0, 0, 0), (1, 0, 0), (0, 1, 0))]), ("down", [quad((0, 0, -1), (0, 1, 0), (1, 0, 0))])]
+    patches = rd.subdivide(scene_of(parts), cells=1)
+    heat = rd.radiative_exchange(patches, {"up": 1000, "down": 300}, emissivity=1, surroundings=0, rays=2_000)
+    assert heat.exchange_standard_error[0, 1] == 0
+    assert heat.net == pytest.approx(black(np.array([1000, 300])), rel=1e-12)
+
+
 def test_one_replicate_tells_no_error():
     patches, *_ = big_box()
     heat = rd.radiative_exchange(patches, {"*": 300, "z low": 400}, emissivity=0.5, rays=5_000, replicates=1)

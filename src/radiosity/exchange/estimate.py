@@ -107,7 +107,7 @@ class Estimator:
         conditions, surface, k = self.conditions, self.patches.surface, len(self.floats)
         around = conditions.surroundings
         emitted = None if around is None else float(above(around, reference(conditions)))
-        few = few_lines.watts(pooled, surface, whole.radiosity, emitted)
+        few = few_lines.watts(pooled, self.patches, whole.radiosity, emitted)
         value = {name: np.where(np.isfinite(one.value), one.value, one.whole) for name, one in sums.items()}
         error = {name: one.error for name, one in sums.items()}
         of_net = np.sqrt((few**2).sum(axis=1))

@@ -6,22 +6,26 @@ to one line. So where fewer than `FEW` lines joined two surfaces, so many lines'
 
 import numpy as np
 
+from ..patches.model import Patches
 from ..solution.intervals import FEW
+from .apart import apart
+from .groups import Groups
 from .network import Pooled
 
 
-def watts(pooled: Pooled, labels: np.ndarray, radiosity: np.ndarray, around: float | None) -> np.ndarray:
+def watts(pooled: Pooled, patches: Patches, radiosity: np.ndarray, around: float | None) -> np.ndarray:
     """Return W that exchanges may be off by, (k + 1, k + 1), symmetric; the last row and column are the surroundings.
 
     Args:
-        labels: (n_patches,) the surface of each patch.
         radiosity: (k,) W/m² of the surfaces.
         around: W/m² of the surroundings, None where there are none.
     """
-    k = len(radiosity)
+    k, labels = len(radiosity), patches.surface
     counts = pooled.between(labels, k)
     density = np.bincount(labels, pooled.lines, k) / np.maximum(np.bincount(labels, pooled.area, k), np.finfo(float).tiny)
     lines = np.where(counts < FEW, np.sqrt(np.maximum(counts, 1)), 0)
+    blind = apart(patches, Groups(patches.scene.names, labels.astype(np.int64)), np.flatnonzero(counts[:, :k] > 0))
+    lines[np.unravel_index(blind, (k, k))] = 0  # planes that look away from each other exchange nothing
     result = np.zeros((k + 1, k + 1))
     with np.errstate(divide="ignore", invalid="ignore"):  # a surface without patches has no lines
         worth = 1 / (density[:, None] + density)
