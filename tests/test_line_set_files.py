@@ -183,6 +183,8 @@ DAMAGE = {
     "a replicate more": (lambda arrays, meta: meta.update(replicates=5), "other replicates"),
     "other patches": (lambda arrays, meta: meta.update(patches=10**12), "results for 18 patches"),
     "both ways of lines that count one way": (lambda arrays, meta: meta.update(both_ways="yes"), "both ways"),
+    "a provenance without a device": (lambda arrays, meta: meta["provenance"].pop("device"), "damaged .'device'"),
+    "a budget that is a number": (lambda arrays, meta: meta["provenance"].update(budget=3), "provenance has the budget 3"),
     "a format to come": (lambda arrays, meta: meta.update(format=9), "written in format 9; this version reads 1"),
     "a method that counts nothing": (lambda arrays, meta: meta["method"].update(order="breadth-first"), "counts no lines"),
 }

@@ -7,6 +7,7 @@ import pytest
 from enclosures import cube, cube_irradiance
 
 import radiosity as rd
+from radiosity.patches.nesting import halved, parents
 from radiosity.patches.relit import relit
 from radiosity.scene.paint import Paint
 
@@ -79,6 +80,16 @@ def test_values_within_a_face_are_kept_and_survive_a_file(room, lines, tmp_path)
     assert np.abs(again.irradiance - solution.irradiance).max() < 0.2 * solution.irradiance.max()
     solution.export(tmp_path / "a.csv")
     solution.export(tmp_path / "a.glb")
+
+
+def test_a_refined_mesh_keeps_the_values_of_patches(room):
+    """The four parts of a patch have its value, on both sides; so a refine check of such a solution is right."""
+    two_sided = replace(room, scene=replace(room.scene, back=np.full(6, int(rd.Back.RADIATES), np.uint8)))
+    values = np.linspace(0.1, 0.8, 24)[:, None]
+    fine = halved(relit(two_sided, emission=values, reflectance=values))
+    assert np.array_equal(fine.reflectance, values[parents(fine, two_sided)])
+    assert np.array_equal(fine.emission, fine.reflectance)
+    assert fine.area @ fine.emission == pytest.approx(two_sided.area @ values)
 
 
 def test_bands_may_be_others_than_those_of_the_scene(lines):

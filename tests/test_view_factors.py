@@ -371,6 +371,8 @@ def test_what_thin_gaps_let_escape(gap, escapes):
     assert exact.method == "polygons"
     assert exact.escaped == pytest.approx([escapes] * 2, rel=1e-4)
     assert (exact.escaped_standard_error < 1e-6).all()
+    few = rd.view_factors(plates(1, 1, gap), rays=1000, method="polygons")  # of so few, none finds gaps of 1e-4
+    assert few.escaped == pytest.approx([escapes] * 2, rel=1e-4)
 
 
 def test_faces_too_near_for_lines_are_told():

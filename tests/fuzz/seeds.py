@@ -64,11 +64,25 @@ def solution() -> dict[str, bytes]:
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore", rd.RadiosityWarning)
         scene = rd.load_scene(box_gltf().write(Path(folder, "box.glb")))
-        rd.solve(rd.subdivide(scene, cells=2), "random-walk", quanta=16, replicates=2, progress=None).save(
-            Path(folder, "box.npz")
-        )
-        with zipfile.ZipFile(Path(folder, "box.npz")) as file:
-            return {name: file.read(name) for name in file.namelist()}
+        patches = rd.subdivide(scene, cells=2)
+        rd.solve(patches, "random-walk", quanta=16, replicates=2, progress=None).save(Path(folder, "box.npz"))
+        return _members(Path(folder, "box.npz"))
+
+
+@cache
+def line_set() -> dict[str, bytes]:
+    """The members of a line set file: painted, three bands, two replicates, a source."""
+    import radiosity as rd
+
+    with tempfile.TemporaryDirectory() as folder:
+        patches = rd.subdivide(rd.load_scene(box_gltf().write(Path(folder, "box.glb"))), cells=2)
+        rd.trace_lines(patches, quanta=2_000, replicates=2, sources=patches.scene.names[:1]).save(Path(folder, "box.npz"))
+        return _members(Path(folder, "box.npz"))
+
+
+def _members(path: Path) -> dict[str, bytes]:
+    with zipfile.ZipFile(path) as file:
+        return {name: file.read(name) for name in file.namelist()}
 
 
 def _gltf(random: Random) -> dict[str, bytes]:
@@ -151,8 +165,16 @@ def _mgf(random: Random) -> dict[str, bytes]:
 
 
 def _npz(random: Random) -> dict[str, bytes]:
+    return {"scene.npz": _archive(dict(solution()), random)}
+
+
+def _lines(random: Random) -> dict[str, bytes]:
+    return {"scene.lines.npz": _archive(dict(line_set()), random)}
+
+
+def _archive(members: dict[str, bytes], random: Random) -> bytes:
     """Damage to the archive, or inside of members whose checksums are right."""
-    members, where = dict(solution()), random.random()
+    where = random.random()
     if where > 0.1:
         names = ["meta.npy"] if where < 0.5 else random.sample(sorted(members), random.choice((1, 1, 2)))
         for name in names:
@@ -164,7 +186,7 @@ def _npz(random: Random) -> dict[str, bytes]:
         for name, data in members.items():
             archive.writestr(zipfile.ZipInfo(name), data)
     data = file.getvalue()
-    return {"scene.npz": data if where > 0.1 else mutated(data, random)}
+    return data if where > 0.1 else mutated(data, random)
 
 
 def _npy(data: bytes, random: Random) -> bytes:
@@ -200,6 +222,7 @@ FORMATS = {
     "stl-binary": _one("scene.stl", lambda: stl_bytes(TRIANGLES)),
     "toml": _toml,
     "npz": _npz,
+    "lines": _lines,
 }
 
 

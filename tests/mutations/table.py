@@ -15,6 +15,34 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "exchange/restored.py",
+        "trust = np.where(variance > 0, 1 / np.where(variance > 0, variance, 1), 0)",
+        "trust = np.where(variance > 0, 1, 0)",
+        ("test_view_factors.py",),
+        "both directions of a pair count alike, whatever their errors",
+    ),
+    Mistake(
+        "exchange/view_factors.py",
+        "        return np.where(columns < n, 1 / (1 / own + 1 / back), own)\n",
+        "        return own\n",
+        ("test_view_factors.py",),
+        "restored factors without lines have the bound of one direction",
+    ),
+    Mistake(
+        "exchange/gebhart.py",
+        "carried = replace(lines.pairs, directed=True)",
+        "carried = lines.pairs",
+        ("test_gebhart.py",),
+        "what groups emit is lost where counts are not reciprocal",
+    ),
+    Mistake(
+        "exchange/small_gaps.py",
+        "MOVED = 6",
+        "MOVED = 1e9",
+        ("test_view_factors.py",),
+        "polygons across a thin gap see each other whole",
+    ),
+    Mistake(
         "algorithms/gather/tally.py",
         "count.mean(axis=0) / np.maximum(state.cosine, 1)",
         "count.mean(axis=0) / np.maximum(state.stored, 1)",
@@ -115,6 +143,20 @@ MISTAKES = (
         "        return Path(path).absolute()",
         ("test_cli_solve.py::test_a_checkpoint_that_is_an_output_is_refused",),
         "a checkpoint that is an output",
+    ),
+    Mistake(
+        "factors/model.py",
+        "if (self.rows[1:] < self.rows[:-1]).any():",
+        "if (self.rows[1:] < self.rows[:-1]).all():",
+        ("test_matrix.py::test_backs_that_let_lines_pass_are_counted_one_way",),
+        "rows in any order are read as if they were sorted",
+    ),
+    Mistake(
+        "run/line_set/starved.py",
+        "(share > DIM) & (each < FEW)",
+        "(share > DIM) & (each < 1)",
+        ("test_line_set.py",),
+        "lights that few lines begin at are not told",
     ),
     Mistake(
         "run/line_set/problem.py",

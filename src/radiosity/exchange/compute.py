@@ -70,7 +70,7 @@ def view_factors(
     Example:
         >>> factors = rd.view_factors(rd.load_scene("room"), rays=100_000, method="lines").restored()
         >>> floor, ceiling = factors.names.index("floor"), factors.names.index("ceiling")
-        >>> 0.1 < factors.matrix[floor, ceiling] < 0.5, bool(factors.standard_error[floor, ceiling] < 0.01)
+        >>> bool(0.1 < factors.matrix[floor, ceiling] < 0.5), bool(factors.standard_error[floor, ceiling] < 0.01)
         (True, True)
     """
     if method not in METHODS:

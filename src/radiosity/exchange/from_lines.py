@@ -1,5 +1,6 @@
 """View factors between groups from counted lines: the rows of the groups' own lines."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -24,7 +25,7 @@ def from_lines(pairs: CountedPairs, groups: Groups, rays: int, provenance: dict,
         MethodError: a group fired no line in some replicate.
     """
     patches, n, width = pairs.patches, len(groups.names), len(groups.names) + 2
-    area, parts, hits = groups.area(patches), [], []
+    area, parts = groups.area(patches), []
     count = len(patches)
     bounds = np.searchsorted(pairs.keys, np.arange(pairs.replicates + 1).astype(np.uint64) * np.uint64(count) << WORD)
     for replicate, (begin, end) in enumerate(pairwise(bounds)):
@@ -39,13 +40,13 @@ def from_lines(pairs: CountedPairs, groups: Groups, rays: int, provenance: dict,
         codes = groups.labels[rows] * width + np.where(
             columns < count, np.append(groups.labels, [0, 0])[columns], columns - count + n
         )
-        parts.append(gathered(codes, weight[rows] * counts / np.maximum(fired, 1)[rows], width))
-        parts[-1] = parts[-1][0], parts[-1][1] / whole[parts[-1][0] // width]
-        hits.append(gathered(codes, counts, width))
+        some, values, lines = gathered(codes, width, weight[rows] * counts / np.maximum(fired, 1)[rows], counts)
+        parts.append((some, values / whole[some // width], lines.astype(np.uint32)))
     codes, values, errors, samples = combined(parts, n <= SAMPLED)
     numbers = np.zeros(len(codes))
-    for some, lines in hits:
+    for some, _, lines in parts:
         numbers[np.searchsorted(codes, some)] += lines
+    del parts
     with np.errstate(divide="ignore"):
         each = patches.area / pairs.lines.sum(axis=0)
     line = np.zeros(n)
@@ -74,26 +75,27 @@ def from_lines(pairs: CountedPairs, groups: Groups, rays: int, provenance: dict,
     )
 
 
-def gathered(codes: np.ndarray, values: np.ndarray, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return ascending codes, each once, and the sums of their values."""
+def gathered(codes: np.ndarray, width: int, *values: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return ascending codes, each once, and the sums of some values of each."""
     if width * width <= 4 * len(codes):
-        total, met = np.bincount(codes, values, width * width), np.bincount(codes, minlength=width * width)
-        found = np.flatnonzero(met)
-        return found, total[found]
+        found = np.flatnonzero(np.bincount(codes, minlength=width * width))
+        return found, *(np.bincount(codes, value, width * width)[found] for value in values)
     found, place = np.unique(codes, return_inverse=True)
-    return found, np.bincount(place, values, len(found))
+    return found, *(np.bincount(place, value, len(found)) for value in values)
 
 
-def combined(parts: list[tuple[np.ndarray, np.ndarray]], sampled: bool):
+def combined(parts: Sequence[tuple[np.ndarray, ...]], sampled: bool):
     """Return codes, values, standard errors (m,) and samples (replicates, m) or None, of the codes and values of replicates."""
-    codes = np.unique(np.concatenate([some for some, _ in parts]))
-    count, places = len(parts), [np.searchsorted(codes, some) for some, _ in parts]
-    mean = np.zeros(len(codes))
-    for place, (_, values) in zip(places, parts, strict=True):
-        mean[place] += values
+    codes = parts[0][0]
+    for some, *_ in parts[1:]:
+        codes = np.union1d(codes, some)
+    count = len(parts)
+    mean, squares, met = np.zeros(len(codes)), np.zeros(len(codes)), np.zeros(len(codes))
+    for some, values, *_ in parts:
+        mean[np.searchsorted(codes, some)] += values
     mean /= count
-    squares, met = np.zeros(len(codes)), np.zeros(len(codes))
-    for place, (_, values) in zip(places, parts, strict=True):
+    for some, values, *_ in parts:
+        place = np.searchsorted(codes, some)
         squares[place] += (values - mean[place]) ** 2
         met[place] += 1
     squares += (count - met) * mean**2  # replicates without the entry
@@ -101,6 +103,6 @@ def combined(parts: list[tuple[np.ndarray, np.ndarray]], sampled: bool):
     if not sampled:
         return codes, mean, errors, None
     samples = np.zeros((count, len(codes)))
-    for row, place, (_, values) in zip(samples, places, parts, strict=True):
-        row[place] = values
+    for row, (some, values, *_) in zip(samples, parts, strict=True):
+        row[np.searchsorted(codes, some)] = values
     return codes, mean, errors, samples

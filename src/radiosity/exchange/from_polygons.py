@@ -106,7 +106,7 @@ def from_polygons(
         power = np.concatenate(
             [np.tile(pairs.values * share, 2), np.zeros(len(gone)), escaped * patches.area, lost * patches.area]
         )
-        some, values = gathered(codes, power, width)
+        some, values = gathered(codes, width, power)
         parts.append((some, values / area[some // width]))
     codes, values, errors, samples = combined(parts, sampled=True)
     assert samples is not None

@@ -35,7 +35,7 @@ def load_view_factors(path) -> ViewFactors:
     Example:
         >>> rd.view_factors(rd.load_scene("room"), rays=10_000).to_npz("factors.npz")
         >>> len(rd.load_view_factors("factors.npz"))
-        17
+        10
     """
     path = Path(path)
     try:

@@ -20,6 +20,7 @@ import numpy as np
 from ..errors import MethodError, RadiosityWarning
 from ..factors.balance import restored as scaled
 from ..factors.model import Factors
+from ..factors.solve import SCALINGS
 from ..solution.errors import mean_and_error
 from ..solution.intervals import FEW, by_luck
 from .least_squares import Nearest, Unknowns, nearest
@@ -177,7 +178,7 @@ def _by_scaling(factors):
     made = Factors(factors.rows[inside], factors.columns[inside], factors.values[inside], factors.escaped, factors.lost)
     counted = factors.method == "lines"
     weight = 1 / (factors.line * factors.area) if counted else None
-    new = scaled(made, factors.area, weight)
+    new = scaled(made, factors.area, weight, SCALINGS)
     each = np.arange(n)
     rows = np.concatenate([new.rows, each, each])
     columns = np.concatenate([new.columns, np.full(n, n), np.full(n, n + 1)])

@@ -39,7 +39,7 @@ class ViewFactors:
     Example:
         >>> factors = rd.view_factors(rd.load_scene("room"), rays=200_000, group={"walls": ["*wall"]})
         >>> factors.names[0], factors.matrix.shape, bool(abs(factors.row_sums - 1).max() < 1e-12)
-        ('walls', (9, 9), True)
+        ('walls', (7, 7), True)
     """
 
     names: tuple[str, ...]

@@ -1,5 +1,7 @@
 """Meshes whose cells lie within the cells of another."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..errors import SceneError
@@ -16,7 +18,9 @@ def halved(patches: Patches) -> Patches:
     most = int(max(patches.columns.max(), patches.rows.max()))
     if 2 * most > cells.MOST:
         raise SceneError(f"a face has {most} cells along an edge; at most {cells.MOST // 2} can be halved: take larger patches")
-    return Patches(patches.scene, patches.columns * 2, patches.rows * 2)
+    fine = Patches(patches.scene, patches.columns * 2, patches.rows * 2)
+    own = {name: getattr(patches, name) for name in ("own_reflectance", "own_emission")}
+    return replace(fine, **{name: value[parents(fine, patches)] for name, value in own.items() if value is not None})
 
 
 def parents(fine: Patches, coarse: Patches) -> np.ndarray:

@@ -26,16 +26,15 @@ def relit(patches: Patches, emission=None, reflectance=None, bands=None) -> Patc
     if emission is None and reflectance is None and bands is None:
         return patches
     given = {"emission": values_of(patches, emission, "emission"), "reflectance": values_of(patches, reflectance, "reflectance")}
-    own = {"emission": patches.emission, "reflectance": patches.reflectance}
-    count = max((own[name] if value is None else value).shape[1] for name, value in given.items())
     scene = patches.scene
+    count = max(scene.n_bands if value is None else value.shape[1] for value in given.values())
     names = scene.bands if bands is None and count == scene.n_bands else bands_of(bands, count, scene.source)
     changed, kept = {"bands": names}, {}
     for what, value in given.items():
-        if value is None and own[what].shape[1] == count:
+        if value is None and scene.n_bands == count:
             kept[f"own_{what}"] = getattr(patches, f"own_{what}")
             continue
-        values = widened(own[what] if value is None else value, count, what)
+        values = widened(getattr(patches, what) if value is None else value, count, what)
         front, back = _of_faces(patches, values)
         changed |= {what: front, f"back_{what}": back, f"{what}_paint": None}
         cut = Patches(replace(scene, **{what: front, f"back_{what}": back, f"{what}_paint": None}), patches.columns, patches.rows)

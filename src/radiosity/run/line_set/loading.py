@@ -19,6 +19,8 @@ from .model import LineSet
 from .problem import some_backs_pass
 from .saving import FORMAT
 
+FACTS = {"device": str, "budget": dict, "choices": dict, "versions": dict}  # of a provenance, that a solution needs or is told
+
 
 def load_lines(path) -> LineSet:
     """Read a line set saved by `LineSet.save`. The file stands alone: it has the scene too.
@@ -47,6 +49,8 @@ def _restore(arrays: dict[str, Any], meta: dict[str, Any]) -> LineSet:
         _that(type(value) is int and value >= least, f"{name} {value!r}")
     validate_patches(patches, n)
     provenance = meta["provenance"]
+    for name, kind in FACTS.items():
+        _that(isinstance(provenance[name], kind), f"the provenance has the {name} {provenance[name]!r}")
     for name, now in (("geometry", patches.scene.geometry_hash), ("cut", patches.cut_hash)):
         _that(provenance[name] == now, f"its {name} is not the one that the lines were traced in")
     _that(keys.dtype == np.uint64 and counts.dtype == np.uint32 and keys.ndim == 1 and keys.shape == counts.shape, "other counts")

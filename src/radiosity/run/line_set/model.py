@@ -1,6 +1,5 @@
 """The line set: lines counted between patches, replicates apart. It is made once and solves any emission and reflectance."""
 
-import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -101,12 +100,11 @@ class LineSet:
             bands: names of the bands.
 
         Returns:
-            The solution, with errors from the replicates. It holds no counts: to have more lines, go on with the line set.
+            The solution, with errors from the replicates. It holds no counts, so more lines come from the line set alone.
 
         Raises:
             SceneError: nothing emits, other shapes, or values out of range. MethodError: no such surface.
         """
-        begun = time.perf_counter()
         patches = relit(self.patches, emission, reflectance, bands)
         if not patches.emission.any():
             raise SceneError(
@@ -123,8 +121,7 @@ class LineSet:
         if self.method.lines == "local":
             warn_of_starved(patches, self.pairs.lines)
         warn_of_few_ends(self.method, self.rays / self.replicates / len(patches))
-        about = {"line_set": self.provenance, "solve_seconds": time.perf_counter() - begun}
-        return replace(solution, state={}, provenance=solution.provenance | about)
+        return replace(solution, state={}, provenance=solution.provenance | {"line_set": self.provenance})
 
     def save(self, path) -> None:
         """Write an NPZ file that `radiosity.load_lines` reads.
