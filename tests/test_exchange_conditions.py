@@ -40,6 +40,7 @@ def patches():
         ({"temperature": {"*": 300}, "emissivity": {"*": 1.01}}, "emissivity of surface 'x low' is 1.01"),
         ({"temperature": {"*": 300}, "emissivity": [0.1, 0.2]}, "give one number, or one for each of 1 bands"),
         ({"temperature": {"*": 300}, "wavelengths": [3, 3]}, "wavelengths are \\[3, 3\\]; give the edges"),
+        ({"temperature": {"*": 300}, "wavelengths": range(1, 200)}, "wavelengths are 199 edges between bands; 100 are the most"),
         ({"temperature": {"*": 300}, "wavelengths": [3], "emissivity": {"x*": 0.1}}, "no emissivity is given for 'y low'"),
         ({"adiabatic": ["*"]}, "no surface has a temperature, and there are no surroundings"),
         ({"adiabatic": ["*"], "surroundings": 300}, "the temperature of 'x low', .* is not determined"),
@@ -171,6 +172,7 @@ def test_a_toml_scene_holds_conditions(tmp_path):
         ("emissivity = [0.1, 0.2, 0.3]", "wavelengths = [3]", "emissivity has 3 numbers; .* makes 2 bands"),
         ("adiabatic = true", "wavelengths = [8, 3]", "ascending"),
         ("adiabatic = true", "surroundings = -4", "surroundings"),
+        ("adiabatic = true", f"wavelengths = {list(range(1, 200))}", "wavelengths.*at most 100"),
         ('adiabatic = true\n[[surface]]\nname = "*"\nflux = 3', "", "flux is W of one whole surface; give 'walls.*', 'load.*'"),
     ],
 )

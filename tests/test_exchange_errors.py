@@ -6,6 +6,7 @@ from scipy.stats import chi2
 from test_exchange import WALLS, big_box, black, net, scene_of
 
 import radiosity as rd
+from radiosity.exchange.estimate import Estimator
 from radiosity.exchange.jackknife import Jackknife
 from radiosity.scene.shapes import box, quad
 
@@ -97,6 +98,25 @@ def test_an_error_is_reached(error_of):
     lines = rd.trace_lines(patches, quanta=heat.quanta)
     again = rd.radiative_exchange(lines, {"z *": 300, "x *": 310, "z low": 400}, adiabatic=["y *"], emissivity=0.5)
     assert np.array_equal(again.net, heat.net)  # in any stages
+
+
+def test_an_interrupted_run_returns_the_last_stage(monkeypatch):
+    patches, *_ = big_box()
+    stages, estimate = [], Estimator.estimate
+
+    def interrupted(self, pairs, **options):
+        stages.append(int(pairs.counts.sum()))
+        if len(stages) > 2:
+            raise KeyboardInterrupt
+        return estimate(self, pairs, **options)
+
+    monkeypatch.setattr(Estimator, "estimate", interrupted)
+    heat = rd.radiative_exchange(patches, {"*": 300, "z low": 400}, emissivity=0.5, error=1e-6)
+    assert heat.status == "interrupted"
+    assert heat.rays == stages[1]
+    assert heat.net[4] > 0
+    with pytest.raises(KeyboardInterrupt):
+        rd.radiative_exchange(patches, {"*": 300, "z low": 400}, emissivity=0.5, rays=1_000)
 
 
 def test_an_error_that_is_not_reached_is_told():

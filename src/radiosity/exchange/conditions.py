@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
 from ..patches.model import Patches
-from ..scene.heat import HOTTEST, Heat
+from ..scene.heat import HOTTEST, MOST_EDGES, Heat
 from ..scene.named import surfaces_called
 
 
@@ -139,6 +139,8 @@ def _edges(given) -> tuple[float, ...]:
         edges = (math.nan,)
     if not all(math.isfinite(edge) and edge > 0 for edge in edges) or any(np.diff(edges) <= 0):
         raise SceneError(f"wavelengths are {given!r}; give the edges between bands in micrometres, above 0 and ascending")
+    if len(edges) > MOST_EDGES:
+        raise SceneError(f"wavelengths are {len(edges):,} edges between bands; {MOST_EDGES} are the most")
     return edges
 
 

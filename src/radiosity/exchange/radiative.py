@@ -118,14 +118,22 @@ def radiative_exchange(
 
 
 def _until(target: Target, estimator: Estimator, rays: float | None, options: dict):
-    """Trace in stages that double until the error is reached; return lines, estimate and status."""
+    """Trace in stages that double until the error is reached; return lines, estimate and status.
+
+    Ctrl-C returns those of the last stage that was solved.
+    """
     patches, most = estimator.patches, float(MOST if rays is None else rays)
     goal = min(max(FIRST * len(patches), 2000 * options["replicates"]), most)
-    lines, first = None, True
+    last = None
     while True:
-        lines = trace(patches, estimator.conditions, goal, lines, **options)
-        found = estimator.estimate(lines.pairs, tell=first)
-        bound, first = target.reached(found, options["replicates"]), False
+        try:
+            lines = trace(patches, estimator.conditions, goal, last and last[0], **options)
+            found = estimator.estimate(lines.pairs, tell=last is None)
+        except KeyboardInterrupt:
+            if last is None:
+                raise
+            return *last, "interrupted"
+        bound, last = target.reached(found, options["replicates"]), (lines, found)
         if bound <= target.error:
             return lines, found, "complete"
         if lines.status == "interrupted":

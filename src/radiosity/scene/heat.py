@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+MOST_EDGES = 100  # between bands of wavelength
 HOTTEST = 1e6  # K; a larger number is an error of units, or of typing
 
 

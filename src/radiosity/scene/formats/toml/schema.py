@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from ....errors import SceneError, shown
-from ...heat import HOTTEST
+from ...heat import HOTTEST, MOST_EDGES
 
 Unit = Literal["m", "cm", "mm", "in", "ft"]
 Positive = Annotated[float, Field(gt=0)]
@@ -99,7 +99,9 @@ class SceneFile(_Table):
     scale: Positive = 1.0
     photometric: bool | None = None
     surroundings: Annotated[float, Field(ge=0, le=HOTTEST)] | None = None
-    wavelengths: Annotated[list[Positive], AfterValidator(_ascending), BeforeValidator(_listed)] = []
+    wavelengths: Annotated[
+        list[Positive], AfterValidator(_ascending), BeforeValidator(_listed), Field(max_length=MOST_EDGES)
+    ] = []
     surface: list[Surface] = []
     camera: list[View] = []
 
