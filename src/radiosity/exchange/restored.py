@@ -149,7 +149,8 @@ def _from(factors, found: Nearest, one, other, samples: np.ndarray, place: np.nd
     if factors.method != "lines":
         own = np.zeros(len(one))  # what is zero stays zero, and keeps its error
         np.maximum.at(own, place, np.where(factors.values == 0, factors.errors * factors.area[factors.rows], 0))
-        errors = np.where(values == 0, own[pair], np.sqrt(found.variance[pair])) / area
+        known = np.sqrt(found.variance[pair]) if factors.replicates > 1 else np.nan
+        errors = np.where(values == 0, own[pair], known) / area
         hits = np.full(len(rows), -1)
     elif factors.replicates > 1:
         mean, spread = mean_and_error(samples[:, pair])
