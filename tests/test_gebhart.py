@@ -10,7 +10,7 @@ import pytest
 from enclosures import parallel_squares, sphere_in_box
 
 import radiosity as rd
-from radiosity.scene.shapes import box
+from radiosity.scene.shapes import box, quad
 from validation.closed_forms.enclosures import box_factors
 from validation.closed_forms.rectangles import parallel, perpendicular
 from validation.shapes import scene
@@ -94,3 +94,11 @@ def test_wrong_emissivities_are_refused():
         rd.gebhart_factors(lines.patches, emissivity=0.5)  # pyright: ignore[reportArgumentType]
     one = rd.trace_lines(lines.patches, rays=1000, replicates=1)
     assert np.isnan(rd.gebhart_factors(one, emissivity=[0.5, 0.4]).errors).all()
+
+
+def test_faces_too_narrow_for_lines_are_told():
+    strips = [quad((0, 0, 0), (1, 0, 0), (0, 1e-5, 0)), quad((0, 0, 1e-5), (0, 1e-5, 0), (1, 0, 0))]
+    both = scene(("low", 0.5, 1.0, strips[:1]), ("high", 0.5, 0.0, strips[1:]))
+    lines = rd.trace_lines(rd.subdivide(both, cells=1), rays=2000)
+    with pytest.warns(rd.RadiosityWarning, match="lines leave out a part"):
+        rd.gebhart_factors(lines, emissivity=0.5)

@@ -197,6 +197,9 @@ def test_one_replicate_has_unknown_errors():
     assert np.isnan(factors.standard_error[~own]).all()
     assert np.isnan(factors.restored().errors).all()
     assert np.abs(factors.restored().row_sums - 1).max() < 1e-12
+    polygons = rd.view_factors(with_a_cylinder(), rays=100_000, method="polygons", replicates=1)
+    assert np.isnan(polygons.errors).all()
+    assert np.isnan(polygons.interval()[1][polygons.rows, polygons.columns]).all()
 
 
 def test_groups_by_name_by_label_and_by_side():

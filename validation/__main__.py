@@ -17,7 +17,8 @@ TEXTS = {
     "are extrapolated.",
     "View factors": "One surface emits, all are black: the share of its power that lands on another. Numbers with a C are those "
     "of J. R. Howell's catalogue of configuration factors; the others follow from it by closure, reciprocity, crossed strings "
-    "or as ratios of areas. `tests/test_exact_integrals.py` holds each formula against numerical integration. Round bodies are "
+    "or as ratios of areas. `tests/test_exact_integrals.py` and `tests/test_catalogue.py` hold each formula "
+    "against numerical integration. Round bodies are "
     "of facets with the body's area, of two sizes, and extrapolated; bodies that are 'long' are 400 widths long, and what "
     "leaves through their ends is allowed for.",
     "A furnace, patch by patch": "Emission is one less reflectance, so that radiosity and irradiance are one everywhere.",

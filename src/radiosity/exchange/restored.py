@@ -18,13 +18,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import MethodError, RadiosityWarning
-from ..factors.balance import restored as scaled
-from ..factors.model import Factors
-from ..factors.solve import SCALINGS
 from ..solution.errors import mean_and_error
 from ..solution.intervals import FEW, by_luck
 from .least_squares import Nearest, Unknowns, nearest
-from .restoration import LEAST_SQUARES, RAW, SAMPLED, SCALING
+from .restoration import LEAST_SQUARES, RAW, SAMPLED
+from .restored_many import by_scaling
 
 PRIOR = 8  # degrees of freedom of Poisson's variance
 UNKNOWN = 0.01  # relative error of factors whose errors are unknown: only a weight
@@ -48,7 +46,7 @@ def restored(factors):
             "factors are not reciprocal, and cannot be restored; take them as they are"
         )
     if len(factors) > SAMPLED or factors.samples is None:
-        return _by_scaling(factors)
+        return by_scaling(factors)
     return _by_least_squares(factors)
 
 
@@ -84,7 +82,7 @@ def _by_least_squares(factors):
             RadiosityWarning,
             stacklevel=4,
         )
-        return _by_scaling(factors)
+        return by_scaling(factors)
     assert factors.samples is not None
     return _from(factors, found, one, other, np.array([together(row) for row in factors.samples]), place)
 
@@ -149,7 +147,8 @@ def _from(factors, found: Nearest, one, other, samples: np.ndarray, place: np.nd
     if factors.method != "lines":
         own = np.zeros(len(one))  # what is zero stays zero, and keeps its error
         np.maximum.at(own, place, np.where(factors.values == 0, factors.errors * factors.area[factors.rows], 0))
-        errors = np.where(values == 0, own[pair], np.sqrt(found.variance[pair])) / area
+        known = np.sqrt(found.variance[pair]) if factors.replicates > 1 else np.nan
+        errors = np.where(values == 0, own[pair], known) / area
         hits = np.full(len(rows), -1)
     elif factors.replicates > 1:
         mean, spread = mean_and_error(samples[:, pair])
@@ -171,50 +170,3 @@ def _from(factors, found: Nearest, one, other, samples: np.ndarray, place: np.nd
         hits=hits,
         restoration=LEAST_SQUARES,
     )
-
-
-def _by_scaling(factors):
-    n, inside = len(factors), factors.columns < len(factors)
-    made = Factors(factors.rows[inside], factors.columns[inside], factors.values[inside], factors.escaped, factors.lost)
-    counted = factors.method == "lines"
-    weight = 1 / (factors.line * factors.area) if counted else None
-    new = scaled(made, factors.area, weight, SCALINGS)
-    each = np.arange(n)
-    rows = np.concatenate([new.rows, each, each])
-    columns = np.concatenate([new.columns, np.full(n, n), np.full(n, n + 1)])
-    values = np.concatenate([new.values, new.escaped, new.lost])
-    some = (values > 0) | (columns < n)
-    order = np.flatnonzero(some)[np.lexsort((columns[some], rows[some]))]
-    rows, columns, values = rows[order], columns[order], values[order]
-    return replace(
-        factors,
-        rows=rows,
-        columns=columns,
-        values=values,
-        errors=_errors_of_pairs(factors, rows, columns),
-        samples=None,
-        hits=_of_both(factors, factors.hits.astype(float), rows, columns).astype(np.int64) if counted else np.full(len(rows), -1),
-        restoration=SCALING,
-    )
-
-
-def _of_both(factors, values: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Return the sum of both directions of each entry, (k,)."""
-    n = len(factors)
-    known = factors.rows * (n + 2) + factors.columns
-
-    def at(codes: np.ndarray) -> np.ndarray:
-        place = np.minimum(np.searchsorted(known, codes), len(known) - 1)
-        return np.where(known[place] == codes, values[place], 0.0)
-
-    there = at(rows * (n + 2) + columns)
-    return there + np.where((columns < n) & (columns != rows), at(columns * (n + 2) + rows), 0.0)
-
-
-def _errors_of_pairs(factors, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Return errors of scaled pairs: those of both directions' weighted mean, as if scaling changed nothing."""
-    n = len(factors)
-    weight = 1 / (factors.line * factors.area) if factors.method == "lines" else 1 / factors.area
-    square = (factors.errors * factors.area[factors.rows] * weight[factors.rows]) ** 2
-    both = weight[rows] + np.where((columns < n) & (columns != rows), weight[np.minimum(columns, n - 1)], 0)
-    return np.sqrt(_of_both(factors, square, rows, columns)) / both / factors.area[rows]
