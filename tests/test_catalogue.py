@@ -4,6 +4,8 @@ Forms that were there before are integrated in `test_exact_integrals.py`. 38 com
 degrees of freedom: p = 2e-4) leave a chance of less than 1 % for a false alarm, and seeds are fixed.
 """
 
+import warnings
+
 import numpy as np
 import pytest
 from scipy.integrate import dblquad
@@ -124,8 +126,10 @@ def test_view_factors_are_those_of_closed_forms(case):
         patches = rd.subdivide(case.build(mesh), cells=1)
         names = patches.scene.names
         first = [names[0]] if patches.area[patches.surface == 0].sum() < 0.25 * patches.area.sum() else None
-        rays = 200_000 if len(patches) < 2500 else 500_000
-        factors = rd.view_factors(patches, rays=rays, method="lines", replicates=16, numbers="random", sources=first)
+        rays = 100_000 if len(patches) < 1200 else 500_000
+        with warnings.catch_warnings():  # of long tubes, whose own rows are not looked at
+            warnings.filterwarnings("ignore", ".*faces are so narrow.*'receiver|.*faces are so narrow.*'cylinder")
+            factors = rd.view_factors(patches, rays=rays, method="lines", replicates=16, numbers="random", sources=first)
         row, column = (factors.names.index(names[s]) for s in (0, case.receiver))
         found.append(factors.matrix[row, column])
         square.append(factors.standard_error[row, column] ** 2)

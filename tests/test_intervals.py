@@ -273,3 +273,13 @@ def test_the_time_left_follows_the_run_s_own_slope():
     for stage in range(4):  # noise does not turn it round
         teller.complete(10**7 << stage, 16 << stage, 0.01 * 1.01**stage)
     assert 0.3 < teller.slope < SLOPE
+
+
+def test_powers_near_zero_make_no_overflow():
+    """Of a damaged file: errors that are huge beside the values. The cluster is large, and finite."""
+    tiny, huge, one = np.full((3, 1), 1e-200), np.full((3, 1), 1e50), np.ones(3)
+    together = intervals.cluster(tiny, huge, np.array([1, 2, 3]), one)
+    assert together.tolist() == [intervals.MOST_TOGETHER]
+    low, high = intervals.irradiance_bounds(tiny, np.array([1, 2, 3]), one, 0.975, together)
+    assert np.isfinite(low).all()
+    assert np.isfinite(high).all()

@@ -38,7 +38,7 @@ app = App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-for place, command in enumerate((solve, exchange, factors, methods, lines, relight, render, check, experiment, doctor)):
+for place, command in enumerate((solve, methods, lines, relight, factors, exchange, render, check, experiment, doctor)):
     app.command(command, sort_key=place)
 
 

@@ -3,7 +3,7 @@
 A pilot traces a few lines of every patch (`algorithms.gather.pilot`). It tells the variance of the lines of a gather, and a rough
 solution, from which the errors of a random walk and of iterations with a control variate follow. The least error for equal work
 is taken, by a table of costs; no clock is read. So the choice is a function of the scene, the seed and the budget in lines or
-quanta, and quanta replay it.
+quanta. Quanta replay a run with the method that was chosen, which the solution holds.
 """
 
 from dataclasses import dataclass, field
@@ -50,11 +50,13 @@ class Choice:
         method: what to solve with.
         facts: what the provenance holds: the name, why it was chosen, and lines of the pilot that the method does not count.
         geometry: the scene on the device, where the pilot has made it.
+        seconds: what it took to choose; they are seconds of the run.
     """
 
     method: Method
     facts: dict
     geometry: Geometry | None = field(default=None, repr=False)
+    seconds: float = 0.0
 
     @property
     def extra_lines(self) -> int:

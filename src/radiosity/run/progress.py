@@ -43,11 +43,16 @@ Listener = Callable[[Progress], None]
 
 
 class Teller:
-    """The counter of a run's lines, which tells a listener how far the run is."""
+    """The counter of a run's lines, which tells a listener how far the run is.
 
-    def __init__(self, budget: Budget, listener: Listener | None):
+    Args:
+        seconds: that the run has taken already.
+    """
+
+    def __init__(self, budget: Budget, listener: Listener | None, seconds: float = 0.0):
         self.budget, self.listener = budget, listener
-        self.begun = self.tracing_since = time.perf_counter()
+        self.tracing_since = time.perf_counter()
+        self.begun = self.tracing_since - seconds
         self.stage, self.lines, self.lines_before, self.error, self.bound = 0, 0, 0, math.nan, math.nan
         self.lines_a_quantum = 0.0
         self.known: list[tuple[float, float]] = []  # logarithms to base 2 of lines and error after each stage

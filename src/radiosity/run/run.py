@@ -81,7 +81,7 @@ class Run(Generic[R]):
         self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = part.rung(method.order, self.problem.source.share)
         part.check(method, budget, self.rung)
-        self.teller, self.stop = Teller(budget, listener), Stop()
+        self.teller, self.stop = Teller(budget, listener, 0.0 if choice is None else choice.seconds), Stop()
         self.error_of, self.target = error_of, Target.of(patches, error_of)
         self.teller.tell("compiling")
         if choice is not None and budget.rays is not None:  # lines of the pilot are lines

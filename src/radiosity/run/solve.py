@@ -1,6 +1,8 @@
 """`solve`, which makes a solution from a scene."""
 
+from dataclasses import replace
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,10 +63,11 @@ def solve(
             is random-walk with them. Without ``warm_up`` another order or other lines than the method's drop its warm-up.
         rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
-            scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run bit
-            for bit. An error alone may have a limit beside it, rays, seconds or both. Where it is not reached within that, or
-            within what counters hold (2^32 lines for each replicate), or where there are too few hits to know it, the status is
-            "not reached" and a warning says what is known.
+            scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run of
+            the same method bit for bit ("auto" may choose another: name the one that it chose). An error alone may have a limit
+            beside it, rays, seconds or both. Where it is not reached within that, or within what counters hold (2^32 lines for
+            each replicate), or where there are too few hits to know it, the status is "not reached" and a warning says what is
+            known.
         error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead; or
             "mean:NAME": that of the mean irradiance over it, as `Solution.surface_interval` tells it.
         replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.
@@ -168,7 +171,9 @@ def prepared(
     if isinstance(chosen, Auto):
         from .choice import choice_for
 
+        begun = perf_counter()
         choice = choice_for(scene, budget, part, device, resume)
+        choice = replace(choice, seconds=perf_counter() - begun)
         chosen = choice.method
     refuse_open(scene.scene, chosen)
     keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, chosen)

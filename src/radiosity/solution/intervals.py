@@ -14,6 +14,7 @@ from ..pieces import pieces
 
 FEW = 30  # hits, all replicates together: Student's intervals of patches with fewer are too narrow (docs/errors.md)
 ROUNDING = 1e-13  # relative rounding error of sums over replicates
+MOST_TOGETHER = 1e18  # lines; more are traced by no run
 QUANTITIES = ("radiosity", "irradiance")
 
 
@@ -84,8 +85,9 @@ def cluster(irradiance: np.ndarray, error: np.ndarray, arrivals: np.ndarray, are
     """
     here = (arrivals > 0) & (arrivals < FEW)
     power, count = irradiance[here] * area[here, None], arrivals[here, None]
-    relative = np.divide(error[here] * area[here, None] * count, power, out=np.zeros_like(power), where=power > 0)
-    return np.maximum((relative**2).sum(axis=0) / max(int(count.sum()), 1), 1)
+    with np.errstate(over="ignore"):  # of powers near zero
+        relative = np.divide(error[here] * area[here, None] * count, power, out=np.zeros_like(power), where=power > 0)
+        return np.clip((relative**2).sum(axis=0) / max(int(count.sum()), 1), 1, MOST_TOGETHER)
 
 
 def count_bounds(count: np.ndarray, level: float, cluster: np.ndarray | float = 1.0) -> tuple[np.ndarray, np.ndarray]:

@@ -26,9 +26,10 @@ def factors(own: np.ndarray, reflectance: np.ndarray, received: np.ndarray, miss
         missed: (replicates, n_patches) how many lines of each patch missed all others.
         lines: (n_patches,) how many lines each patch fired.
     """
+    received, missed = np.ascontiguousarray(received), np.ascontiguousarray(missed)  # sums depend on how arrays lie in memory
     share, mean = missed / lines, received.mean(axis=0)
     sent = own + reflectance * received
-    imbalance = own.sum() - received @ (1 - reflectance) - (sent * share).sum(axis=1)
+    imbalance = own.sum() - (received * (1 - reflectance)).sum(axis=1) - (sent * share).sum(axis=1)
     usual = share.mean(axis=0)  # replicates together: in one of them all lines of a patch may miss, or none, by chance
     taken = 1 - reflectance + reflectance * usual
     variance = np.minimum(received.var(axis=0, ddof=1), mean**2) if len(received) > 1 else np.zeros(len(mean))
@@ -37,10 +38,10 @@ def factors(own: np.ndarray, reflectance: np.ndarray, received: np.ndarray, miss
     whole = max(float((imbalance**2).mean()), alone + of_missed)
     if whole == 0:
         return np.ones_like(received)
-    absorbed = (received * (1 - reflectance + reflectance * share)).sum(axis=1)
-    even = (1 - (alone + of_missed) / whole) * _ratio(imbalance, absorbed)
+    absorbed = received * (1 - reflectance + reflectance * share)
+    even = (1 - (alone + of_missed) / whole) * _ratio(imbalance, absorbed.sum(axis=1))
     relative = _ratio(taken * variance, mean)
-    of_each = alone / whole * _ratio(imbalance, (received * (1 - reflectance + reflectance * share)) @ relative)
+    of_each = alone / whole * _ratio(imbalance, (absorbed * relative).sum(axis=1))
     return np.clip(1 + even[:, None] + of_each[:, None] * relative, *LIMITS)
 
 

@@ -1,0 +1,90 @@
+"""`method="auto"`: what it chooses by each rule, and that its runs come again to the bit."""
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+from radiosity.algorithms.gather.pilot import LINES
+from radiosity.run import choice as choice_module
+from radiosity.run import solve as solve_module
+from radiosity.scene.shapes import quad
+
+pytestmark = pytest.mark.filterwarnings("ignore::radiosity.errors.RadiosityWarning")  # of few lines
+ROOM, FURNACE = (rd.subdivide(rd.load_scene(name), cells=cells) for name, cells in (("room", 4), ("labyrinth-0.5", 2)))
+CONTROL = "stochastic-jacobi-control-variate"
+
+
+def chosen(patches: rd.Patches, **options) -> dict:
+    return rd.solve(patches, seed=3, **options).provenance["auto"]
+
+
+@pytest.mark.parametrize(("patches", "name"), [(ROOM, "gather"), (FURNACE, CONTROL)])
+def test_the_least_predicted_error_is_taken_and_told(patches, name):
+    solution = rd.solve(patches, rays=200 * len(patches))
+    told = solution.provenance["auto"]
+    assert told["chosen"] == name
+    assert told["why"].startswith(f"predicted errors for equal work: {name} 1, ")
+    assert f"chosen    {name}: {told['why']}" in solution.report()
+    assert solution.provenance["choices"]["order"] == rd.PRESETS[name].method.order
+
+
+def test_few_lines_go_to_the_walk_without_a_pilot(monkeypatch):
+    monkeypatch.setattr(choice_module.pilot.Pilot, "of", None)
+    told = chosen(ROOM, rays=63 * len(ROOM))
+    assert (told["chosen"], told["pilot_lines"]) == ("random-walk", 0)
+    assert "fewer than 64 lines a patch" in told["why"]
+
+
+def test_a_pilot_of_much_work_is_left_out(monkeypatch):
+    monkeypatch.setattr(choice_module, "ENTRY", 1e5)
+    assert chosen(ROOM, rays=200 * len(ROOM))["chosen"] == "random-walk"
+    monkeypatch.setattr(choice_module, "ENTRY", 1e9)
+    assert "a pilot would take the work of" in chosen(ROOM, error=0.5)["why"]
+
+
+def test_backs_that_let_lines_pass_go_to_the_walk():
+    corners = np.concatenate([quad((0, 0, z), (1, 0, 0), (0, 1, 0)) for z in (0.0, 1.0, 0.5)])
+    faces = np.arange(12).reshape(-1, 4)
+    scene = rd.Scene.from_arrays(corners, faces, 0.5, [1.0, 0.0, 0.0], back=[rd.Back.PASSES] * 3)
+    assert "lines pass through some backs" in chosen(rd.subdivide(scene, cells=3), rays=20_000)["why"]
+
+
+def test_black_scenes_go_to_the_walk():
+    corners = np.concatenate([quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0, 0, 1), (0, 1, 0), (1, 0, 0))])
+    scene = rd.Scene.from_arrays(corners, np.arange(8).reshape(-1, 4), 0.0, [1.0, 0.0])
+    told = chosen(rd.subdivide(scene, cells=3), rays=20_000)
+    assert (told["chosen"], told["pilot_lines"]) == ("random-walk", 18 * LINES)
+
+
+@pytest.mark.parametrize("patches", [ROOM, FURNACE], ids=["room", "furnace"])
+@pytest.mark.parametrize("budget", [{"rays": 50}, {"rays": 65}, {"rays": 200}, {"error": 0.3}], ids=str)
+def test_what_was_chosen_replays_to_the_bit(patches, budget):
+    """Also near the border of the rules, where `auto` itself may choose otherwise by quanta."""
+    options = {name: value * len(patches) if name == "rays" else value for name, value in budget.items()}
+    solution = rd.solve(patches, seed=3, **options)
+    again = rd.solve(patches, rd.Method(**solution.provenance["choices"]), seed=3, quanta=solution.quanta)
+    assert np.array_equal(solution.irradiance, again.irradiance)
+
+
+def test_a_run_that_goes_on_keeps_its_method():
+    first = rd.solve(FURNACE, seed=3, rays=50 * len(FURNACE))
+    assert first.provenance["auto"]["chosen"] == "random-walk"
+    on = rd.solve(FURNACE, seed=3, quanta=20 * first.quanta, resume=first)
+    assert on.provenance["choices"] == first.provenance["choices"]
+    assert chosen(FURNACE, quanta=20 * first.quanta)["chosen"] == CONTROL
+
+
+def test_lines_of_the_pilot_are_lines():
+    """The control variate does not count them itself; of so many lines its iterations take 5 % more or less."""
+    rays = 1000 * len(FURNACE)
+    solution = rd.solve(FURNACE, seed=3, rays=rays)
+    assert solution.provenance["auto"]["pilot_lines"] == LINES * len(FURNACE)
+    assert solution.rays <= 1.05 * rays
+
+
+def test_seconds_of_the_pilot_are_seconds_of_the_run(monkeypatch):
+    """By a clock that says a hundred of them passed."""
+    clock = iter([0.0, 100.0])
+    monkeypatch.setattr(solve_module, "perf_counter", lambda: next(clock))
+    solution = rd.solve(ROOM, seconds=50)
+    assert 100 <= solution.seconds < 150
