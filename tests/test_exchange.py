@@ -240,6 +240,18 @@ def test_a_thin_cavity_is_parallel_plates(emissivity):
     assert near(heat.net[0], exact, heat.net_standard_error[0], of=1e-4)
 
 
+@pytest.mark.parametrize("gap", [1e-5, 1e-6])
+def test_gaps_of_microns(gap):
+    """Aspect ratios of 10^5 and 10^6: no line of such a run meets the rims, which is in the bars."""
+    edges = (1.0, 1.0 + 2 * gap)
+    heat = rd.radiative_exchange(
+        rd.subdivide(cubes(*edges), cells=1), {"cube 0": 300, "cube 1": 77}, emissivity=0.9, rays=100_000
+    )
+    exact = (black(300) - black(77)) / resistance(edges, (0.9, 0.9))
+    assert near(heat.net[0], exact, heat.net_standard_error[0])
+    assert 0 < heat.net_standard_error[0] < 1e-4 * exact
+
+
 def test_plates_in_the_open_give_heat_to_the_surroundings():
     """Two unit squares at distance one (C-11) below surroundings of 77 K: a network of three."""
     scene = scene_of([("hot", [quad((0, 0, 0), (1, 0, 0), (0, 1, 0))]), ("cold", [quad((0, 0, 1), (0, 1, 0), (1, 0, 0))])])

@@ -57,6 +57,16 @@ CASES = {
         )
         for scene, quanta in (("one, radiates", 1), ("one, passes", 64), ("plates", 58), ("cube", 96), ("coloured", 1024))
     },
+    **{
+        f"heat of {scene}": (
+            scene,
+            [
+                f"exchange a.toml --cells 1 --rays {rays} --temperature *=300 --emissivity *=0.5 --surroundings 280 -o o.csv",
+                f"exchange a.toml --cells 1 --rays {rays} --adiabatic * --emissivity *=0.5 --surroundings 280 --replicates 1",
+            ],
+        )
+        for scene, rays in (("one, absorbs", 8), ("one, radiates", 64), ("plates", 1000))
+    },
 }
 
 

@@ -1984,10 +1984,17 @@ MISTAKES = (
     ),
     Mistake(
         "exchange/few_lines.py",
-        "np.sqrt(np.maximum(counts, 1)), 0)",
-        "np.sqrt(counts), 0)",
+        "np.sqrt(np.maximum(counts, 1)), agreed[:k])",
+        "np.sqrt(counts), agreed[:k])",
         ("test_exchange_errors.py",),
         "a pair that no line joined is known to exchange nothing",
+    ),
+    Mistake(
+        "exchange/few_lines.py",
+        "1)), agreed[:k])",
+        "1)), 0)",
+        ("test_exchange.py",),
+        "replicates that agree to rounding make an exchange certain",
     ),
     Mistake(
         "exchange/openings.py",

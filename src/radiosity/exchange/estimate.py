@@ -8,6 +8,7 @@ import numpy as np
 from ..errors import SceneError, shown
 from ..factors.counted import CountedPairs
 from ..patches.model import Patches
+from ..solution.intervals import by_luck
 from . import few_lines, openings
 from .balance import Balance, above, balance, reference
 from .conditions import Conditions
@@ -107,9 +108,10 @@ class Estimator:
         conditions, surface, k = self.conditions, self.patches.surface, len(self.floats)
         around = conditions.surroundings
         emitted = None if around is None else float(above(around, reference(conditions)))
-        few = few_lines.watts(pooled, self.patches, whole.radiosity, emitted)
         value = {name: np.where(np.isfinite(one.value), one.value, one.whole) for name, one in sums.items()}
         error = {name: one.error for name, one in sums.items()}
+        agreed = by_luck(value["exchange"], error["exchange"])
+        few = few_lines.watts(pooled, self.patches, whole.radiosity, emitted, agreed)
         of_net = np.sqrt((few**2).sum(axis=1))
         net, net_error = value["net"], np.hypot(error["net"], of_net)
         net[:k][self.floats], net_error[:k][self.floats] = np.nan_to_num(conditions.flux[self.floats]), 0.0  # NaN: no patch
