@@ -55,6 +55,7 @@ def far_apart() -> rd.Patches:
     return rd.subdivide(scene_of(parts), cells=1)
 
 
+@pytest.mark.filterwarnings("ignore:.*so narrow")  # 1 cm, 60 m away
 def test_a_pair_that_no_line_joined_is_not_known_to_exchange_nothing():
     patches = far_apart()
     heat = rd.radiative_exchange(patches, {"hot": 1000, "far": 300}, emissivity=1, surroundings=300, rays=2_000)
@@ -119,6 +120,7 @@ def test_an_interrupted_run_returns_the_last_stage(monkeypatch):
         rd.radiative_exchange(patches, {"*": 300, "z low": 400}, emissivity=0.5, rays=1_000)
 
 
+@pytest.mark.filterwarnings("ignore:.*so narrow")  # 1 cm, 60 m away
 def test_an_error_that_is_not_reached_is_told():
     patches = far_apart()
     options = {"emissivity": 1, "surroundings": 0, "error": 0.01, "rays": 20_000}
@@ -134,3 +136,18 @@ def test_lines_of_small_heaters_are_not_few():
     heat = rd.radiative_exchange(patches, {"walls": 300, "heater": 1200}, emissivity=0.8, rays=20_000)
     exact = (black(1200) - black(300)) * heat.area[1] / (1 / 0.8 + heat.area[1] / heat.area[0] * (1 / 0.8 - 1))
     assert heat.net[1] == pytest.approx(exact, rel=1e-3)
+
+
+def test_faces_too_narrow_for_lines_are_told():
+    strips = np.array(
+        [[[0, 0, 0], [1, 0, 0], [1, 1e-5, 0], [0, 1e-5, 0]], [[0, 0, 1e-5], [0, 1e-5, 1e-5], [1, 1e-5, 1e-5], [1, 0, 1e-5]]]
+    )
+    faces = np.arange(8).reshape(-1, 4)
+    scene = rd.Scene.from_arrays(strips.reshape(-1, 3), faces, 0.5, 0.0, surface=[0, 1], names=["low", "high"])
+    with pytest.warns(rd.RadiosityWarning, match="faces are so narrow"):
+        rd.radiative_exchange(rd.subdivide(scene, cells=1), {"*": 300}, emissivity=0.5, surroundings=300, rays=20_000)
+
+
+def test_the_report_tells_what_the_bars_leave_out():
+    scene = rd.subdivide(rd.load_scene("labyrinth"), cells=1)
+    assert "not the size of patches" in str(rd.radiative_exchange(scene, {"floor": 310, "*": 290}, emissivity=0.9, rays=100_000))

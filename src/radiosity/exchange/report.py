@@ -7,6 +7,7 @@ from ..errors import printable
 
 SIGN = "net: heat that a surface gives off to the others; positive: it must be heated, negative: it must be cooled"
 SURROUNDINGS = "surroundings"  # name of the last row of tables
+MESH = "± holds what lines leave unknown, not the size of patches: finer ones (--cells, --patch-size) show what that is"
 WIDE = 1000  # columns; names are never cut off
 
 
@@ -40,7 +41,7 @@ def report(found) -> str:
     lines = [line.rstrip() for line in text.getvalue().splitlines()]
     head = f"radiative exchange: {found.rays:,} lines, {found.replicates} replicates, {len(found.patches):,} patches, "
     head += f"{found.seconds:.2g} s" + ("" if found.status == "complete" else f", {found.status}")
-    return "\n".join([head, *lines, SIGN, *_unknown(found)])
+    return "\n".join([head, *lines, SIGN, MESH, *_unknown(found)])
 
 
 def _unknown(found) -> list[str]:
