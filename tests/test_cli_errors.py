@@ -132,7 +132,19 @@ def test_version_and_help(capsys):
     assert err == ""
     commands = [line.split()[1] for line in out.splitlines() if line.startswith("│ ") and not line.startswith("│ -")]
     listed = [command for command in commands if command in app.app]
-    assert listed == ["solve", "methods", "lines", "relight", "factors", "exchange", "render", "check", "experiment", "doctor"]
+    assert listed == [
+        "solve",
+        "methods",
+        "lines",
+        "relight",
+        "factors",
+        "conductors",
+        "exchange",
+        "render",
+        "check",
+        "experiment",
+        "doctor",
+    ]
 
 
 @pytest.mark.parametrize("command", ["solve", "render", "check", "experiment", "doctor"])

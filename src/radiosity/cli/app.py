@@ -10,6 +10,7 @@ from cyclopts import App, CoercionError, CycloptsError
 from ..errors import INSTALL, DeviceError, RadiosityError, RadiosityWarning
 from . import interrupts
 from .check import check
+from .conductors import conductors
 from .doctor import doctor
 from .exchange import exchange
 from .experiment import experiment
@@ -38,7 +39,9 @@ app = App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
-for place, command in enumerate((solve, methods, lines, relight, factors, exchange, render, check, experiment, doctor)):
+for place, command in enumerate(
+    (solve, methods, lines, relight, factors, conductors, exchange, render, check, experiment, doctor)
+):
     app.command(command, sort_key=place)
 
 

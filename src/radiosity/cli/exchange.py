@@ -123,9 +123,9 @@ def exchange(
     asked = any(value is not None for value in cut.values())
     patches = rd.subdivide(loaded, **cut) if isinstance(loaded, rd.Scene) and asked else loaded
     conditions = {
-        "temperature": _values(given.temperature, "temperature"),
-        "emissivity": _values(given.emissivity, "emissivity", several=True),
-        "flux": _values(given.flux, "flux"),
+        "temperature": named_numbers(given.temperature, "temperature"),
+        "emissivity": named_numbers(given.emissivity, "emissivity", several=True),
+        "flux": named_numbers(given.flux, "flux"),
         "adiabatic": given.adiabatic,
         "isothermal": given.isothermal,
         "surroundings": given.surroundings,
@@ -149,7 +149,7 @@ def _write(found, path: Path) -> None:
     tell(f"wrote {printable(path)}")
 
 
-def _values(given: tuple[str, ...], what: str, *, several: bool = False) -> dict:
+def named_numbers(given: tuple[str, ...], what: str, *, several: bool = False) -> dict:
     """Values by name, from NAME=VALUE; the last = divides."""
     found: dict = {}
     for text in given:

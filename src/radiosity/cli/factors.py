@@ -103,7 +103,7 @@ def factors(
     options: dict[str, Any] = asdict(tracing) | {"sources": tracing.sources or None}
     for name in ("patch_size", "cells"):
         del options[name]
-    chosen: str | dict = _merged(merge) if merge else group
+    chosen: str | dict = merged_groups(merge) if merge else group
     with bar() as progress:
         found = rd.view_factors(cut, group=chosen, progress=progress, **options)
     result = found if raw or not found.reciprocal else found.restored()
@@ -114,7 +114,7 @@ def factors(
     return interrupts.status() if found.status == "interrupted" else 0
 
 
-def _merged(texts: tuple[str, ...]) -> dict[str, list[str]]:
+def merged_groups(texts: tuple[str, ...]) -> dict[str, list[str]]:
     """Return groups by name, from NAME=SURFACE,SURFACE."""
     groups: dict[str, list[str]] = {}
     for text in texts:
