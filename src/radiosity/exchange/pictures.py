@@ -51,9 +51,14 @@ def exchange(found, path: Path) -> None:
     axes.set_xlabel("to")
     axes.set_ylabel("from")
     for i, j in np.argwhere(watts > 0):
-        axes.text(j, i, f"{watts[i, j]:.3g}", ha="center", va="center", fontsize=7)
+        axes.text(j, i, _watts(watts[i, j]), ha="center", va="center", fontsize=7)
     left = "" if len(rows) == (size > 0).sum() else f" ({len(rows)} surfaces that exchange most)"
     axes.set_title(f"net heat straight from one to another [W]{left}", fontsize=9)
     figure.colorbar(shades, ax=axes, label="W")
     with replacing(path) as temporary:
         figure.savefig(temporary, format="png")
+
+
+def _watts(value: float) -> str:
+    """Return three digits at least, and no exponent below a million: 3,020 rather than 3.02e+03."""
+    return f"{value:,.0f}" if 100 <= abs(value) < 1e6 else f"{value:.3g}"
