@@ -10,7 +10,7 @@ WORKERS := 2
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 python; do \
 	"$$p" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo "$$p"; break; }; done)
 
-.PHONY: help demo test coverage bench bench-compare bench-error validate docs check ci clean
+.PHONY: help demo test coverage bench bench-compare bench-error bench-heat validate docs check ci clean
 
 help:
 	@echo 'make demo    solve a furnished room in colour and write a picture, a mesh and the numbers into $(OUT)/'
@@ -19,6 +19,7 @@ help:
 	@echo 'make bench   print lines per second against the bare ray caster, and add the figures to benchmarks/history.jsonl'
 	@echo 'make bench-compare  ratios of the last two runs of make bench'
 	@echo 'make bench-error  seconds to 1 % and 0.3 % of error against long references (ARGS=--quick: minutes)'
+	@echo 'make bench-heat  CPU seconds of view factors to the error that raystrack and pyviewfactor reach'
 	@echo 'make validate  compare with exact solutions, Mitsuba and Radiance, and write docs/validation (ARGS=--quick: a minute)'
 	@echo 'make docs    build the documentation site into build/docs'
 	@echo 'make check   lint and types'
@@ -46,6 +47,9 @@ bench-compare: $(VENV)/.developer
 
 bench-error: $(VENV)/.developer
 	$(BIN)/python benchmarks/error.py $(ARGS)
+
+bench-heat: $(VENV)/.peers
+	$(BIN)/python benchmarks/heat.py $(ARGS)
 
 validate: $(VENV)/.developer
 	$(BIN)/python -m validation $(ARGS)
@@ -81,6 +85,11 @@ $(VENV)/.user: pyproject.toml $(VENV)/.made
 $(VENV)/.developer: pyproject.toml $(VENV)/.made
 	@echo 'installing radiosity and the tools of its developers into $(VENV)'
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all,dev]'
+	@touch $@
+
+$(VENV)/.peers: pyproject.toml $(VENV)/.developer
+	@echo 'installing the peers of make bench-heat into $(VENV)'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all,dev,heat-peers]'
 	@touch $@
 
 $(VENV)/.writer: pyproject.toml $(VENV)/.made

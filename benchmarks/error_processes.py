@@ -1,4 +1,6 @@
-"""Processes of ``make bench-error``: one a scene and method, with the package of this checkout or of a commit."""
+"""Processes of ``make bench-error`` and ``make bench-heat``: one a scene and method, with the package of this checkout or of a
+commit.
+"""
 
 import json
 import os
@@ -22,12 +24,12 @@ class Refused(Exception):
 class Process:
     """A worker that has not ended; ``with`` ends it."""
 
-    def __init__(self, scene: str, method: str):
-        """``method`` may end in ``@COMMIT``."""
+    def __init__(self, scene: str, method: str, worker: Path = WORKER, python: str = sys.executable):
+        """``method`` may end in ``@COMMIT``; ``python`` is the interpreter that runs ``worker``."""
         self.name, _, commit = method.partition("@")
         environment = os.environ | {"PYTHONPATH": str(_source(commit) if commit else ROOT / "src")}
         self._process = subprocess.Popen(
-            [sys.executable, WORKER, scene, self.name],
+            [python, worker, scene, self.name],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
