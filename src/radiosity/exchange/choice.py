@@ -4,7 +4,7 @@ Work is counted in lines, so that no clock decides. A ray of a visible share cos
 patches face each other, and an exact factor, cost as many lines as was measured (`FACES`, `EXACT`). The errors are predicted.
 That of lines follows from the standard errors of a pilot that traces a sixteenth of them, and from what they leave out of narrow
 faces. That of polygons follows from the visible shares of some pairs, drawn at random. Both are the root of the summed
-variances of all exchange areas.
+variances of all factors, as they stand in the table.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ PILOT = 16  # the pilot's share of lines is one over this
 SLOPE = 1.1  # variance falls with this power of the number of lines; 1 with random numbers
 GAIN = 3  # variance of independent rays over that of polygons: low discrepancy, and what is restored
 DRAWN, DRAWN_RAYS = 2048, 64  # pairs of patches that tell of all, and rays of each
-FEWEST, MOST = 16, 8192  # rays of a pair and replicate, in steps of the least
+FEWEST, MOST = 4, 8192  # rays of a pair and replicate, in steps of the least
 FEWEST_LINES, MOST_LINES = 64, 4096  # lines of a patch and replicate, which find what is missed
 LARGEST = 5000  # patches: with more, polygons are not thought of
 
@@ -61,14 +61,14 @@ class Sample:
 
     Attributes:
         facing: the number of pairs that face each other.
-        variance: m⁴, the summed variances of all exchange areas for one ray a pair.
+        variance: the summed variances of all factors for one ray a pair.
     """
 
     facing: float
     variance: float
 
     @staticmethod
-    def of(geometry: Geometry, seed: Seed) -> "Sample":
+    def of(geometry: Geometry, groups: Groups, seed: Seed) -> "Sample":
         """Draw pairs of a scene's patches."""
         patches = geometry.patches
         n, draw = len(patches), np.random.Generator(np.random.Philox(stream(seed, 0, Purpose.VIEW_FACTORS)))
@@ -87,7 +87,9 @@ class Sample:
             return Sample(0.0, 0.0)
         pairs = FacingPairs(geometry, one[some], other[some], values[some])
         share = pairs.visible(DRAWN_RAYS, seed.value)
-        return Sample(each * len(some), float(each * (values[some] ** 2 * share * (1 - share)).sum()))
+        area = groups.area(patches)[groups.labels]
+        rows = 1 / area[pairs.one] ** 2 + 1 / area[pairs.other] ** 2
+        return Sample(each * len(some), float(each * (values[some] ** 2 * share * (1 - share) * rows).sum()))
 
 
 def polygons_are_better(
@@ -102,17 +104,16 @@ def polygons_are_better(
     patches: Patches = geometry.patches
     if geometry.some_backs_pass or not 2 <= len(patches) <= LARGEST or replicates < 2:
         return None, {}
-    sample = Sample.of(geometry, seed)
+    sample = Sample.of(geometry, groups, seed)
     spent = Rays.of(rays, len(patches), sample.facing, replicates)
-    area = pilot.area[pilot.rows]
-    off = (left_out(geometry, groups)[pilot.rows] * pilot.values * area) ** 2
-    lines = float(np.sqrt(np.nansum((pilot.errors * area) ** 2) * (pilot.rays / rays) ** SLOPE + off.sum()))
-    whole = float(np.sqrt(((pilot.values * area) ** 2).sum()))
+    off = (left_out(geometry, groups)[pilot.rows] * pilot.values) ** 2
+    lines = float(np.sqrt(np.nansum(pilot.errors**2) * (pilot.rays / rays) ** SLOPE + off.sum()))
+    whole = float(np.sqrt((pilot.values**2).sum()))
     if spent.pair == 0:
         return None, {"lines": lines / whole, "polygons": "too little work"}
     gone = (pilot.escaped * (1 - pilot.escaped) + pilot.lost * (1 - pilot.lost))[groups.labels]
-    of_pairs = 2 * sample.variance / GAIN / (replicates * spent.pair)
-    of_missed = float((patches.area**2 * gone).sum()) / (replicates * spent.missed)
+    of_pairs = sample.variance / GAIN / (replicates * spent.pair)
+    of_missed = float(((patches.area / pilot.area[groups.labels]) ** 2 * gone).sum()) / (replicates * spent.missed)
     if not (pilot.escaped.any() and pilot.lost.any()):  # closure then tells it as well as the pairs are known
         of_missed = min(of_missed, of_pairs)
     polygons = float(np.sqrt(of_pairs + of_missed))

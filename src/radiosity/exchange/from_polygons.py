@@ -21,7 +21,7 @@ from ..factors.missed import missed
 from ..factors.polygons import exchange
 from ..sampling.streams import Seed
 from ..tracing.geometry import Geometry
-from ..tracing.visibility import Polygons, visible_share
+from ..tracing.visibility import Polygons, kernel_means, visible_share
 from .apart import apart
 from .from_lines import combined, gathered
 from .groups import Groups
@@ -75,6 +75,20 @@ class FacingPairs:
         one, other = (self.polygons.take(x[rows]) for x in (self.one, self.other))
         return visible_share(self.geometry, one, other, rays, seed)
 
+    def shares(self, rays: int, replicates: int, seed: Seed) -> np.ndarray:
+        """Return unbiased visible shares of the exact factors, (replicates, m); below 0 or above 1 by chance in a replicate.
+
+        The kernel is integrated over what is hidden, or over what is seen, whichever is less of it. What is hidden is far from
+        the edges that polygons share, where the kernel has no bound; a ratio of seen to all points would have a bias there.
+        """
+        one, other = (self.polygons.take(x) for x in (self.one, self.other))
+        means = np.array([kernel_means(self.geometry, one, other, rays, seed.number_of(r)) for r in range(replicates)])
+        whole, part = means[:, 0], means[:, 1]
+        area = self.geometry.patches.area
+        unit = area[self.one] * area[self.other] / (np.pi * self.values)
+        mostly = 2 * part.sum(axis=0) >= whole.sum(axis=0)
+        return np.where(mostly, 1 - (whole - part) * unit, part * unit)
+
 
 def from_polygons(
     pairs: FacingPairs, groups: Groups, rays: int, lines: int, replicates: int, seed: Seed, provenance: dict
@@ -93,7 +107,7 @@ def from_polygons(
         raise MethodError("polygons: backs of this scene let lines pass (sides 1 of MGF), one way only; take method='lines'")
     patches, n, width = geometry.patches, len(groups.names), len(groups.names) + 2
     area, labels = groups.area(patches), groups.labels
-    shares = np.array([pairs.visible(rays, seed.number_of(r)) for r in range(replicates)])
+    shares = pairs.shares(rays, replicates, seed)
     out = [missed(geometry, lines, seed.number_of(r)) for r in range(replicates)]
     one, other = labels[pairs.one], labels[pairs.other]
     ways = np.concatenate([one * width + other, other * width + one])
@@ -116,7 +130,7 @@ def from_polygons(
         return np.bincount(at, np.tile(variance, 2), len(codes)) / area[rows] ** 2
 
     if replicates > 1:
-        mean = shares.mean(axis=0)
+        mean = np.clip(shares.mean(axis=0), 0, 1)
         model = of_pairs(pairs.values**2 * mean * (1 - mean) / (rays * replicates))
         seen = np.where(columns < n, errors, 0) ** 2
         model *= seen.sum() / max(model.sum(), np.finfo(float).tiny)

@@ -53,7 +53,6 @@ class Polygons:
         return Polygons(self.corners[rows], self.face[rows])
 
 
-@turn()
 def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int = 16, seed: int = 0) -> np.ndarray:
     """Return the share of what goes from ``one`` to ``other`` that meets nothing on its way: (m,) float64 in [0, 1], for m pairs.
 
@@ -63,6 +62,19 @@ def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int 
     Args:
         rays: points of each pair, of the Sobol' sequence in four dimensions with a digital shift for each pair; powers of two
             are best.
+
+    Raises:
+        MethodError: fewer than one ray, or more than 65 535.
+    """
+    whole, part = kernel_means(geometry, one, other, rays, seed)
+    return np.divide(part, whole, out=np.zeros(len(whole)), where=whole > 0)
+
+
+@turn()
+def kernel_means(geometry: Geometry, one: Polygons, other: Polygons, rays: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return means of cos cos' / r² over points of pairs, 1/m²: of all points, and of those that see each other, (m,) each.
+
+    Args: see `visible_share`.
 
     Raises:
         MethodError: fewer than one ray, or more than 65 535.
@@ -83,10 +95,12 @@ def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int 
         _chunk(geometry, one.take(rows), other.take(rows), keys[rows], rays, seed)
         for rows in (slice(at, at + size) for at in range(0, len(keys), size))
     ]
-    return np.concatenate(parts) if parts else np.zeros(0)
+    whole, part = np.concatenate(parts, axis=1) if parts else np.zeros((2, 0))
+    return whole * geometry.bvh.scale**2, part * geometry.bvh.scale**2
 
 
 def _chunk(geometry: Geometry, one: Polygons, other: Polygons, keys: np.ndarray, rays: int, seed: int) -> np.ndarray:
+    """Return both means, (2, m), in the BVH's units."""
     types, count = geometry.device.types, len(one)
     Float, UInt32 = types.Float, types.UInt32
     if count * rays < 2:  # arrays of one entry would compile kernels of their own
@@ -117,8 +131,7 @@ def _chunk(geometry: Geometry, one: Polygons, other: Polygons, keys: np.ndarray,
     )
     met = dr.select(seen, kernel, 0)
     dr.eval(kernel, met)
-    whole, part = (np.array(x, np.float64).reshape(-1, rays)[:count].sum(axis=1) for x in (kernel, met))
-    return np.divide(part, whole, out=np.zeros(count), where=whole > 0)
+    return np.array([np.array(x, np.float64).reshape(-1, rays)[:count].sum(axis=1) / rays for x in (kernel, met)])
 
 
 def _point(types, records, pair, is_triangle, x, y):
