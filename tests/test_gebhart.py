@@ -94,3 +94,11 @@ def test_wrong_emissivities_are_refused():
         rd.gebhart_factors(lines.patches, emissivity=0.5)  # pyright: ignore[reportArgumentType]
     one = rd.trace_lines(lines.patches, rays=1000, replicates=1)
     assert np.isnan(rd.gebhart_factors(one, emissivity=[0.5, 0.4]).errors).all()
+
+
+def test_star_gives_the_rest_in_whatever_order_patterns_stand():
+    lines = rd.trace_lines(rd.subdivide(parallel_squares()[0], cells=1), rays=1000)
+    for given in ({"e*": 0.1, "*": 0.9}, {"*": 0.9, "e*": 0.1}):
+        assert rd.gebhart_factors(lines, emissivity=given).emissivity == pytest.approx([0.1, 0.9])
+    with pytest.raises(rd.SceneError, match="emissivity of surface 'emitter' is given by two patterns"):
+        rd.gebhart_factors(lines, emissivity={"e*": 0.1, "em*": 0.9, "*": 0.5})
