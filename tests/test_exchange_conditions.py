@@ -269,3 +269,15 @@ def test_floor_below_a_box_is_left_out():
     floor = patches.surface == 1
     assert heat.patch_net[floor & ~unknown] == pytest.approx(np.full(12, 100 / 0.75), rel=1e-6)
     assert heat.temperature[1] > 300
+
+
+def test_faces_too_narrow_for_lines_are_told():
+    corners = [[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1e5), (0, 1e5))]
+    faces = [[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]]
+    strips = rd.Scene.from_arrays(corners, faces, 0.5, 0.0, surface=[0, 0, 1, 1], names=["low", "high"])
+    narrow = rd.subdivide(strips, cells=1)
+    with pytest.warns(rd.RadiosityWarning, match="faces are so narrow, .*low: .*their view factors, and heat"):
+        rd.radiative_exchange(narrow, {"low": 400, "high": 0}, emissivity=1, surroundings=0, **FEW)
+    lines = rd.trace_lines(narrow, **FEW)
+    with pytest.warns(rd.RadiosityWarning, match="faces are so narrow"):
+        rd.gebhart_factors(lines, emissivity=1.0)

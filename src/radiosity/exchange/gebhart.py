@@ -11,14 +11,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..device import memory
+from ..device.backend import choose
 from ..errors import MethodError, SceneError, shown
 from ..factors.counted import CountedPairs
 from ..patches.model import Patches
 from ..run.line_set.model import LineSet
 from ..solution.csv_rows import write_rows
 from ..solution.errors import mean_and_error
+from ..tracing.geometry import Geometry
 from .conditions import by_name
 from .groups import Groups, groups_of
+from .narrow import warn_of_narrow
 
 ESCAPED, LOST = "(escaped)", "(lost)"
 AT_ONCE = 16  # groups that emit in one call of the solver
@@ -134,6 +137,8 @@ def gebhart_factors(lines: LineSet, *, emissivity, group="surface") -> GebhartFa
         raise MethodError(
             f"a patch of '{without}' has no lines in some replicate, and cannot pass on what it reflects: take more rays"
         )
+    if lines.method.lines == "local":
+        warn_of_narrow(Geometry(patches, choose("auto")), groups)
     values = np.zeros((replicates, n, n + 2))
     bias = np.zeros((n, n + 2))
     carried = replace(lines.pairs, directed=True)  # from where lines begin: all that is sent ends somewhere

@@ -6,14 +6,18 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from ..device.backend import choose
 from ..errors import MethodError, RadiosityWarning
 from ..patches import Patches, subdivide
 from ..run.line_set.model import LineSet
 from ..run.progress import Listener
 from ..run.whole_number import whole
 from ..scene.model import Scene
+from ..tracing.geometry import Geometry
 from .conditions import Conditions
 from .estimate import Estimate, Estimator
+from .groups import groups_of
+from .narrow import warn_of_narrow
 from .result import RadiativeExchange
 from .target import Target
 from .tracing import trace
@@ -102,6 +106,8 @@ def radiative_exchange(
     if error_of is not None and error is None:
         raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
     estimator = Estimator(patches, conditions)
+    if lines is None or lines.method.lines == "local":
+        warn_of_narrow(Geometry(patches, choose(device)), groups_of(patches, "surface"))
     options = {"replicates": replicates, "seed": seed, "device": device, "progress": progress, "memory": memory}
     status = "complete"
     if error is None:
