@@ -87,6 +87,25 @@ def test_names_go_before_patterns_and_arguments_before_the_scene(patches):
     assert found.emissivity[0].tolist() == [0.5, 0.5, 0.9, 0.5, 0.5, 0.5]
 
 
+def test_emissivities_of_two_patterns_may_be_arrays(patches):
+    given = {"x*": np.array([0.2, 0.8]), "*low": [0.2, 0.8], "*": 0.5}
+    found = Conditions.of(patches, temperature={"*": 300}, emissivity=given, wavelengths=[3])
+    assert found.emissivity[:, 0].tolist() == [0.2, 0.8]
+    with pytest.raises(rd.SceneError, match="emissivity of surface 'x low' is given by two patterns"):
+        Conditions.of(patches, temperature={"*": 300}, emissivity=given | {"*low": np.array([0.2, 0.7])}, wavelengths=[3])
+
+
+def test_a_copy_of_a_face_is_told_without_any_light(patches):
+    scene = patches.scene
+    faces, surface = (np.concatenate([array, array[:1]]) for array in (scene.faces, scene.surface))
+    back = np.append(scene.back, scene.back[0])
+    twice = rd.Scene.from_arrays(scene.vertices, faces, 0.5, 0.0, surface=surface, names=scene.names, back=back)
+    with pytest.warns(rd.RadiosityWarning, match="lie on another face and radiate to the same side.*'x low'"):
+        rd.radiative_exchange(rd.subdivide(twice, cells=1), {"*": 300}, emissivity=0.5, **FEW)
+    with pytest.warns(rd.RadiosityWarning, match="lie on another face and radiate to the same side.*'x low'"):
+        rd.view_factors(twice, rays=2_000, replicates=2, method="polygons")
+
+
 def test_a_reflectance_of_the_file_is_taken_and_told(patches):
     with pytest.warns(rd.RadiosityWarning, match=r"no emissivity is given for 'x low', .*1 - reflectance is taken"):
         found = Conditions.of(patches, temperature={"*": 300})
@@ -252,3 +271,15 @@ def test_floor_below_a_box_is_left_out():
     floor = patches.surface == 1
     assert heat.patch_net[floor & ~unknown] == pytest.approx(np.full(12, 100 / 0.75), rel=1e-6)
     assert heat.temperature[1] > 300
+
+
+def test_faces_too_narrow_for_lines_are_told():
+    corners = [[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1e5), (0, 1e5))]
+    faces = [[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]]
+    strips = rd.Scene.from_arrays(corners, faces, 0.5, 0.0, surface=[0, 0, 1, 1], names=["low", "high"])
+    narrow = rd.subdivide(strips, cells=1)
+    with pytest.warns(rd.RadiosityWarning, match="faces are so narrow, .*low: .*their view factors, and heat"):
+        rd.radiative_exchange(narrow, {"low": 400, "high": 0}, emissivity=1, surroundings=0, **FEW)
+    lines = rd.trace_lines(narrow, **FEW)
+    with pytest.warns(rd.RadiosityWarning, match="faces are so narrow"):
+        rd.gebhart_factors(lines, emissivity=1.0)

@@ -102,3 +102,11 @@ def test_faces_too_narrow_for_lines_are_told():
     lines = rd.trace_lines(rd.subdivide(both, cells=1), rays=2000)
     with pytest.warns(rd.RadiosityWarning, match="lines leave out a part"):
         rd.gebhart_factors(lines, emissivity=0.5)
+
+
+def test_star_gives_the_rest_in_whatever_order_patterns_stand():
+    lines = rd.trace_lines(rd.subdivide(parallel_squares()[0], cells=1), rays=1000)
+    for given in ({"e*": 0.1, "*": 0.9}, {"*": 0.9, "e*": 0.1}):
+        assert rd.gebhart_factors(lines, emissivity=given).emissivity == pytest.approx([0.1, 0.9])
+    with pytest.raises(rd.SceneError, match="emissivity of surface 'emitter' is given by two patterns"):
+        rd.gebhart_factors(lines, emissivity={"e*": 0.1, "em*": 0.9, "*": 0.5})

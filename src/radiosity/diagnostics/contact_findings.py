@@ -34,12 +34,16 @@ def findings(scene: Scene) -> Iterator[Finding]:
         yield Finding(WARNING, kind, text)
 
 
-def tell(scene: Scene) -> None:
-    """Warn, before a run, of what makes its results wrong: lamps that lie on other faces, and faces too near or too small."""
+def tell(scene: Scene, *, any_light: bool = False) -> None:
+    """Warn, before a run, of what makes its results wrong: lamps that lie on other faces, and faces too near or too small.
+
+    Args:
+        any_light: the lines are for any light, or for heat: every face that lies on another one may emit.
+    """
     found = contacts(scene)
     found = found.take(found.share > LITTLE)
     emits = np.any([(scene.emission > 0).any(axis=1), (scene.back_emission > 0).any(axis=1)], axis=0)
-    lamps = found.take(found.doubled(scene) & (emits[found.one] | emits[found.two]))
+    lamps = found.take(found.doubled(scene) & (any_light | emits[found.one] | emits[found.two]))
     said = [text for _, text in _held_apart(scene, found)]
     if len(lamps.one):
         said.insert(0, _doubled(scene, lamps.one, lamps.two))

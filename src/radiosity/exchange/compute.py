@@ -88,7 +88,7 @@ def view_factors(
         pilot = None
         few = max(work // PILOT, LEAST * replicates * len(patches))
         if method == "polygons" or (method == "auto" and replicates > 1 and few <= work // 2):
-            tell(patches.scene)
+            tell(patches.scene, any_light=True)
             geometry = Geometry(patches, choose(device))
             if method == "polygons":
                 pairs = FacingPairs.of(geometry, replicates)

@@ -57,7 +57,7 @@ class Conditions:
         adiabatic = dict.fromkeys(_list(adiabatic, "adiabatic"), 0.0)
         given: dict[int, tuple[int, str]] = {}
         for what, values in (("temperature", temperature), ("flux", flux), ("adiabatic", adiabatic)):
-            for i, (value, rank) in _by_name(values, names, what).items():
+            for i, (value, rank) in by_name(values, names, what).items():
                 before, kind = given.get(i, (-1, ""))
                 if before == rank:
                     raise SceneError(f"surface '{names[i]}' has both {kind} and {what}; give one")
@@ -73,7 +73,7 @@ class Conditions:
             around = _number(around, "temperature", None)
         edges = _edges(heat.wavelengths if wavelengths is None else wavelengths)
         of_surface: list[Any] = list(heat.emissivity)
-        for i, (value, _) in _by_name(emissivity, names, "emissivity").items():
+        for i, (value, _) in by_name(emissivity, names, "emissivity").items():
             of_surface[i] = value
         used = np.unique(patches.surface)
         lacking = [names[i] for i in used if np.isnan(kelvin[i]) and np.isnan(watts[i])]
@@ -107,7 +107,7 @@ def _list(given, what: str) -> list[str]:
     return [str(name) for name in given]
 
 
-def _by_name(given, names: list[str], what: str) -> dict[int, tuple[Any, int]]:
+def by_name(given, names: list[str], what: str) -> dict[int, tuple[Any, int]]:
     """Values by the number of the surface, and their rank: an exact name, 2, goes before a pattern, and that before "*", 0."""
     if given is None:
         return {}
@@ -123,12 +123,17 @@ def _by_name(given, names: list[str], what: str) -> dict[int, tuple[Any, int]]:
         for i in here:
             rank = 2 if names[i] == pattern else 0 if pattern == "*" else 1
             before, its_rank = found.get(i, (None, -1))
-            if its_rank == rank and before != value:
+            if its_rank == rank and not _equal(before, value):
                 text = f"is given by two patterns, as {before!r} and {value!r}; give it by its own name"
                 raise SceneError(f"{what} of surface '{names[i]}' {text}")
             if its_rank < rank:
                 found[i] = value, rank
     return found
+
+
+def _equal(one, other) -> bool:
+    """Whether two values are the same; each may be a list or an array."""
+    return np.array_equal(np.asarray(one, object), np.asarray(other, object))
 
 
 def _edges(given) -> tuple[float, ...]:

@@ -16,10 +16,10 @@ from ..errors import MethodError, SceneError, shown
 from ..factors.counted import CountedPairs
 from ..patches.model import Patches
 from ..run.line_set.model import LineSet
-from ..scene.named import surfaces_called
 from ..solution.csv_rows import write_rows
 from ..solution.errors import mean_and_error
 from ..tracing.geometry import Geometry
+from .conditions import by_name
 from .groups import Groups, groups_of
 from .narrow import warn_of_narrow
 
@@ -111,12 +111,13 @@ def gebhart_factors(lines: LineSet, *, emissivity, group="surface") -> GebhartFa
     Args:
         lines: what `trace_lines` has counted.
         emissivity: one number above 0 and at most 1, a dictionary of names of surfaces (or patterns) to numbers, which must name
-            every surface, or a number for each patch.
+            every surface, or a number for each patch. An exact name goes before a pattern, and that before ``"*"``.
         group: as of `view_factors`.
 
     Raises:
         MethodError: no lines, a group or surface that does not exist, a surface without an emissivity, a patch without lines, or
-            more groups than fit in memory. SceneError: an emissivity out of range.
+            more groups than fit in memory. SceneError: an emissivity out of range, or two
+            patterns that give a surface unlike ones.
 
     Example:
         >>> patches = rd.subdivide(rd.load_scene("room"), cells=1)
@@ -179,9 +180,8 @@ def _emissivities(patches: Patches, given) -> np.ndarray:
     names = patches.scene.names
     if isinstance(given, dict):
         of_surface = np.full(len(names), np.nan)
-        named = {name: surfaces_called(names, str(name)) for name in given}
-        for name in sorted(given, key=lambda name: name not in names, reverse=True):  # patterns first, then single surfaces
-            of_surface[named[name]] = _number(given[name], name)
+        for i, (value, _) in by_name(given, list(names), "emissivity").items():
+            of_surface[i] = _number(value, names[i])
         lacking = [names[s] for s in np.unique(patches.surface) if np.isnan(of_surface[s])]
         if lacking:
             raise MethodError(f"emissivity: none is given for {shown(lacking)}; name them, or '*' for all others")

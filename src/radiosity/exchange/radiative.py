@@ -106,7 +106,8 @@ def radiative_exchange(
     if error_of is not None and error is None:
         raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
     estimator = Estimator(patches, conditions)
-    warn_of_narrow(Geometry(patches, choose(device)), groups_of(patches, "surface"))
+    if lines is None or lines.method.lines == "local":
+        warn_of_narrow(Geometry(patches, choose(device)), groups_of(patches, "surface"))
     options = {"replicates": replicates, "seed": seed, "device": device, "progress": progress, "memory": memory}
     status = "complete"
     if error is None:

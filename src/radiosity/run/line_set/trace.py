@@ -103,7 +103,7 @@ def trace_lines(
         if chosen.names and lines != "local":
             raise MethodError(f"sources get more local lines, and lines '{lines}' begin at no surface; leave one of the two out")
         keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, method, save_lines)
-        tell(patches.scene)
+        tell(patches.scene, any_light=True)
         from ..run import Run
         from .record import LineRecord
 
