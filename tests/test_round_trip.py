@@ -13,6 +13,7 @@ import radiosity as rd
 from radiosity.method.baseline import CHOICES, USED
 from radiosity.scene import Back, Camera
 from radiosity.scene.combine import combine
+from radiosity.scene.heat import Heat
 from radiosity.scene.paint import Paint
 from radiosity.scene.sampler import Sampler
 
@@ -49,10 +50,13 @@ def everything() -> rd.Scene:
         source="everything",
         cameras=(Camera((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (0.0, 1.0, 0.0), 33.0, 640, 480), Camera((0, 0, 1), (1, 1, 1))),
     )
-    sizes = np.where(np.arange(len(room.names)) % 2, 0.5, np.nan)
-    return replace(
-        scene, patch_size=sizes, scale=0.01, reflectance_paint=paint(random, n, 0.9), emission_paint=paint(random, n, 7.0)
-    )
+    k = len(room.names)
+    sizes = np.where(np.arange(k) % 2, 0.5, np.nan)
+    emissivity = tuple(None if i == 1 else (0.5, 0.25) for i in range(k))
+    known, isothermal = np.where(np.arange(k) % 2, 300.0, np.nan), np.arange(k) % 4 == 0
+    heat = Heat(known, np.where(isothermal, 5.0, np.nan), emissivity, isothermal, 290.0, (3.0,))
+    paints = {"reflectance_paint": paint(random, n, 0.9), "emission_paint": paint(random, n, 7.0)}
+    return replace(scene, patch_size=sizes, scale=0.01, heat=heat, assumed=room.names[:2], **paints)
 
 
 def same(one, other, name: str) -> None:
@@ -236,7 +240,10 @@ def test_a_scene_combined_with_nothing_or_with_itself_is_there_whole():
     assert twice.cameras == 2 * scene.cameras
 
 
-@pytest.mark.parametrize("name", [f.name for f in fields(rd.Scene) if f.name not in ("cameras", "scale", "source", "patch_size")])
+NO_LIGHT = ("cameras", "scale", "source", "patch_size", "heat", "assumed")  # light does not depend on them
+
+
+@pytest.mark.parametrize("name", [f.name for f in fields(rd.Scene) if f.name not in NO_LIGHT])
 def test_the_hash_sees_every_field_that_results_depend_on(name):
     scene = everything()
     value = getattr(scene, name)

@@ -147,7 +147,9 @@ def _from(factors, found: Nearest, one, other, samples: np.ndarray, place: np.nd
     if factors.method != "lines":
         own = np.zeros(len(one))  # what is zero stays zero, and keeps its error
         np.maximum.at(own, place, np.where(factors.values == 0, factors.errors * factors.area[factors.rows], 0))
-        known = np.sqrt(found.variance[pair]) if factors.replicates > 1 else np.nan
+        known = np.nan
+        if factors.replicates > 1:  # weights that few replicates tell make the variance of least squares too small
+            known = np.maximum(np.sqrt(found.variance[pair]), mean_and_error(of_samples)[1] * area)
         errors = np.where(values == 0, own[pair], known) / area
         hits = np.full(len(rows), -1)
     elif factors.replicates > 1:
