@@ -132,7 +132,7 @@ def by_name(given, names: list[str], what: str) -> dict[int, tuple[Any, int]]:
 
 
 def _equal(one, other) -> bool:
-    """Whether two values are the same; each may be a list or an array."""
+    """Return whether two values are the same; each may be a list or an array."""
     return np.array_equal(np.asarray(one, object), np.asarray(other, object))
 
 

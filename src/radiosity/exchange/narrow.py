@@ -26,8 +26,8 @@ def warn_of_narrow(geometry: Geometry, groups: Groups) -> None:
         told = shown([f"{groups.names[i]}: {share[i]:.0%}" for i in rows[np.argsort(-share[rows])]])
         warnings.warn(
             f"{geometry.scene.source}: faces are so narrow, for the size of the scene, that lines leave out a part of their area "
-            f"along the edges ({told}); what they exchange may be as far off, which errors do not show; take "
-            "polygons for view factors, or a smaller scene",
+            f"along the edges ({told}); their view factors, and heat, may be as far off, which errors do not "
+            "show; take view factors with method='polygons', or a smaller scene",
             RadiosityWarning,
             stacklevel=3,
         )
