@@ -82,7 +82,8 @@ def test_three_surface_enclosure(solver):
 # ---- against the random walk -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scene", [pytest.param("room", marks=pytest.mark.slow), "box"])
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", ["room", "box"])
 def test_full_matrix_of_lines_agrees_with_the_random_walk_within_errors(scene, request):
     patches, _ = request.getfixturevalue(scene)
     expected = powers(rd.solve(patches, "random-walk", rays=20_000_000, replicates=16, seed=98))

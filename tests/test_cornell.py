@@ -35,6 +35,7 @@ def cast_form_factors(patches, lines: int, random) -> np.ndarray:
     return np.bincount(source[seen] * n + patch[seen], minlength=n * n).reshape(n, n) / lines
 
 
+@pytest.mark.slow
 def test_dense_solve_on_the_same_patches(random):
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=3)
     n, batches = len(patches), 24

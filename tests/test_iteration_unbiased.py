@@ -82,7 +82,7 @@ def test_restarted_indices_are_rejected(lit, monkeypatch):
         return shoot(self, *arguments, **named)
 
     monkeypatch.setattr(Shooter, "shoot", again)
-    largest, bound = statistic(lit, "incremental", 6)
+    largest, bound = statistic(lit, "incremental", 6, 1024)
     assert largest > 1.5 * bound
 
 
