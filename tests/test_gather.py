@@ -87,7 +87,7 @@ def off(patches: rd.Patches, truth: np.ndarray, *, key=None, rays: int = 300_000
 @pytest.fixture
 def as_measured(monkeypatch):
     """Without the balance of power, which mends the sums of wrong values."""
-    monkeypatch.setattr(tally_module, "factors", lambda own, reflectance, received, missed, lines: np.ones_like(received))
+    monkeypatch.setattr(tally_module, "factors", lambda own, reflectance, received, *rest: np.ones_like(received))
 
 
 # ---- closed forms ----------------------------------------------------------------------------------------------------
@@ -121,6 +121,15 @@ def test_squares(case):
     assert abs(found.mean() - factor) < critical(REPLICATES, 2) * error
     assert error < 1e-3 * factor
     assert powers(solution)[:, 0] == pytest.approx(0)
+
+
+def test_a_small_sensor_far_away_is_not_balanced_off():
+    """No line of the lamp meets it: what escapes, as counted, is all that the lamp emits."""
+    sensor = quad((0, 0, 20), (0, 0.05, 0), (0.05, 0, 0))
+    patches = rd.subdivide(lit([(FLOOR, 0.0, 1.0), (sensor, 0.0, 0.0)]), cells=1)
+    truth = exchange(FLOOR[None], sensor[None])[0] / patches.area[1]
+    solution = rd.solve(patches, "gather", rays=20_000, replicates=8, seed=1)
+    assert solution.irradiance[1, 0] == pytest.approx(truth, rel=0.01)
 
 
 @pytest.mark.usefixtures("as_measured")
@@ -280,3 +289,12 @@ def test_groups_of_lamps_give_the_same_mean(monkeypatch, entries):
     truth = solution_by_factors(geometry.patches, factors)
     floor = geometry.patches.surface == 0
     assert off(geometry.patches, truth, key=np.where(floor, 0, 1), rays=600_000) < 1
+
+
+def test_a_floor_that_stands_twice_does_not_darken_the_rest():
+    """Both copies receive the light of one, so that more is absorbed than lamps emit: that is no error to be balanced."""
+    one = lamp_lit(0.7)
+    twice = one.take(np.append(np.arange(one.n_faces), 4))
+    first, second = (rd.solve(rd.subdivide(scene, cells=3), "gather", rays=300_000, seed=1) for scene in (one, twice))
+    n = len(first.patches)
+    assert second.irradiance[:n, 0].mean() == pytest.approx(first.irradiance[:, 0].mean(), rel=5e-3)

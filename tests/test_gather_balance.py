@@ -7,6 +7,7 @@ from radiosity.algorithms.gather.balance import factors
 
 OWN, REFLECTANCE = np.array([1.0, 0.0]), np.array([0.0, 0.5])  # a lamp and a floor
 RECEIVED = np.array([[0.0, 2.0]]) * np.linspace(0.97, 1.02, 8)[:, None]
+OPEN = RECEIVED * (0.75 / 0.75 / 2 * 4 / 3)  # a floor half of whose lines escape
 
 
 def imbalance(received: np.ndarray, missed: np.ndarray, lines: np.ndarray) -> np.ndarray:
@@ -25,8 +26,8 @@ def test_a_closed_scene_absorbs_what_lamps_emit():
 
 def test_an_open_scene_balances_where_many_lines_know_what_escapes():
     missed, lines = np.array([0, 10**8]), np.array([10**8, 2 * 10**8])
-    left = imbalance(balanced(missed, lines), missed, lines)
-    assert np.abs(left).max() < 1e-3 * np.abs(imbalance(RECEIVED, missed, lines)).max()
+    left = imbalance(balanced(missed, lines, OPEN), missed, lines)
+    assert np.abs(left).max() < 1e-3 * np.abs(imbalance(OPEN, missed, lines)).max()
 
 
 def test_few_lines_that_escape_are_not_believed():
@@ -35,6 +36,13 @@ def test_few_lines_that_escape_are_not_believed():
     power = RECEIVED * (0.875 / (0.5 + 0.3125) / 2)  # a floor whose power balances in the mean
     assert np.std(imbalance(power, missed, lines)) > 4 * np.std(power[:, 1] * 0.8125)
     assert np.std(balanced(missed, lines, power)[:, 1]) < 2.5 * np.std(power[:, 1])
+
+
+def test_a_lamp_whose_lines_all_miss_knows_nothing_of_what_arrives():
+    """A small sensor far away: shadow rays measure a thousandth of what a single line of the lamp would bring."""
+    missed, lines = np.array([50_000, 0]), np.array([50_000.0, 4000.0])
+    received = np.array([[0.0, 2e-8]]) * np.linspace(0.99, 1.01, 8)[:, None]
+    assert balanced(missed, lines, received)[:, 1] == pytest.approx(received[:, 1], rel=1e-6)
 
 
 def patches_of_two_kinds(even: float, alone: np.ndarray, seed: int = 1) -> np.ndarray:
@@ -61,5 +69,11 @@ def test_replicates_that_receive_nothing_stay():
     assert (factors(OWN, REFLECTANCE, np.zeros((3, 2)), np.zeros((3, 2)), np.ones(2)) == 1).all()
 
 
-def test_one_replicate_is_scaled():
-    assert balanced([0, 0], [1, 1], RECEIVED[:1])[0] == pytest.approx([0.0, 2.0])
+def test_one_replicate_stays():
+    assert (balanced([0, 0], [1, 1], RECEIVED[:1]) == RECEIVED[:1]).all()
+
+
+def test_what_all_replicates_have_too_much_stays():
+    """As where a floor stands twice: both copies receive the light of one."""
+    found = balanced([0, 0], [16, 100], RECEIVED * 1.2)
+    assert found[:, 1].mean() == pytest.approx(1.2 * RECEIVED[:, 1].mean(), rel=1e-3)

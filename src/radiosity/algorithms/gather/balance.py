@@ -8,15 +8,19 @@ emit. The imbalance of a replicate has three causes, whose sizes are told apart 
 - errors of the share of lines that miss all patches, which say nothing of what patches receive.
 
 So the imbalance goes to all patches in proportion to their power, to each patch in proportion to its variance (the least-squares
-adjustment under one condition), and what the third cause explains is left.
+adjustment under one condition), and what the third cause explains is left. So is an imbalance that all replicates have alike, if
+it is more than the bias of stored lines: where faces stand twice, the power that both receive is more than lamps emit.
 """
 
 import numpy as np
 
-LIMITS = (0.5, 2.0)  # of what a patch is multiplied by: where a few patches have most of the variance, the adjustment is rough
+BY_CHANCE = 3.0  # standard errors: a mean imbalance beyond them has another cause, such as faces that stand twice
+LIMITS = (0.75, 4 / 3)  # of what a patch is multiplied by: where a few patches have most of the variance, the adjustment is rough
 
 
-def factors(own: np.ndarray, reflectance: np.ndarray, received: np.ndarray, missed: np.ndarray, lines: np.ndarray) -> np.ndarray:
+def factors(
+    own: np.ndarray, reflectance: np.ndarray, received: np.ndarray, missed: np.ndarray, lines: np.ndarray, bias=0.0
+) -> np.ndarray:
     """Return what to multiply received powers by, (replicates, n_patches), so that the power of each replicate balances.
 
     Args:
@@ -25,16 +29,24 @@ def factors(own: np.ndarray, reflectance: np.ndarray, received: np.ndarray, miss
         received: (replicates, n_patches) received power.
         missed: (replicates, n_patches) how many lines of each patch missed all others.
         lines: (n_patches,) how many lines each patch fired.
+        bias: (n_patches,) the size of the bias of received power.
     """
     received, missed = np.ascontiguousarray(received), np.ascontiguousarray(missed)  # sums depend on how arrays lie in memory
+    if len(received) < 2:  # nothing tells what causes its imbalance
+        return np.ones_like(received)
     share, mean = missed / lines, received.mean(axis=0)
     sent = own + reflectance * received
     imbalance = own.sum() - (received * (1 - reflectance)).sum(axis=1) - (sent * share).sum(axis=1)
-    usual = share.mean(axis=0)  # replicates together: in one of them all lines of a patch may miss, or none, by chance
+    explained = BY_CHANCE * imbalance.std(ddof=1) / len(received) ** 0.5 + float(np.sum(bias * (1 - reflectance)))
+    if abs(imbalance.mean()) > explained:
+        imbalance = imbalance - imbalance.mean()
+    usual = share.mean(axis=0)
+    # replicates together, and one line more that hits: all lines of a patch may miss by chance
+    likely = np.where(usual > 0, np.minimum(usual, 1 - 1 / (lines * len(received) + 2)), 0.0)
     taken = 1 - reflectance + reflectance * usual
-    variance = np.minimum(received.var(axis=0, ddof=1), mean**2) if len(received) > 1 else np.zeros(len(mean))
+    variance = np.minimum(received.var(axis=0, ddof=1), mean**2)
     alone = float((taken**2 * variance).sum())
-    of_missed = float((sent**2 * (usual * (1 - usual) / lines)).sum()) / len(received)
+    of_missed = float((sent**2 * (likely * (1 - likely) / lines)).sum()) / len(received)
     whole = max(float((imbalance**2).mean()), alone + of_missed)
     if whole == 0:
         return np.ones_like(received)

@@ -46,7 +46,8 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         unit = float(problem.groups.emission[:, group].max())
         if unit > 0:
             own = problem.groups.emission[:, group] * problem.patches.area / unit
-            factor = factors(own, problem.groups.reflectance[:, group], brought + met, state.missed.sum(axis=0), lines)
+            bias = self._bias_of_stored(problem, state, group)
+            factor = factors(own, problem.groups.reflectance[:, group], brought + met, state.missed.sum(axis=0), lines, bias)
             brought, met = brought * factor, met * factor
         return brought, met, unit
 
@@ -58,11 +59,15 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         """Return the power that one of a patch's lines brings where it hits the brightest lamp."""
         return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(state.cosine, 1)
 
-    def bias_of_sums(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
+    def _bias_of_stored(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
+        """Return the size of the bias of the solution along stored lines, (n_patches,), and of what iterations have left."""
         first, left = (np.abs(x[..., group].mean(axis=0, dtype=np.float64)) for x in (state.first_bias, state.bias_left))
         of_all = state.stored / np.maximum(state.cosine, 1)  # that of the solution by all lines goes as 1 / m
+        return (np.maximum(left, first * of_all) + state.unsolved.mean()) * problem.patches.area
+
+    def bias_of_sums(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
         rounded = ROUNDED * self.irradiance(problem, state, group)[0].mean(axis=0)
-        return (np.maximum(left, first * of_all) + state.unsolved.mean()) * problem.patches.area + rounded
+        return self._bias_of_stored(problem, state, group) + rounded
 
     def bias(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
         bias = self.bias_of_sums(problem, state, group)
