@@ -19,7 +19,12 @@ LIMITS = (0.75, 4 / 3)  # of what a patch is multiplied by: where a few patches 
 
 
 def factors(
-    own: np.ndarray, reflectance: np.ndarray, received: np.ndarray, missed: np.ndarray, lines: np.ndarray, bias=0.0
+    own: np.ndarray,
+    reflectance: np.ndarray,
+    received: np.ndarray,
+    missed: np.ndarray,
+    lines: np.ndarray,
+    bias: np.ndarray | float = 0.0,
 ) -> np.ndarray:
     """Return what to multiply received powers by, (replicates, n_patches), so that the power of each replicate balances.
 
