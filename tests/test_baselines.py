@@ -94,7 +94,7 @@ def test_full_matrix_of_lines_agrees_with_the_random_walk_within_errors(scene, r
     assert np.abs(difference(found, expected)).max() < critical(16, found.shape[1]) * 1.1
 
 
-@pytest.mark.parametrize("scene", ["room", "box"])
+@pytest.mark.parametrize("scene", [pytest.param("room", marks=pytest.mark.slow), "box"])
 @pytest.mark.parametrize(
     ("method", "bound"),
     [

@@ -65,6 +65,7 @@ def test_short_runs_are_right_where_all_sides_emit(lit, name, quanta):
     assert largest < bound
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CONSISTENT)
 def test_long_runs_are_right_in_the_mean(room, name):
     """Start-up, medians and variances of what was received make these consistent only: the bias must be below the noise of
