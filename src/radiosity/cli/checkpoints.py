@@ -5,6 +5,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from ..errors import OutputError, RadiosityWarning
+from . import interrupts
+from .streams import say
 
 MINUTE = 60.0  # seconds from which a run is long; also the time between two checkpoints that nobody asked for
 
@@ -74,3 +76,10 @@ def _place(path: Path) -> Path:
     with suppress(OSError, RuntimeError, ValueError):
         return Path(path).resolve()
     return Path(path)
+
+
+def left_behind(keeper) -> int:
+    """Answer an interruption that came before the outputs were written: say what goes on, and return the exit status."""
+    interrupts.answer()
+    say("interrupted", f"stopped before the end; --resume {keeper.path} goes on from there")
+    return interrupts.status()

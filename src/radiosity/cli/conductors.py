@@ -6,7 +6,7 @@ from typing import Any
 from ..errors import OutputError, printable
 from . import outputs
 from .exchange import Names, named_numbers
-from .factors import SHOWN, merged_groups
+from .factors import merged_groups, tell_matrix
 from .options import Outputs
 from .streams import tell
 
@@ -55,10 +55,4 @@ def _write(found, path: Path) -> None:
 
 def _print(found) -> None:
     tell(repr(found))
-    if len(found.names) > SHOWN:
-        return
-    width = max(12, *(len(printable(name)) for name in found.names))
-    tell(" " * width + "".join(f"  {printable(title)[:14]:>14}" for title in [*found.names, "escaped", "lost"]))
-    for name, row, errors in zip(found.names, found.values, found.errors, strict=True):
-        cells = (f"{share:.5f} ±{error:.0e}" if share or error else "0" for share, error in zip(row, errors, strict=True))
-        tell(f"{printable(name):<{width}}" + "".join(f"  {cell:>14}" for cell in cells))
+    tell_matrix(found.names, found.values, found.errors)

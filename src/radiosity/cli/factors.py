@@ -136,16 +136,21 @@ def _write(result, path: Path, zone: str | None, layout: str) -> None:
 
 def _print(result) -> None:
     tell(repr(result))
-    if len(result) > SHOWN:
-        return
-    width = max(12, *(len(printable(name)) for name in result.names))
-    titles = [*result.names, "escaped", "lost"]
-    tell(" " * width + "".join(f"  {printable(title)[:14]:>14}" for title in titles))
     shares = [*result.matrix.T, result.escaped, result.lost]
     errors = [*result.standard_error.T, result.escaped_standard_error, result.lost_standard_error]
-    for i, name in enumerate(result.names):
-        cells = (
-            f"{share[i]:.5f} ±{error[i]:.0e}" if share[i] or error[i] else "0"
-            for share, error in zip(shares, errors, strict=True)
-        )
+    tell_matrix(result.names, zip(*shares, strict=True), zip(*errors, strict=True))
+
+
+def tell_matrix(names: tuple[str, ...], shares, errors) -> None:
+    """Print shares of groups with standard errors, a row each; the last columns are escaped and lost. Many groups are left out.
+
+    Args:
+        shares, errors: n rows of n + 2 numbers each.
+    """
+    if len(names) > SHOWN:
+        return
+    width = max(12, *(len(printable(name)) for name in names))
+    tell(" " * width + "".join(f"  {printable(title)[:14]:>14}" for title in [*names, "escaped", "lost"]))
+    for name, row, errors_of_row in zip(names, shares, errors, strict=True):
+        cells = (f"{share:.5f} ±{error:.0e}" if share or error else "0" for share, error in zip(row, errors_of_row, strict=True))
         tell(f"{printable(name):<{width}}" + "".join(f"  {cell:>14}" for cell in cells))

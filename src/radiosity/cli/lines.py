@@ -133,9 +133,7 @@ def lines(
     except KeyboardInterrupt:
         if keeper is None or not keeper.written:
             raise
-        interrupts.answer()
-        say("interrupted", f"stopped before the end; --resume {keeper.path} goes on from there")
-        return interrupts.status()
+        return checkpoints.left_behind(keeper)
     tell(str(found))
     tell(f"wrote {printable(output)}")
     checkpoints.finish(keeper, found, [output], named=run.checkpoint is not None, resume=run.resume)

@@ -86,9 +86,7 @@ def solve(
     except KeyboardInterrupt:
         if keeper is None or not keeper.written:
             raise
-        interrupts.answer()
-        say("interrupted", f"stopped before the end; --resume {keeper.path} goes on from there")
-        return interrupts.status()
+        return checkpoints.left_behind(keeper)
     left = checkpoints.finish(keeper, solution, output, named=run.checkpoint is not None, resume=run.resume)
     if left is not None:
         say(solution.status, f"stopped before the end; --resume {left} goes on from there")

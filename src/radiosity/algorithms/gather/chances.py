@@ -49,6 +49,11 @@ class Chances:
         return -(-self.packets.width // CLUSTER)
 
     @cached_property
+    def boxes(self) -> Boxes:
+        """The boxes around clusters."""
+        return Boxes.of(self.lamps, self.packets, CLUSTER)
+
+    @cached_property
     def groups(self) -> np.ndarray:
         """The first lamp of each group, and the number of lamps, (n_groups + 1,) int64."""
         each = max(-(-len(self.lamps) * self.clusters // ENTRIES), 1)
@@ -68,10 +73,9 @@ class Chances:
         """The probability of each group for each cluster, (clusters, n_groups) float32; rows sum to one, or are zero."""
         found = np.empty((self.clusters, len(self.groups) - 1), np.float32)
         step = max(PIECE // max(len(self.lamps), 1), 1)
-        boxes = Boxes.of(self.lamps, self.packets, CLUSTER)
         for at in range(0, self.clusters, step):
             rows = slice(at, at + step)
-            weight = np.add.reduceat(self._weights(boxes.take(rows)), self.groups[:-1], axis=1)
+            weight = np.add.reduceat(self._weights(self.boxes.take(rows)), self.groups[:-1], axis=1)
             total = weight.sum(axis=1, keepdims=True)
             found[rows] = np.divide(weight, total, out=np.zeros_like(weight), where=total > 0)
         return found

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...factors.polygons.exchange import exchange
-from .boxes import Boxes
 from .chances import CLUSTER, Chances
 from .lines import KERNEL
 
@@ -84,7 +83,7 @@ class Near:
 
 def pairs(chances: Chances) -> tuple[np.ndarray, np.ndarray]:
     """Return clusters and lamps, (m,) int64 each, between which a kernel may be above the limit: `MOST` at most."""
-    lamps, boxes = chances.lamps, Boxes.of(chances.lamps, chances.packets, CLUSTER)
+    lamps, boxes = chances.lamps, chances.boxes
     step = max(PIECE // max(len(lamps), 1), 1)
     found: tuple[np.ndarray, ...] = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
     for at in range(0, chances.clusters, step):
