@@ -36,7 +36,7 @@ TO_COME = {"view", "cluster"}
 APART = ("scene.formats",)  # folders within folders that count on their own
 MOST = 0.22  # of all lines may be in one folder
 
-KERNELS = ("device/", "sampling/", "tracing/", "tally/", "factors/", "algorithms/", "problem/bands.py")
+KERNELS = ("device/", "sampling/", "tracing/", "tally/", "factors/", "algorithms/", "problem/bands.py", "problem/lights/")
 PLACES = {"drjit": KERNELS, "mitsuba": ("device/", "scene/formats/mitsuba/", "image/")}
 EARLY = {  # packages besides numpy that a file may import when it is imported itself
     "cyclopts": ("cli/",),

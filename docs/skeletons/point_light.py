@@ -13,12 +13,12 @@ import drjit as dr
 import numpy as np
 
 from radiosity.device.backend import upload
-from radiosity.problem.lights import AbstractLights
+from radiosity.problem.lights import AbstractPointLights
 from radiosity.sampling.hemisphere import turn
 
 
 @dataclass(eq=False)
-class PointLights(AbstractLights):
+class PointLights(AbstractPointLights):
     """Lights at points.
 
     Attributes:
@@ -41,3 +41,8 @@ class PointLights(AbstractLights):
         across = dr.sqrt(dr.maximum(1 - z * z, 0))
         x, y = turn(numbers[0])
         return origin, type(origin)(x * across, y * across, z)
+
+    def arrive(self, light: Any, point: Any, numbers: Any) -> tuple[Any, Any, Any]:
+        way = dr.gather(self._point, self._places, light) - point
+        square = dr.squared_norm(way)
+        return way * dr.rsqrt(square), dr.sqrt(square), 1 / (4 * dr.pi * square)

@@ -8,6 +8,7 @@ import numpy as np
 from ..patches.model import Patches
 from .bands import BandGroups
 from .lights import AbstractLights
+from .lights.together import lights_of
 from .quanta import Source
 from .source_rows import SourceRows
 
@@ -45,11 +46,13 @@ class Problem:
         """Make the problem of patches: compare their bands and sum the emission.
 
         Args:
-            lights: lights without area, where there are any.
+            lights: lights without area; by default those of the scene.
 
         Raises:
             SceneError: nothing emits.
         """
+        if lights is None:
+            lights = lights_of(patches.scene.lights, patches.emission.shape[1])
         power = np.zeros((0, patches.emission.shape[1])) if lights is None else lights.power
         groups = BandGroups.of(patches, power)
         rows = SourceRows.of(patches, groups, power[:, groups.leaders])

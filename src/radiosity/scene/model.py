@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from .back import Back
 from .camera import Camera
 from .heat import Heat
+from .lights.model import Lights
 from .paint import Paint
 from .precision import median_centre, plane_reach
 from .sampler import DEFAULT_SAMPLER
@@ -40,6 +41,7 @@ class Scene:
         source: where the scene comes from, for messages.
         heat: what the file says about temperatures, or None; light does not depend on it.
         assumed: names of surfaces whose reflectance no file gives; a default was taken.
+        lights: luminaires, suns and the sky, which are no surfaces.
 
     Example:
         >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -67,6 +69,7 @@ class Scene:
     source: str = "arrays"
     heat: Heat | None = None
     assumed: tuple[str, ...] = ()
+    lights: Lights = Lights()
 
     @staticmethod
     def from_arrays(
@@ -215,6 +218,8 @@ class Scene:
                 digest.update(np.ascontiguousarray(array).tobytes())
             if paint is not None and any(sampler != DEFAULT_SAMPLER for sampler in paint.samplers):
                 digest.update(repr(paint.samplers).encode())  # plain ones as if there were none: older files have the same hash
+        if self.lights:
+            digest.update(self.lights.digest())
         digest.update(repr((self.names, self.bands, self.photometric)).encode())
         return digest.hexdigest()
 

@@ -34,3 +34,21 @@ class AbstractLights(ABC):
             light: UInt32, 0 to n_lights - 1; any of these where a lane fires a patch's line.
             numbers: four floats or more in [0, 1): two for the direction, two for the place.
         """
+
+
+class AbstractPointLights(AbstractLights):
+    """Lights that are seen from any point in one direction, so that shadow rays can go to them."""
+
+    @abstractmethod
+    def arrive(self, light: Any, point: Any, numbers: Any) -> tuple[Any, Any, Any]:
+        """Return how the light of each light arrives at points; called in a kernel.
+
+        That is the unit direction from the point to the light, the distance to it in the BVH's units (infinite for lights far
+        away), and the share of its power, per square unit of the BVH, that passes the point on a plane perpendicular to the
+        direction. The last is the mean over ``numbers``: lines in these directions bring what `leave` sends.
+
+        Args:
+            light: UInt32, 0 to n_lights - 1.
+            point: three floats, in the BVH's coordinates.
+            numbers: two floats in [0, 1).
+        """

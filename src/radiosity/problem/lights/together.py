@@ -1,0 +1,70 @@
+"""All lights without area of a scene as one table of rows."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ...scene.lights.model import Lights
+from .base import AbstractLights, AbstractPointLights
+
+
+@dataclass(frozen=True, eq=False)
+class AllLights(AbstractLights):
+    """Lights of several kinds, one after the other.
+
+    Attributes:
+        kinds: those that shadow rays can go to come first.
+    """
+
+    kinds: tuple[AbstractLights, ...]
+
+    @cached_property
+    def power(self) -> np.ndarray:
+        return np.concatenate([kind.power for kind in self.kinds])
+
+    @cached_property
+    def starts(self) -> np.ndarray:
+        """The first row of each kind, and the number of rows, (n_kinds + 1,) int64."""
+        return np.cumsum([0, *(len(kind.power) for kind in self.kinds)])
+
+    @cached_property
+    def points(self) -> "AllLights | None":
+        """Those lights that shadow rays can go to, whose rows are the first; None: there are none."""
+        kinds = tuple(kind for kind in self.kinds if isinstance(kind, AbstractPointLights))
+        return AllLights(kinds) if kinds else None
+
+    def prepare(self, geometry: Any) -> None:
+        for kind in self.kinds:
+            kind.prepare(geometry)
+
+    def leave(self, light: Any, numbers: Any) -> tuple[Any, Any]:
+        return self._of_kind(light, lambda kind, number: kind.leave(number, numbers))
+
+    def arrive(self, light: Any, point: Any, numbers: Any) -> tuple[Any, Any, Any]:
+        """See `AbstractPointLights.arrive`; all kinds must be such."""
+        return self._of_kind(light, lambda kind, number: kind.arrive(number, point, numbers))
+
+    def _of_kind(self, light: Any, result: Any) -> tuple:
+        """Return what each light's kind says of it, from its number among all and among its kind."""
+        found = None
+        for kind, start in zip(self.kinds, self.starts, strict=False):
+            last = len(kind.power) - 1
+            here = light >= int(start)
+            number = dr.minimum(dr.select(here, light - int(start), 0), last)
+            new = result(kind, number)
+            found = new if found is None else tuple(dr.select(here, one, old) for one, old in zip(new, found, strict=True))
+        assert found is not None
+        return found
+
+
+def lights_of(lights: Lights, n_bands: int) -> AllLights | None:
+    """Return the lights of a scene as rows; None where it has none.
+
+    Args:
+        n_bands: of the scene.
+    """
+    kinds: list[AbstractLights] = []
+    return AllLights(tuple(kinds)) if kinds else None

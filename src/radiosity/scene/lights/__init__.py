@@ -1,0 +1,1 @@
+"""Lights without area, as values: luminaires, the sun and the sky."""

@@ -1,0 +1,32 @@
+"""A luminaire: a lamp at a point, or with a luminous size."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .web import Web
+
+
+@dataclass(frozen=True, eq=False)
+class Luminaire:
+    """A lamp whose light leaves from a point, as a web of intensities says.
+
+    Attributes:
+        name: of the luminaire.
+        position: (3,) float64, m.
+        axes: (3, 3) float64, rows of unit length: the directions of C = 0, of C = 90, and of gamma = 0.
+        web: how it shares its light among directions.
+        power: (n_bands,) float64, lm or W that it sends in all directions together.
+        size: (3,) float64, m: the luminous length along C = 0, width along C = 90, and height; zeros where it is not known.
+        group: luminaires of a group are dimmed together.
+        source: the file that the web is from, or "".
+    """
+
+    name: str
+    position: np.ndarray
+    axes: np.ndarray
+    web: Web
+    power: np.ndarray
+    size: np.ndarray
+    group: str = ""
+    source: str = ""

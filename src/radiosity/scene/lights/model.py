@@ -1,0 +1,55 @@
+"""The lights without area of a scene: they send light and receive none."""
+
+import hashlib
+from dataclasses import dataclass, fields, is_dataclass
+
+import numpy as np
+
+from .luminaire import Luminaire
+from .sky import Sky
+from .sun import Sun
+
+
+@dataclass(frozen=True, eq=False)
+class Lights:
+    """Lights of a scene that are no surfaces.
+
+    Attributes:
+        luminaires: lamps at points.
+        suns: lights so far away that they stand in one direction.
+        sky: what lines see that leave the scene; None: nothing.
+        openings: (n, 4, 3) m, corners around polygons through which the sky and the suns light most of what matters, such as
+            windows; a triangle repeats its last corner. More lines look through them. They stop no line, and no light is lost
+            where they are left out.
+    """
+
+    luminaires: tuple[Luminaire, ...] = ()
+    suns: tuple[Sun, ...] = ()
+    sky: Sky | None = None
+    openings: np.ndarray | None = None
+
+    def __bool__(self) -> bool:
+        return bool(self.luminaires or self.suns or self.sky is not None)
+
+    def digest(self) -> bytes:
+        """Return a hash of everything that a solution depends on."""
+        digest = hashlib.sha256()
+        _update(digest, self)
+        return digest.digest()
+
+
+def _update(digest, value) -> None:
+    """Add a value to a hash: dataclasses field by field, arrays with their shapes."""
+    if is_dataclass(value):
+        digest.update(type(value).__name__.encode())
+        for one in fields(value):
+            _update(digest, getattr(value, one.name))
+    elif isinstance(value, tuple):
+        digest.update(str(len(value)).encode())
+        for one in value:
+            _update(digest, one)
+    elif isinstance(value, np.ndarray):
+        digest.update(str((value.dtype.str, value.shape)).encode())
+        digest.update(np.ascontiguousarray(value).tobytes())
+    else:
+        digest.update(repr(value).encode())

@@ -1,0 +1,40 @@
+"""How a luminaire shares its light among directions: a table of luminous intensities."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Web:
+    """Intensities of half planes C and angles gamma, the type C of CIE 121 and of IES LM-63.
+
+    Gamma is the angle from the luminaire's first axis (down, for one that hangs); C turns about it. Between the entries of the
+    table the intensity is linear in both angles.
+
+    Attributes:
+        planes: (n_planes,) float64, degrees, ascending from 0 to 360, both in the table; one entry: the same in all planes.
+        gamma: (n_gamma,) float64, degrees, ascending; the intensity is zero outside of them.
+        intensity: (n_planes, n_gamma) float64, cd or W/sr, or any unit in proportion.
+    """
+
+    planes: np.ndarray
+    gamma: np.ndarray
+    intensity: np.ndarray
+
+    @cached_property
+    def flux(self) -> float:
+        """The integral of the intensity over all directions, lm or W."""
+        low, high = np.radians(self.gamma[:-1]), np.radians(self.gamma[1:])
+        of_gamma = self._mean_over_planes()
+        slope = (of_gamma[1:] - of_gamma[:-1]) / (high - low)
+        # the integral of (a + s (g - low)) sin g from low to high
+        whole = of_gamma[:-1] * np.cos(low) - of_gamma[1:] * np.cos(high) + slope * (np.sin(high) - np.sin(low))
+        return float(2 * np.pi * whole.sum())
+
+    def _mean_over_planes(self) -> np.ndarray:
+        if len(self.planes) == 1:
+            return self.intensity[0]
+        middle = (self.intensity[1:] + self.intensity[:-1]) / 2
+        return (middle * np.diff(self.planes)[:, None]).sum(axis=0) / 360.0
