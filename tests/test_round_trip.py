@@ -14,6 +14,8 @@ from radiosity.method.baseline import CHOICES, USED
 from radiosity.scene import Back, Camera
 from radiosity.scene.combine import combine
 from radiosity.scene.heat import Heat
+from radiosity.scene.lights.model import Lights
+from radiosity.scene.lights.sun import Sun
 from radiosity.scene.paint import Paint
 from radiosity.scene.sampler import Sampler
 
@@ -263,6 +265,10 @@ def test_the_hash_sees_every_field_that_results_depend_on(name):
     elif isinstance(value, np.ndarray):
         other = value.copy()
         other.flat[-1] += 1
+    elif isinstance(value, Lights):
+        other = Lights(suns=(Sun("sun", np.array([0.0, 0.0, 1.0]), np.ones(3)),))
+        again = Lights(suns=(replace(other.suns[0], diameter=1.0),))
+        assert replace(scene, lights=other).hash != replace(scene, lights=again).hash
     else:
         other = not value if isinstance(value, bool) else (*value[:-1], "another")
     assert replace(scene, **{name: other}).hash != scene.hash

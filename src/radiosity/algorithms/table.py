@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from ..errors import MethodError
+from ..errors import MethodError, shown
 from ..method import Baseline, Method
 from ..problem.model import Problem
 from ..sampling.streams import Seed
@@ -24,7 +24,7 @@ ALGORITHMS = {
 }
 
 
-LIGHTS = ("firing",)  # algorithms that fire all source rows
+LIGHTS = ("firing", "gather")  # algorithms that take lights without area
 
 
 def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: Seed | int, replicates: int) -> AbstractAlgorithm:
@@ -34,7 +34,11 @@ def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: 
         MethodError: there are lights without area, and the method cannot take them.
     """
     if problem.lights is not None and method.machine not in LIGHTS:
-        raise MethodError(f"{method} sends light from patches only, and there are lights without area; take --method random-walk")
+        names = shown([one.name for one in problem.patches.scene.lights.all])
+        raise MethodError(
+            f"{method} sends light from patches only, and {problem.patches.scene.source} has lights without area: {names}; "
+            "take --method gather or --method random-walk"
+        )
     geometry.prepare()
     module, cls = ALGORITHMS[method.machine].split(":")
     return getattr(import_module(f".{module}", __package__), cls)(geometry, problem, method, seed, replicates)

@@ -8,7 +8,7 @@ import numpy as np
 from ..patches.model import Patches
 from .bands import BandGroups
 from .lights import AbstractLights
-from .lights.together import lights_of
+from .lights.together import AllLights, lights_of
 from .quanta import Source
 from .source_rows import SourceRows
 
@@ -30,8 +30,16 @@ class Problem:
     groups: BandGroups
     source: Source
     rows: SourceRows
-    lights: AbstractLights | None = None
+    lights: AllLights | None = None
     prefers_sources: bool = False
+
+    @cached_property
+    def unit(self) -> np.ndarray:
+        """What a gather counts light in, (n_groups,) W/m² or lm/m²: the largest emission, or more where lights need it."""
+        largest = self.groups.emission.max(axis=0)
+        if self.lights is None:
+            return largest
+        return np.maximum(largest, self.rows.emission[self.rows.n_patches :].sum(axis=0) / self.patches.area.sum())
 
     @cached_property
     def scalar(self) -> "Problem":
@@ -53,6 +61,8 @@ class Problem:
         """
         if lights is None:
             lights = lights_of(patches.scene.lights, patches.emission.shape[1])
+        elif not isinstance(lights, AllLights):
+            lights = AllLights((lights,))
         power = np.zeros((0, patches.emission.shape[1])) if lights is None else lights.power
         groups = BandGroups.of(patches, power)
         rows = SourceRows.of(patches, groups, power[:, groups.leaders])

@@ -68,12 +68,14 @@ def choice_for(patches: Patches, budget: Budget, part: Part, device: str, resume
     if resume is not None:
         return _of_solution(resume)
     problem, n = Problem.of(patches), len(patches)
-    reason = _impossible(patches, problem)
+    reason = _impossible(patches)
     if not reason:
         entries = -(-n // CLUSTER) * _lamps(patches)
         reason = _too_few(budget, part, n, pilot.LINES * n + ENTRY * entries)
     if reason:
         return _chosen(FALLBACK, reason, 0)
+    if problem.lights is not None:
+        return _chosen("gather", "shadow rays go to lights without area", 0)
     geometry = Geometry(patches, choose(device))
     geometry.prepare()
     method = PRESETS["gather"].method
@@ -93,7 +95,7 @@ def predicted(problem: Problem, found: pilot.Pilot) -> dict[str, float]:
     It is empty where the pilot met no light that is reflected.
     """
     area, groups, n = problem.patches.area, problem.groups, len(problem.patches)
-    shares = groups.emission / np.maximum(groups.emission.max(axis=0), 1e-300)
+    shares = groups.emission / np.maximum(problem.unit, 1e-300)
     reflected = groups.reflectance * found.irradiance
     group = int(np.argmax((area[:, None] * reflected**2).sum(axis=0)))
     light, rho = reflected[:, group], groups.reflectance[:, group]
@@ -115,9 +117,7 @@ def predicted(problem: Problem, found: pilot.Pilot) -> dict[str, float]:
     return {name: MEASURED[name] * (COSTS[name] * max(squares[name], 0.0)) ** 0.5 for name in METHODS}
 
 
-def _impossible(patches: Patches, problem: Problem) -> str:
-    if problem.lights is not None:
-        return "lights without area are for random walks"
+def _impossible(patches: Patches) -> str:
     passes = np.isin(patches.scene.back, (Back.PASSES, Back.OPEN)).any()
     return "lines pass through some backs, which only random walks follow" if passes else ""
 

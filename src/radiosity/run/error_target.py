@@ -77,6 +77,8 @@ def rows_of(patches: Patches, name: str) -> np.ndarray:
 def nothing_before_lights(patches: Patches) -> bool:
     """Return True where it is certain, by the vertices, that nothing lies in front of any light, so that no line can hit."""
     scene = patches.scene
+    if scene.lights:
+        return False
     lit = patches.emission.any(axis=1)
     normal, point = patches.normal[lit], patches.centroid[lit]
     vertices = scene.vertices[np.unique(scene.faces[scene.faces >= 0])]

@@ -6,7 +6,9 @@ one text of JSON, ``meta``. Line sets are such files, too, with the same keys of
 
 SOLUTION, LINES, EXCHANGE = "solution", "line set", "radiative exchange"  # kinds of files
 READERS = {SOLUTION: "load_solution", LINES: "load_lines", EXCHANGE: "load_exchange"}
-FORMAT, FORMAT_OF_OWN = 1, 2  # of solutions; the second where patches have values of their own, which older versions do not know
+# of solutions; the second where patches have values of their own, the third where there are lights without area: older versions
+# do not know these
+FORMAT, FORMAT_OF_OWN, FORMAT_OF_LIGHTS = 1, 2, 3
 OWN_ARRAYS = ("own_reflectance", "own_emission")  # of patches, that may be missing
 SCENE_ARRAYS = (
     "vertices",

@@ -8,9 +8,11 @@ import numpy as np
 from ..patches.model import Patches
 from ..scene.camera import Camera
 from ..scene.heat import Heat
+from ..scene.lights.model import Lights
 from ..scene.model import Scene
 from ..scene.paint import Paint
 from ..scene.sampler import Sampler
+from . import stored_lights
 from .npz import OWN_ARRAYS, PAINT_ARRAYS, SCENE_ARRAYS
 
 
@@ -43,6 +45,9 @@ def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
         facts["heat"] = scene.heat.facts()
     if scene.assumed:
         facts["assumed"] = scene.assumed
+    if scene.lights:
+        of_lights, facts["lights"] = stored_lights.stored(scene.lights)
+        arrays |= of_lights
     return arrays, {"paints": paints, "scene": facts}
 
 
@@ -67,6 +72,7 @@ def restored(arrays: dict[str, Any], meta: dict[str, Any]) -> Patches:
         source=described["source"],
         heat=Heat.of(described["heat"]) if "heat" in described else None,
         assumed=tuple(described.get("assumed", ())),
+        lights=stored_lights.restored(arrays, described["lights"]) if "lights" in described else Lights(),
     )
     own = {name: arrays.get(f"patches_{name}") for name in OWN_ARRAYS}
     return Patches(scene, arrays["patches_columns"], arrays["patches_rows"], **own)

@@ -1,4 +1,4 @@
-"""How likely a shadow ray from a receiver goes to each lamp.
+"""How likely a shadow ray from a receiver goes to each lamp, and to each light without area.
 
 Receivers are taken in clusters of neighbours. A cluster chooses a lamp with a probability in proportion to what the lamp would
 send it without obstacles, bounded from the cluster's box, and to some extent by power alone. It is zero only for a lamp that is
@@ -15,6 +15,7 @@ import numpy as np
 from ...device.backend import upload
 from ...problem.model import Problem
 from ...tracing.geometry import Geometry
+from .beams import Beams
 from .boxes import Boxes
 from .lamps import Lamps
 from .packets import Packets
@@ -27,26 +28,52 @@ PIECE = 1 << 20  # entries that are computed at a time
 
 @dataclass(frozen=True, eq=False)
 class Chances:
-    """The probabilities of clusters to choose lamps.
+    """The probabilities of clusters to choose targets: lamps come first, then lights without area.
 
     Attributes:
         lamps: the lamps of the scene.
         packets: the lanes; those of one replicate are clustered.
+        beams: lights without area, where there are any.
     """
 
     lamps: Lamps
     packets: Packets
+    beams: Beams | None = None
 
     @staticmethod
     def of(geometry: Geometry, problem: Problem) -> "Chances":
         """Return those of a scene; they are made once."""
         if "chances" not in geometry.made:
-            geometry.made["chances"] = Chances(Lamps(geometry, problem), Packets(geometry, 1))
+            geometry.made["chances"] = Chances(Lamps(geometry, problem), Packets(geometry, 1), Beams.of(geometry, problem))
         return geometry.made["chances"]
 
     @cached_property
     def clusters(self) -> int:
         return -(-self.packets.width // CLUSTER)
+
+    @property
+    def targets(self) -> int:
+        """The number of lamps and lights."""
+        return len(self.lamps) + (0 if self.beams is None else len(self.beams))
+
+    @cached_property
+    def power(self) -> np.ndarray:
+        """The share of each target in the power of all, (n_targets,) float64."""
+        if self.beams is None:
+            return self.lamps.power
+        return self._light / self._light.sum()
+
+    @cached_property
+    def _light(self) -> np.ndarray:
+        """The power of each target over the unit of light, (n_targets,) float64, m²."""
+        if self.beams is None:
+            return self.lamps.light
+        return np.append(self.lamps.light, self.beams.power.max(axis=1) / self.lamps.geometry.bvh.scale**2)
+
+    @cached_property
+    def area(self) -> np.ndarray:
+        """The area of each target in the BVH's units, (n_targets,) float64; lights count as one of 1."""
+        return self.lamps.area if self.beams is None else np.append(self.lamps.area, np.ones(len(self.beams)))
 
     @cached_property
     def boxes(self) -> Boxes:
@@ -55,9 +82,9 @@ class Chances:
 
     @cached_property
     def groups(self) -> np.ndarray:
-        """The first lamp of each group, and the number of lamps, (n_groups + 1,) int64."""
-        each = max(-(-len(self.lamps) * self.clusters // ENTRIES), 1)
-        return np.append(np.arange(0, len(self.lamps), each), len(self.lamps))
+        """The first target of each group, and the number of targets, (n_groups + 1,) int64."""
+        each = max(-(-self.targets * self.clusters // ENTRIES), 1)
+        return np.append(np.arange(0, self.targets, each), self.targets)
 
     @cached_property
     def group_of(self) -> np.ndarray:
@@ -65,14 +92,14 @@ class Chances:
 
     @cached_property
     def within(self) -> np.ndarray:
-        """The probability of each lamp once its group is chosen, (n_lamps,) float64."""
-        return self.lamps.power / np.add.reduceat(self.lamps.power, self.groups[:-1])[self.group_of]
+        """The probability of each target once its group is chosen, (n_targets,) float64."""
+        return self.power / np.add.reduceat(self.power, self.groups[:-1])[self.group_of]
 
     @cached_property
     def probability(self) -> np.ndarray:
         """The probability of each group for each cluster, (clusters, n_groups) float32; rows sum to one, or are zero."""
         found = np.empty((self.clusters, len(self.groups) - 1), np.float32)
-        step = max(PIECE // max(len(self.lamps), 1), 1)
+        step = max(PIECE // max(self.targets, 1), 1)
         for at in range(0, self.clusters, step):
             rows = slice(at, at + step)
             weight = np.add.reduceat(self._weights(self.boxes.take(rows)), self.groups[:-1], axis=1)
@@ -81,17 +108,30 @@ class Chances:
         return found
 
     def _weights(self, boxes: Boxes) -> np.ndarray:
-        """Return weights of all lamps for some clusters, (k, n_lamps) float64."""
-        power = self.lamps.power
-        weight = power * boxes.unobstructed(self.lamps)
-        weight = (1 - BY_POWER) * weight / weight.sum(axis=1, keepdims=True) + BY_POWER * power
-        return np.where(boxes.behind(self.lamps), 0.0, weight)
+        """Return weights of all targets for some clusters, (k, n_targets) float64."""
+        power = self.power
+        if len(self.lamps):
+            weight, behind = power[: len(self.lamps)] * boxes.unobstructed(self.lamps), boxes.behind(self.lamps)
+        else:
+            weight, behind = np.zeros((len(boxes.middle), 0)), np.zeros((len(boxes.middle), 0), bool)
+        if self.beams is not None:
+            of_lights = self.beams.weights(boxes)
+            irradiance = of_lights * (np.pi / (self.lamps.geometry.bvh.scale**2 * self._light.sum()))  # as of lamps
+            weight = np.concatenate([weight, irradiance], axis=1)
+            behind = np.concatenate([behind, of_lights == 0], axis=1)
+        whole = weight.sum(axis=1, keepdims=True)
+        weight = (1 - BY_POWER) * np.divide(weight, whole, out=np.zeros_like(weight), where=whole > 0) + BY_POWER * power
+        return np.where(behind, 0.0, weight)
 
     # ---- on the device ---------------------------------------------------------------------------------------------
 
     def prepare(self) -> None:
         """Make what kernels read."""
         self.lamps.prepare()
+        if not self.targets:
+            return
+        if self.beams is not None:
+            self.beams.prepare()
         _ = self.cumulative, self.density, self.chosen_within, self.spans
 
     @property
@@ -110,7 +150,7 @@ class Chances:
 
     @cached_property
     def chosen_within(self):
-        """The group of each lamp, sums of `within` up to it in its group, and `within` over its area, (3 arrays)."""
+        """The group of each target, sums of `within` up to it in its group, and `within` over its area, (3 arrays)."""
         sums = np.cumsum(self.within)
         sums -= np.concatenate([[0], sums])[self.groups[:-1]][self.group_of]
         sums[self.groups[1:] - 1] = 2.0
@@ -118,12 +158,12 @@ class Chances:
         return (
             upload(types.UInt32, self.group_of.astype(np.uint32)),
             upload(types.Float, sums.astype(np.float32)),
-            upload(types.Float, (self.within / self.lamps.area).astype(np.float32)),
+            upload(types.Float, (self.within / self.area).astype(np.float32)),
         )
 
     @cached_property
     def spans(self):
-        """The first lamp of each group, and their number, (n_groups + 1,) UInt32."""
+        """The first target of each group, and their number, (n_groups + 1,) UInt32."""
         return upload(self.types.UInt32, self.groups.astype(np.uint32))
 
     def row(self, place):
@@ -131,15 +171,15 @@ class Chances:
         return (place // CLUSTER) * dr.opaque(self.types.UInt32, len(self.groups) - 1)
 
     def choose(self, row, number):
-        """Return a lamp and its density, the probability over its area, from a number in [0, 1); called in a kernel."""
+        """Return a target and its density, the probability over its area, from a number in [0, 1); called in a kernel."""
         UInt32, Float = self.types.UInt32, self.types.Float
         many = len(self.groups) - 1
-        if len(self.lamps) == 1:
+        if self.targets == 1:
             lamp = number * 0
             return UInt32(lamp), dr.gather(Float, self.density, row) * dr.gather(Float, self.chosen_within[2], UInt32(lamp))
         group = _search(self.cumulative, row, row * 0, row * 0 + (many - 1), many, number, UInt32, Float)
         share = dr.gather(Float, self.density, row + group)
-        if many == len(self.lamps):
+        if many == self.targets:
             return group, share * dr.gather(Float, self.chosen_within[2], group)
         below = dr.gather(Float, self.cumulative, row + group - 1, group > 0)
         again = dr.clip((number - below) / dr.maximum(share, 1e-30), 0, 1 - 2.0**-24)

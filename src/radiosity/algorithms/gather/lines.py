@@ -23,11 +23,13 @@ from ...tracing.faces import COLUMN_BITS, QUAD
 from ...tracing.hits import first_hit, patch_of
 from ...tracing.ray_generation import MASK, Frame, before, place_number, position
 from .chances import Chances
+from .glow import Glow
 from .lamps import NONE
 from .packets import ESCAPED, LOST, Packets
 
 KERNEL = 1 / 3  # of the density of shadow rays: above this kernel, cosine lines count
 UNITS = 2.0**30  # fixed point units of one line
+TOUCHES = 1 - 1e-5  # of a light's distance: what a ray hits so near to it is no obstacle, such as the ceiling that it hangs on
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +44,7 @@ class Lines:
         keys: randomisation of the replicates, for cosine lines and for shadow rays.
         emission: of each group of bands, (n_patches + 2,) Float.
         most: the largest value that a cosine line may read, for fixed point.
+        sky: what lines see that leave the scene, where there is a sky.
     """
 
     packets: Packets
@@ -51,6 +54,7 @@ class Lines:
     keys: tuple[Any, Any]
     emission: list
     most: float
+    sky: Glow | None = None
 
     @staticmethod
     def of(packets: Packets, chances: Chances, problem: Problem, method: Method, seed: Seed | int, purposes) -> "Lines":
@@ -60,18 +64,18 @@ class Lines:
             method: its numbers and their randomisation.
             purposes: of the streams of cosine lines and of shadow rays.
         """
-        types, emission = packets.types, problem.groups.emission
+        types, emission, lights = packets.types, problem.groups.emission, problem.lights
         numbers = ready(method.points, types)
         keys = []
         for purpose in purposes:
             drawn = [numbers.randomisation(stream(seed, r, purpose)) for r in range(packets.replicates)]
             keys.append(upload(types.UInt32, np.array(drawn, np.uint32)))
-        shares = emission / np.maximum(emission.max(axis=0), 1e-300)
+        shares = emission / np.maximum(problem.unit, 1e-300)
         columns = [upload(types.Float, np.append(column, [0, 0]).astype(np.float32)) for column in shares.T]
         chances.prepare()
-        return Lines(
-            packets, chances, numbers, method.randomisation == "by-patch", (keys[0], keys[1]), columns, most_read(problem)
-        )
+        by_patch, both = method.randomisation == "by-patch", (keys[0], keys[1])
+        sky = None if lights is None or lights.sky is None else Glow.of(lights.sky, packets.geometry, problem)
+        return Lines(packets, chances, numbers, by_patch, both, columns, most_read(problem), sky)
 
     @property
     def groups(self) -> int:
@@ -109,7 +113,7 @@ class Lines:
         frame, position_of = self._frame(record)
         normal, row = frame.normal * frame.side, self.chances.row(place)
         base, lanes, scale = replicate * packets.width_on_device, dr.opaque(UInt32, packets.lanes), dr.opaque(Float, self.unit)
-        one, none = UInt32(1), UInt32(0)
+        one, none, lamps = UInt32(1), UInt32(0), self.chances.lamps
         dr.eval(start, count, row, base)
 
         def body(number, escaped, lost, *sums):
@@ -117,13 +121,18 @@ class Lines:
             origin, direction = frame.leave(*position_of(u), u)
             hit = first_hit(geometry, origin, direction, coherent=packets.coherent)
             met = patch_of(geometry, hit, packets.n + 1, packets.n)
-            lamp = dr.gather(UInt32, self.chances.lamps.lamp_of_patch, met)
-            lit = lamp != NONE
-            facing = dr.gather(types.Array3f, self.chances.lamps.normals, lamp, lit)
-            kernel = dr.dot(normal, direction) * -dr.dot(facing, direction) * (1 / np.pi)
-            density = self.chances.density_of(row, lamp, lit)
-            counted = lit & (kernel > KERNEL * density * hit.distance * hit.distance)
-            values = [dr.gather(Float, column, met, counted) for column in self.emission]
+            if lamps.n_faces:
+                lamp = dr.gather(UInt32, lamps.lamp_of_patch, met)
+                lit = lamp != NONE
+                facing = dr.gather(types.Array3f, lamps.normals, lamp, lit)
+                kernel = dr.dot(normal, direction) * -dr.dot(facing, direction) * (1 / np.pi)
+                density = self.chances.density_of(row, lamp, lit)
+                counted = lit & (kernel > KERNEL * density * hit.distance * hit.distance)
+                values = [dr.gather(Float, column, met, counted) for column in self.emission]
+            else:
+                values = [dr.zeros(Float, packets.lanes) for _ in self.emission]
+            if self.sky is not None:
+                values = self._with_sky(values, met == packets.n, origin, direction, normal, row)
             where = dr.gather(UInt32, packets.place_on_device, met)
             if keep is not None:
                 dr.scatter(keep, where, (start + number) * lanes + lane)
@@ -133,7 +142,7 @@ class Lines:
             gone = [total + dr.select(where == code, one, none) for total, code in ((escaped, ESCAPED), (lost, LOST))]
             if squares:
                 return (number + 1, *gone, *_squared(sums, values))
-            fixed = [types.Int64(types.Int(value * scale + 0.5)) for value in values]
+            fixed = [self._fixed(types.Int64, value * scale + 0.5) for value in values]
             return (number + 1, *gone, *(total + value for total, value in zip(sums, fixed, strict=True)))
 
         zeros = [dr.zeros(UInt32, packets.lanes) for _ in range(2)]
@@ -156,6 +165,12 @@ class Lines:
         points = self._points(self.keys[1], replicate, record, patch, start, int((done + counts).max()))
         frame, position_of = self._frame(record)
         normal, row = frame.normal * frame.side, self.chances.row(place)
+        beams, openings, n_faces = self.chances.beams, self.chances.lamps.openings, self.chances.lamps.n_faces
+        kind = Float if squares else types.UInt64
+        zeros = [dr.zeros(kind, packets.lanes) for _ in range(self.groups * (1 + squares))]
+        if not self.chances.targets:
+            return zeros
+        others = dr.opaque(types.UInt32, len(self.chances.lamps))
         dr.eval(start, count, row)
 
         def body(number, *sums):
@@ -170,21 +185,87 @@ class Lines:
             kernel = dr.dot(direction, normal) * -dr.dot(direction, facing) * (1 / np.pi)
             bound = density * square
             faces = (dr.dot(direction, normal) > 0) & (dr.dot(direction, facing) < 0) & (kernel <= KERNEL * bound)
+            aimed = light = above = share = distance = None
+            if beams is not None:
+                aimed = lamp >= others
+                light = dr.select(aimed, lamp - others, 0)
+                towards, distance, share = beams.lights.arrive(light, origin, (u[0], u[1]))
+                direction = dr.select(aimed, towards, direction)
+                above = dr.dot(towards, normal)
+                faces = dr.select(aimed, (above > 0) & (share > 0), faces)
             hit = first_hit(geometry, origin, direction, coherent=packets.coherent, active=faces)
             met = patch_of(geometry, hit, packets.n + 1, packets.n)
             seen = faces & (met - first < cells)
-            share = dr.select(seen, kernel / bound, 0)
-            brought = [share * dr.gather(Float, column, met, seen) for column in self.emission]
+            part = dr.select(seen, kernel / bound, 0)
+            brought = [part * dr.gather(Float, column, met, seen) for column in self.emission]
+            if openings is not None and self.sky is not None:
+                through = faces & (lamp >= n_faces) & (lamp < others) & ~hit.valid
+                number_of, _, front = openings.nearest(origin, direction, through)
+                through &= number_of + dr.select(front, types.UInt32(0), openings.count) == lamp - n_faces
+                seen_sky = self.sky.shares(direction)
+                brought = [dr.select(through, kernel / bound * one, old) for one, old in zip(seen_sky, brought, strict=True)]
+            if beams is not None and above is not None:
+                arrives = faces & aimed & (~hit.valid | (hit.distance >= distance * TOUCHES))
+                part = above * share / density
+                brought = [
+                    dr.select(arrives, part * dr.gather(Float, column, light, aimed), old)
+                    for column, old in zip(beams.powers, brought, strict=True)
+                ]
             if squares:
                 return (number + 1, *_squared(sums, brought))
-            fixed = [types.UInt64(types.Int(value * UNITS + 0.5)) for value in brought]
+            fixed = [self._fixed(types.UInt64, value * UNITS + 0.5) for value in brought]
             return (number + 1, *(total + value for total, value in zip(sums, fixed, strict=True)))
 
-        kind = Float if squares else types.UInt64
-        return self._summed(count, body, [dr.zeros(kind, packets.lanes) for _ in range(self.groups * (1 + squares))])
+        return self._summed(count, body, zeros)
+
+    def _fixed(self, kind, value):
+        """Return whole numbers of 64 bits; the light of lamps fits into 32."""
+        return kind(self.types.Int(value)) if self.sky is None and self.chances.beams is None else kind(value)
+
+    def _with_sky(self, values: list, escaped, origin, direction, normal, row) -> list:
+        """Return what cosine lines meet, with the sky where they escape, unless it counts for shadow rays through an opening;
+        called in a kernel."""
+        assert self.sky is not None
+        counted, openings, lamps = escaped, self.chances.lamps.openings, self.chances.lamps
+        if openings is not None:
+            found, distance, front = openings.nearest(origin, direction, escaped)
+            crosses = escaped & (found != NONE)
+            lamp = dr.select(crosses, found + dr.select(front, self.types.UInt32(0), openings.count) + lamps.n_faces, 0)
+            facing = dr.gather(self.types.Array3f, lamps.normals, lamp, crosses)
+            kernel = dr.dot(normal, direction) * -dr.dot(facing, direction) * (1 / np.pi)
+            density = self.chances.density_of(row, lamp, crosses)
+            counted = escaped & (~crosses | (kernel > KERNEL * density * distance * distance))
+        return [dr.select(counted, one, old) for one, old in zip(self.sky.shares(direction), values, strict=True)]
 
     def _point_of(self, lamp, u):
         """Return a point of a lamp, the lamp's normal, its first patch and their number; called in a kernel."""
+        types, lamps = self.types, self.chances.lamps
+        if not lamps.n_faces:
+            nothing = types.UInt32(0)
+            end, facing = self._point_of_opening(lamp, u) if lamps.openings is not None else (types.Array3f(0), types.Array3f(0))
+            return end, facing, nothing, nothing
+        of_face = self._point_of_face(lamp if len(lamps) == lamps.n_faces else dr.minimum(lamp, lamps.n_faces - 1), u)
+        if self.chances.targets == lamps.n_faces:
+            return of_face
+        end, facing, first, cells = of_face
+        is_face = lamp < lamps.n_faces
+        if lamps.openings is not None:
+            there, towards = self._point_of_opening(dr.maximum(lamp, lamps.n_faces), u)
+            end, facing = dr.select(is_face, end, there), dr.select(is_face, facing, towards)
+        return end, facing, first, dr.select(is_face, cells, 0)
+
+    def _point_of_opening(self, lamp, u):
+        """Return a point of an opening and the normal of its side; called in a kernel."""
+        lamps = self.chances.lamps
+        assert lamps.openings is not None
+        side = lamp - lamps.n_faces
+        back = side >= lamps.openings.count
+        number = dr.minimum(dr.select(back, side - lamps.openings.count, side), lamps.openings.count - 1)
+        end, normal = lamps.openings.point(number, u[0], u[1], True)
+        return end, dr.select(back, -normal, normal)
+
+    def _point_of_face(self, lamp, u):
+        """Return a point of a lamp that is a face, its normal, its first patch and their number; called in a kernel."""
         types = self.types
         face, counts, first, cells = dr.gather(types.Array4u, self.chances.lamps.records, lamp)
         frame = Frame.of(self.packets.geometry, face)

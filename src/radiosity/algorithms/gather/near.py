@@ -49,9 +49,10 @@ class Near:
         """Look for clusters that have a lamp near them, and sum the form factors of their patches."""
         lamps, packets = chances.lamps, chances.packets
         groups, order, bvh = lamps.problem.groups, packets.order[: packets.n], lamps.geometry.bvh
-        emission = (groups.emission / np.maximum(groups.emission.max(axis=0), 1e-300))[lamps.first]
+        emission = lamps.emission
         corners = lamps.corners[:, [0, 1, 3, 2]]  # around: they are stored row by row
-        corners = np.where(lamps.sides[:, 1, None, None] == 1, corners[:, ::-1], corners)
+        turned = (np.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0]) * lamps.facing).sum(axis=1) < 0
+        corners = np.where(turned[:, None, None], corners[:, ::-1], corners)
         points, normals = (packets.patches.centroid - bvh.centre) * bvh.scale, packets.patches.normal
         reach = np.sqrt(packets.patches.area) * bvh.scale  # about how far a patch lies around its centroid
         near = Near(np.zeros(packets.n), np.zeros((packets.n, groups.n_groups)))
@@ -84,11 +85,14 @@ class Near:
 def pairs(chances: Chances) -> tuple[np.ndarray, np.ndarray]:
     """Return clusters and lamps, (m,) int64 each, between which a kernel may be above the limit: `MOST` at most."""
     lamps, boxes = chances.lamps, chances.boxes
+    if not len(lamps):
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
     step = max(PIECE // max(len(lamps), 1), 1)
     found: tuple[np.ndarray, ...] = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
     for at in range(0, chances.clusters, step):
         rows = slice(at, at + step)
-        limit = KERNEL * chances.probability[rows][:, chances.group_of] * (chances.within / lamps.area)
+        density = chances.probability[rows][:, chances.group_of] * (chances.within / chances.area)
+        limit = KERNEL * density[:, : len(lamps)]
         kernel = boxes.take(rows).largest_kernel(lamps)
         cluster, lamp = np.nonzero((kernel > limit) & (limit > 0))
         excess = kernel[cluster, lamp] / limit[cluster, lamp]

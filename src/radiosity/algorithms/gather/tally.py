@@ -43,8 +43,8 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         rays, lines = (np.maximum(count, 1).astype(np.float64) for count in (state.rays, state.cosine))
         brought = state.brought[..., group] * (problem.patches.area / (rays * UNITS))
         met = state.met[..., group] * (problem.patches.area * most_read(problem) / (lines * UNITS))
-        unit = float(problem.groups.emission[:, group].max())
-        if unit > 0:
+        unit = float(problem.unit[group])
+        if unit > 0 and problem.lights is None:  # what lights without area send past all patches is not known
             own = problem.groups.emission[:, group] * problem.patches.area / unit
             bias = self._bias_of_stored(problem, state, group)
             factor = factors(own, problem.groups.reflectance[:, group], brought + met, state.missed.sum(axis=0), lines, bias)
@@ -57,7 +57,7 @@ class GatherTally(AbstractBiasedTally[GatherState]):
 
     def line(self, problem: Problem, state: GatherState, group: int) -> np.ndarray | float:
         """Return the power that one of a patch's lines brings where it hits the brightest lamp."""
-        return problem.groups.emission[:, group].max() * problem.patches.area / np.maximum(state.cosine, 1)
+        return problem.unit[group] * problem.patches.area / np.maximum(state.cosine, 1)
 
     def _bias_of_stored(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
         """Return the size of the bias of the solution along stored lines, (n_patches,), and of what iterations have left."""
@@ -85,4 +85,7 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         rho, own = problem.groups.reflectance[:, group], problem.groups.emission[:, group] * problem.patches.area
         left = own + rho * received
         escaped, lost = (float(left @ (count.mean(axis=0) / np.maximum(state.cosine, 1))) for count in state.missed)
-        return by_difference(float(own.sum()), float(received @ (1 - rho)), escaped, lost)
+        absorbed, emitted = float(received @ (1 - rho)), float(own.sum())
+        if problem.lights is not None:  # they emit what arrives: nothing counts what they send past all patches
+            emitted = absorbed + escaped + lost
+        return by_difference(emitted, absorbed, escaped, lost)

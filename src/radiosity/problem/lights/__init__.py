@@ -1,5 +1,5 @@
 """Lights without area on a device: they fire lines and receive none."""
 
-from .base import AbstractLights, AbstractPointLights
+from .base import AbstractLights, AbstractPointLights, AbstractSky
 
-__all__ = ["AbstractLights", "AbstractPointLights"]
+__all__ = ["AbstractLights", "AbstractPointLights", "AbstractSky"]

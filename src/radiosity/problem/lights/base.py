@@ -36,6 +36,14 @@ class AbstractLights(ABC):
         """
 
 
+class AbstractSky(AbstractLights):
+    """Light of all directions, which lines see that leave the scene."""
+
+    @abstractmethod
+    def radiance(self, direction: Any) -> list:
+        """Return what lines in these directions, of unit length, see: a Float for each band, W/(m² sr) or cd/m²; in a kernel."""
+
+
 class AbstractPointLights(AbstractLights):
     """Lights that are seen from any point in one direction, so that shadow rays can go to them."""
 

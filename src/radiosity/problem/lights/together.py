@@ -8,7 +8,7 @@ import drjit as dr
 import numpy as np
 
 from ...scene.lights.model import Lights
-from .base import AbstractLights, AbstractPointLights
+from .base import AbstractLights, AbstractPointLights, AbstractSky
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +35,11 @@ class AllLights(AbstractLights):
         """Those lights that shadow rays can go to, whose rows are the first; None: there are none."""
         kinds = tuple(kind for kind in self.kinds if isinstance(kind, AbstractPointLights))
         return AllLights(kinds) if kinds else None
+
+    @property
+    def sky(self) -> AbstractSky | None:
+        """The sky, where there is one."""
+        return next((kind for kind in self.kinds if isinstance(kind, AbstractSky)), None)
 
     def prepare(self, geometry: Any) -> None:
         for kind in self.kinds:

@@ -31,6 +31,11 @@ class Lights:
     def __bool__(self) -> bool:
         return bool(self.luminaires or self.suns or self.sky is not None)
 
+    @property
+    def all(self) -> tuple[Luminaire | Sun | Sky, ...]:
+        """All lights: luminaires, suns, then the sky."""
+        return (*self.luminaires, *self.suns, *(() if self.sky is None else (self.sky,)))
+
     def digest(self) -> bytes:
         """Return a hash of everything that a solution depends on."""
         digest = hashlib.sha256()
