@@ -185,7 +185,7 @@ class Lines:
             kernel = dr.dot(direction, normal) * -dr.dot(direction, facing) * (1 / np.pi)
             bound = density * square
             faces = (dr.dot(direction, normal) > 0) & (dr.dot(direction, facing) < 0) & (kernel <= KERNEL * bound)
-            aimed = light = above = share = distance = None
+            arrival = None
             if beams is not None:
                 aimed = lamp >= others
                 light = dr.select(aimed, lamp - others, 0)
@@ -193,6 +193,7 @@ class Lines:
                 direction = dr.select(aimed, towards, direction)
                 above = dr.dot(towards, normal)
                 faces = dr.select(aimed, (above > 0) & (share > 0), faces)
+                arrival = aimed, light, distance, above * share / density, beams.powers
             hit = first_hit(geometry, origin, direction, coherent=packets.coherent, active=faces)
             met = patch_of(geometry, hit, packets.n + 1, packets.n)
             seen = faces & (met - first < cells)
@@ -204,12 +205,12 @@ class Lines:
                 through &= number_of + dr.select(front, types.UInt32(0), openings.count) == lamp - n_faces
                 seen_sky = self.sky.shares(direction)
                 brought = [dr.select(through, kernel / bound * one, old) for one, old in zip(seen_sky, brought, strict=True)]
-            if beams is not None and above is not None:
+            if arrival is not None:
+                aimed, light, distance, part, powers = arrival
                 arrives = faces & aimed & (~hit.valid | (hit.distance >= distance * TOUCHES))
-                part = above * share / density
                 brought = [
                     dr.select(arrives, part * dr.gather(Float, column, light, aimed), old)
-                    for column, old in zip(beams.powers, brought, strict=True)
+                    for column, old in zip(powers, brought, strict=True)
                 ]
             if squares:
                 return (number + 1, *_squared(sums, brought))
