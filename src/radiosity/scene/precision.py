@@ -7,6 +7,7 @@ the precision of all others. The rounding at a point depends on the numbers near
 import numpy as np
 
 EPSILON = float(np.finfo(np.float32).eps)
+OFFSET = 8 * EPSILON  # of the largest number that places a point or its plane: lines begin this far in front of it
 TIE = 1e-9  # share of the area: where less decides, the lower of two medians is taken, however sums are rounded
 
 

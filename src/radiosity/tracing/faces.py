@@ -8,10 +8,9 @@ import numpy as np
 from ..device.backend import Device, upload
 from ..patches.model import Patches
 from ..scene.model import Scene, unit_normals
-from ..scene.precision import EPSILON, plane_reach
+from ..scene.precision import OFFSET, plane_reach
 from .bvh import Bvh, bvh, primitives
 
-OFFSET = 8 * EPSILON  # of the largest number that places a point or its plane: lines begin this far in front of it
 NEAR = 1.0  # of 2^20 that the scene reaches to: smaller numbers count as this, or lines would stay where all are zero
 
 COLUMN_BITS = 14

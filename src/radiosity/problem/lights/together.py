@@ -9,6 +9,7 @@ import numpy as np
 
 from ...scene.lights.model import Lights
 from .base import AbstractLights, AbstractPointLights, AbstractSky
+from .luminaires import Luminaires
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +33,7 @@ class AllLights(AbstractLights):
 
     @cached_property
     def points(self) -> "AllLights | None":
-        """Those lights that shadow rays can go to, whose rows are the first; None: there are none."""
+        """The lights that shadow rays can go to, whose rows are the first; None: there are none."""
         kinds = tuple(kind for kind in self.kinds if isinstance(kind, AbstractPointLights))
         return AllLights(kinds) if kinds else None
 
@@ -72,4 +73,6 @@ def lights_of(lights: Lights, n_bands: int) -> AllLights | None:
         n_bands: of the scene.
     """
     kinds: list[AbstractLights] = []
+    if lights.luminaires:
+        kinds.append(Luminaires(lights.luminaires, n_bands))
     return AllLights(tuple(kinds)) if kinds else None

@@ -20,6 +20,9 @@ class Luminaire:
         size: (3,) float64, m: the luminous length along C = 0, width along C = 90, and height; zeros where it is not known.
         group: luminaires of a group are dimmed together.
         source: the file that the web is from, or "".
+        soft: light leaves from all of the luminous area (length by width, perpendicular to gamma = 0), so that shadows are soft;
+            False: from its middle.
+        disc: the luminous area is an ellipse in that rectangle.
     """
 
     name: str
@@ -30,3 +33,5 @@ class Luminaire:
     size: np.ndarray
     group: str = ""
     source: str = ""
+    soft: bool = False
+    disc: bool = False
