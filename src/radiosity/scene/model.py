@@ -69,7 +69,7 @@ class Scene:
     source: str = "arrays"
     heat: Heat | None = None
     assumed: tuple[str, ...] = ()
-    lights: Lights = Lights()
+    lights: Lights = field(default_factory=Lights)
 
     @staticmethod
     def from_arrays(
