@@ -60,7 +60,7 @@ class Problem:
             SceneError: nothing emits.
         """
         if lights is None:
-            lights = lights_of(patches.scene.lights, patches.emission.shape[1])
+            lights = lights_of(patches.scene, patches.emission.shape[1])
         elif not isinstance(lights, AllLights):
             lights = AllLights((lights,))
         power = np.zeros((0, patches.emission.shape[1])) if lights is None else lights.power

@@ -10,7 +10,7 @@ from ..scene.lights.sky import Sky
 from ..scene.lights.sun import Sun
 from ..scene.lights.web import Web
 
-NAMED = ("name", "group", "source")
+NAMED = ("name", "group", "source", "soft", "disc")
 PLACED = ("position", "axes", "power", "size")  # arrays of a luminaire
 WEB = ("planes", "gamma", "intensity")
 

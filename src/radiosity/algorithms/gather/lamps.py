@@ -80,7 +80,7 @@ class Lamps:
             return emission
         sky = self.problem.patches.scene.lights.sky
         assert sky is not None
-        mean = np.pi * sky.radiance.mean(axis=(0, 1))[groups.leaders] / unit
+        mean = np.broadcast_to(sky.flux / 4, len(self.problem.patches.scene.bands))[groups.leaders] / unit
         return np.concatenate([emission, np.tile(mean, (2 * len(self.openings), 1))])
 
     @cached_property

@@ -7,9 +7,12 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from ...scene.lights.model import Lights
+from ...scene.model import Scene
+from .ball import Ball
 from .base import AbstractLights, AbstractPointLights, AbstractSky
 from .luminaires import Luminaires
+from .sky import SkyRows
+from .suns import Suns
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +36,7 @@ class AllLights(AbstractLights):
 
     @cached_property
     def points(self) -> "AllLights | None":
-        """The lights that shadow rays can go to, whose rows are the first; None: there are none."""
+        """The lights that shadow rays can go to, whose rows are the first; None where there are none."""
         kinds = tuple(kind for kind in self.kinds if isinstance(kind, AbstractPointLights))
         return AllLights(kinds) if kinds else None
 
@@ -66,13 +69,17 @@ class AllLights(AbstractLights):
         return found
 
 
-def lights_of(lights: Lights, n_bands: int) -> AllLights | None:
+def lights_of(scene: Scene, n_bands: int) -> AllLights | None:
     """Return the lights of a scene as rows; None where it has none.
 
     Args:
-        n_bands: of the scene.
+        n_bands: of what is solved for.
     """
-    kinds: list[AbstractLights] = []
+    lights, kinds = scene.lights, []
     if lights.luminaires:
         kinds.append(Luminaires(lights.luminaires, n_bands))
+    if lights.suns:
+        kinds.append(Suns.of(lights.suns, n_bands, Ball.about(scene)))
+    if lights.sky is not None and lights.sky.flux.any():
+        kinds.append(SkyRows(lights.sky, n_bands, Ball.about(scene)))
     return AllLights(tuple(kinds)) if kinds else None
