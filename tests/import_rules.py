@@ -25,6 +25,7 @@ FLOORS = (  # a folder, or a file of the package's own folder, imports what is a
     "run",
     "image",
     "exchange",  # heat from counted lines: it runs them, and its pictures take cameras and false colours
+    "sensors",  # light at points: they run a solution's scene once more
     "lab",
     "",  # __init__.py of the package: the public names, which what is outside the core may use
     "cli",
@@ -36,7 +37,17 @@ TO_COME = {"view", "cluster"}
 APART = ("scene.formats",)  # folders within folders that count on their own
 MOST = 0.22  # of all lines may be in one folder
 
-KERNELS = ("device/", "sampling/", "tracing/", "tally/", "factors/", "algorithms/", "problem/bands.py", "problem/lights/")
+KERNELS = (
+    "device/",
+    "sampling/",
+    "tracing/",
+    "tally/",
+    "factors/",
+    "algorithms/",
+    "problem/bands.py",
+    "problem/lights/",
+    "sensors/",
+)
 PLACES = {"drjit": KERNELS, "mitsuba": ("device/", "scene/formats/mitsuba/", "image/")}
 EARLY = {  # packages besides numpy that a file may import when it is imported itself
     "cyclopts": ("cli/",),

@@ -35,6 +35,9 @@ if TYPE_CHECKING:
     from .run.refine import refine_check
     from .run.solve import solve
     from .scene import Back, Camera, Scene, load_scene
+    from .sensors.measure import measure
+    from .sensors.model import Sensors
+    from .sensors.result import Measurement
     from .solution import RefineCheck, Solution, load_solution
 
 llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
@@ -67,6 +70,9 @@ _HOMES = {
     "run.refine": ("refine_check",),
     "run.solve": ("solve",),
     "scene": ("Back", "Camera", "Scene", "load_scene"),
+    "sensors.measure": ("measure",),
+    "sensors.model": ("Sensors",),
+    "sensors.result": ("Measurement",),
     "solution": ("RefineCheck", "Solution", "load_solution"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
@@ -80,6 +86,7 @@ __all__ = [
     "DeviceError",
     "GebhartFactors",
     "LineSet",
+    "Measurement",
     "Method",
     "MethodError",
     "OutputError",
@@ -90,6 +97,7 @@ __all__ = [
     "RefineCheck",
     "Scene",
     "SceneError",
+    "Sensors",
     "Solution",
     "ViewFactors",
     "check",
@@ -99,6 +107,7 @@ __all__ = [
     "load_scene",
     "load_solution",
     "load_view_factors",
+    "measure",
     "merge",
     "radiative_exchange",
     "refine_check",

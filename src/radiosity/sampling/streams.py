@@ -58,6 +58,11 @@ class Purpose(IntEnum):
     PILOT = 10  # gather: cosine lines of the pilot
     PILOT_SHADOW = 11  # gather: shadow rays of the pilot
     VIEW_FACTORS = 12  # pairs that tell whether polygons are better than lines
+    SENSORS = 13  # cosine lines of sensors
+    SENSORS_SHADOW = 14  # shadow rays of sensors
+    SENSORS_PILOT = 15  # cosine lines of the pilot of sensors
+    SENSORS_PILOT_SHADOW = 16  # shadow rays of it
+    SENSORS_TURN = 17  # by how much upright planes of sensors for cylindrical illuminance are turned
     ROUNDING = 2  # iterations: how many lines a patch fires, a child each step; they never meet the other purpose of this number
 
 

@@ -78,9 +78,13 @@ class Frame:
     @staticmethod
     def of(geometry: Geometry, face) -> "Frame":
         """Make the frame of a face number, whose top bit is the back."""
-        types = geometry.device.types
+        return Frame.read(geometry.device.types, geometry.face_records, face)
+
+    @staticmethod
+    def read(types, records, face) -> "Frame":
+        """Make the frame of a number, whose top bit is the back, from records as those of faces."""
         side = dr.select(face < BACK, types.Float(1), types.Float(-1))
-        block = dr.gather(types.Array44f, geometry.face_records, face & (BACK - 1))  # one read of 16 words, not four of four
+        block = dr.gather(types.Array44f, records, face & (BACK - 1))  # one read of 16 words, not four of four
         words = [block[i // 4][i % 4] for i in range(16)]
         origin, first, second, normal, tangent = (types.Array3f(*words[at : at + 3]) for at in range(0, 15, 3))
         return Frame(origin, first, second, tangent, dr.cross(normal, tangent), normal, side, words[15])

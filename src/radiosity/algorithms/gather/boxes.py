@@ -27,23 +27,15 @@ class Boxes:
     lean: np.ndarray
 
     @staticmethod
-    def of(lamps: Lamps, packets: Packets, size: int) -> "Boxes":
+    def of(packets: Packets, size: int) -> "Boxes":
         """Make the boxes of clusters of ``size`` lanes."""
-        geometry, patches, order = lamps.geometry, packets.patches, packets.order
-        corners, face = geometry.faces.corners, patches.face[packets.order]
-        low, high = corners.min(axis=1)[face], corners.max(axis=1)[face]
-        if not geometry.whole_faces:  # a cell is near its centroid, and within its face
-            _, first, second = geometry.faces.frames
-            reach = np.linalg.norm(first, axis=1) / patches.columns + np.linalg.norm(second, axis=1) / patches.rows
-            centre = (patches.centroid[order] - geometry.bvh.centre) * geometry.bvh.scale
-            low, high = np.maximum(low, centre - reach[face, None]), np.minimum(high, centre + reach[face, None])
-        starts = np.arange(0, len(order), size)
+        low, high, normals = packets.extents()
+        starts = np.arange(0, len(low), size)
         low, high = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
-        normals = patches.normal[order]
         mean = np.add.reduceat(normals, starts)
         length = np.linalg.norm(mean, axis=1, keepdims=True)
         mean = np.divide(mean, length, out=np.zeros_like(mean), where=length > 0)
-        of_lane = np.repeat(mean, np.diff(np.append(starts, len(order))), axis=0)
+        of_lane = np.repeat(mean, np.diff(np.append(starts, len(normals))), axis=0)
         lean = np.minimum.reduceat((normals * of_lane).sum(axis=1), starts)
         return Boxes((low + high) / 2, (high - low) / 2, mean, np.clip(lean, -1, 1))
 

@@ -78,7 +78,7 @@ class Chances:
     @cached_property
     def boxes(self) -> Boxes:
         """The boxes around clusters."""
-        return Boxes.of(self.lamps, self.packets, CLUSTER)
+        return Boxes.of(self.packets, CLUSTER)
 
     @cached_property
     def groups(self) -> np.ndarray:

@@ -21,7 +21,7 @@ from ...sampling.numbers import AbstractNumbers, ready
 from ...sampling.streams import Seed, stream
 from ...tracing.faces import COLUMN_BITS, QUAD
 from ...tracing.hits import first_hit, patch_of
-from ...tracing.ray_generation import MASK, Frame, before, place_number, position
+from ...tracing.ray_generation import MASK, Frame, before, place_number
 from .chances import Chances
 from .glow import Glow
 from .lamps import NONE
@@ -108,11 +108,11 @@ class Lines:
         geometry, UInt32, Float = packets.geometry, types.UInt32, types.Float
         lane, replicate, place, patch = packets.read()
         start, count = packets.of_packets(done, place), packets.of_packets(counts, place)
-        record = self._record(patch)
+        record = packets.record(patch)
         points = self._points(self.keys[0], replicate, record, patch, start, int((done + counts).max()))
-        frame, position_of = self._frame(record)
+        frame, position_of = packets.frame(record)
         normal, row = frame.normal * frame.side, self.chances.row(place)
-        base, lanes, scale = replicate * packets.width_on_device, dr.opaque(UInt32, packets.lanes), dr.opaque(Float, self.unit)
+        base, lanes, scale = replicate * packets.read_width, dr.opaque(UInt32, packets.lanes), dr.opaque(Float, self.unit)
         one, none, lamps = UInt32(1), UInt32(0), self.chances.lamps
         dr.eval(start, count, row, base)
 
@@ -137,7 +137,7 @@ class Lines:
             if keep is not None:
                 dr.scatter(keep, where, (start + number) * lanes + lane)
             if read is not None:
-                there = where < packets.width_on_device
+                there = where < packets.read_width
                 values = [value + dr.gather(Float, b, base + where, there) for value, b in zip(values, read, strict=True)]
             gone = [total + dr.select(where == code, one, none) for total, code in ((escaped, ESCAPED), (lost, LOST))]
             if squares:
@@ -161,9 +161,9 @@ class Lines:
         geometry, Float = packets.geometry, types.Float
         _, replicate, place, patch = packets.read()
         start, count = packets.of_packets(done, place), packets.of_packets(counts, place)
-        record = self._record(patch)
+        record = packets.record(patch)
         points = self._points(self.keys[1], replicate, record, patch, start, int((done + counts).max()))
-        frame, position_of = self._frame(record)
+        frame, position_of = packets.frame(record)
         normal, row = frame.normal * frame.side, self.chances.row(place)
         beams, openings, n_faces = self.chances.beams, self.chances.lamps.openings, self.chances.lamps.n_faces
         kind = Float if squares else types.UInt64
@@ -294,15 +294,6 @@ class Lines:
             words = numbers.of_patch(words, place_number(record))
         bits = numbers.bits_for(largest)
         return lambda number: numbers.points(start + number + 1, patch, words, bits)
-
-    def _record(self, patch):
-        """Return the two words of patches, see `Geometry.patch_records`."""
-        return dr.gather(self.types.Array2u, self.packets.geometry.patch_records, patch)
-
-    def _frame(self, record):
-        """Return the frame of patches' faces, and a function from numbers to a place on them."""
-        geometry, (face, place) = self.packets.geometry, record
-        return Frame.of(geometry, face), lambda u: position(geometry, place, u[2], u[3])
 
 
 def most_read(problem: Problem) -> float:

@@ -1,0 +1,1 @@
+"""Light at points: sensors, and what they measure."""

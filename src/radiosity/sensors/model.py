@@ -1,0 +1,110 @@
+"""Sensors: points at which light is measured."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import SceneError, shown
+from ..scene.model import Scene
+
+LARGEST = 1e6  # m: farther points are errors of units
+KINDS = ("plane", "cylindrical")
+
+
+@dataclass(frozen=True, eq=False)
+class Sensors:
+    """Points, and the direction that each looks in. Build them with `Sensors.grid`, `Sensors.of` or `Sensors.from_csv`.
+
+    Attributes:
+        points: (n, 3) float64, m.
+        normals: (n, 3) float64, unit normals of the planes that light falls on; of cylindrical sensors the axis.
+        set: (n,) int64, index into ``names``.
+        names: of sets of sensors, such as grids.
+        cells: (n, 2) int64, row and column of sensors of grids; -1 for others.
+        cylindrical: (n,) bool: the mean over all planes that contain the axis is measured.
+        spacings: for each set, how far apart its points are along columns and rows, m; NaN where it is no grid.
+    """
+
+    points: np.ndarray
+    normals: np.ndarray
+    set: np.ndarray
+    names: tuple[str, ...]
+    cells: np.ndarray
+    cylindrical: np.ndarray
+    spacings: np.ndarray = field(default_factory=lambda: np.full((1, 2), np.nan))
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    @staticmethod
+    def of(points: ArrayLike, normals: ArrayLike = (0.0, 0.0, 1.0), *, name: str = "sensors", kind: str = "plane") -> "Sensors":
+        """Make sensors from points.
+
+        Args:
+            points: (n, 3) m.
+            normals: (n, 3), or one for all: where the planes look, of any length; of cylindrical sensors the axis.
+            name: of the set.
+            kind: "plane", or "cylindrical": the mean of the planes that contain the axis, as on a small upright cylinder.
+
+        Raises:
+            SceneError: a shape or value that makes no sense; it names the sensor.
+        """
+        points = np.array(points, float)
+        if points.ndim == 1 and len(points) == 3:
+            points = points[None]
+        if points.ndim != 2 or points.shape[1] != 3 or not len(points):
+            raise SceneError(f"sensors '{name}': points have the shape {points.shape}; it must be (n, 3), with one point or more")
+        try:
+            normals = np.array(np.broadcast_to(np.array(normals, float), points.shape))
+        except ValueError:
+            raise SceneError(f"sensors '{name}': there are {len(points)} points and {len(np.array(normals))} normals") from None
+        if kind not in KINDS:
+            raise SceneError(f"sensors '{name}': kind '{kind}' does not exist; known are {', '.join(KINDS)}")
+        length = np.linalg.norm(normals, axis=1)
+        for wrong, what, values in (
+            (~(np.abs(points) < LARGEST).all(axis=1), f"its point must be numbers below {LARGEST:g} m", points),
+            (~((length > 1e-12) & (length < np.inf)), "its normal has no direction", normals),
+        ):
+            if wrong.any():
+                number = int(np.argmax(wrong))
+                raise SceneError(f"sensors '{name}', sensor {number}: {values[number].tolist()}; {what}")
+        n = len(points)
+        every, none = np.full(n, kind == "cylindrical"), np.full((n, 2), -1)
+        return Sensors(points, normals / length[:, None], np.zeros(n, np.int64), (name,), none, every)
+
+    @staticmethod
+    def grid(scene: Scene, surface: str, height: float = 0.0, spacing: float | None = None, **options) -> "Sensors":
+        """Make a grid of sensors on a plane in front of a surface, see `sensors.grid.grid`."""
+        from .grid import grid
+
+        return grid(scene, surface, height, spacing, **options)
+
+    @staticmethod
+    def from_csv(path, *, name: str | None = None) -> "Sensors":
+        """Read sensors from a table, see `sensors.table.read`."""
+        from .table import read
+
+        return read(path, name)
+
+    def __add__(self, other: "Sensors") -> "Sensors":
+        """Put sets of sensors side by side.
+
+        Raises:
+            SceneError: a name stands for two sets.
+        """
+        if both := {*self.names} & {*other.names}:
+            raise SceneError(f"two sets of sensors are called {shown(sorted(both))}; give them names of their own")
+        return Sensors(
+            np.concatenate([self.points, other.points]),
+            np.concatenate([self.normals, other.normals]),
+            np.concatenate([self.set, other.set + len(self.names)]),
+            self.names + other.names,
+            np.concatenate([self.cells, other.cells]),
+            np.concatenate([self.cylindrical, other.cylindrical]),
+            np.concatenate([self.spacings, other.spacings]),
+        )
+
+    def named(self, name: str) -> "Sensors":
+        """Return one set under another name."""
+        return replace(self, names=(name,) * len(self.names))

@@ -1,0 +1,102 @@
+"""Output files of sensors, by their suffix."""
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError, printable
+from ..image.output import check_writable, require
+from ..solution.replacing import replacing
+from ..solution.whole import whole_file
+from .target import half_width
+
+SUFFIXES = (".csv", ".png", ".svg", ".pdf")
+LEVELS = 8  # isolines at most
+DIGITS = 9
+
+
+def check(paths) -> None:
+    """Refuse, before any work, outputs that could not be written after it.
+
+    Raises:
+        OutputError: an unknown format, a folder that cannot be written to, or one file named twice.
+    """
+    seen: set[Path] = set()
+    for path in paths:
+        if check_writable(path, SUFFIXES).resolve() in seen:
+            raise OutputError(f"{path} is named twice; give each output its own name")
+        seen.add(Path(path).resolve())
+        if Path(path).suffix.lower() != ".csv":
+            require("matplotlib", f"{path}: isolines")
+
+
+def write(found, path: Path) -> None:
+    """Write a table of all sensors, or isolines of all grids."""
+    check([path])
+    if path.suffix.lower() == ".csv":
+        _table(found, path)
+    else:
+        _isolines(found, path)
+
+
+def _table(found, path: Path) -> None:
+    what = "illuminance" if found.photometric else "irradiance"
+    unit = "lx" if found.photometric else "W/m2"
+    bands = [""] if len(found.bands) == 1 else [f"_{band}" for band in found.bands]
+    columns: dict[str, np.ndarray] = {}
+    if len(bands) > 1:
+        columns[f"{what}_{unit}"] = found.single.mean(axis=0)
+        columns[f"half_width_95_{unit}"] = half_width(found.single)
+    for number, band in enumerate(bands):
+        columns[f"{what}{band}_{unit}"] = found.illuminance[:, number]
+        columns[f"half_width_95{band}_{unit}"] = half_width(found.values[..., number])
+    sensors, text = found.sensors, io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(["set", "x_m", "y_m", "z_m", "nx", "ny", "nz", "kind", *columns])
+    kinds = np.where(sensors.cylindrical, "cylindrical", "plane")
+    for i in range(len(sensors)):
+        place = [f"{value:.{DIGITS}g}" for value in (*sensors.points[i], *sensors.normals[i])]
+        values = [f"{column[i]:.{DIGITS}g}" for column in columns.values()]
+        rows.writerow([sensors.names[sensors.set[i]], *place, kinds[i], *values])
+    with whole_file(path) as file:
+        file.write(text.getvalue().encode())
+
+
+def _isolines(found, path: Path) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    grids = [number for number in range(len(found.sensors.names)) if not np.isnan(found.sensors.spacings[number]).any()]
+    if not grids:
+        raise OutputError(f"{path}: isolines need a grid of sensors; these are single points: write a .csv")
+    figure = Figure(figsize=(6.4, 5.2 * len(grids)), dpi=120, layout="constrained")
+    FigureCanvasAgg(figure)
+    for place, number in enumerate(grids):
+        _grid(found, number, figure.add_subplot(len(grids), 1, place + 1), figure)
+    with replacing(path) as temporary:
+        figure.savefig(temporary, format=path.suffix.lower()[1:])
+
+
+def _grid(found, number: int, axes, figure) -> None:
+    sensors = found.sensors
+    rows = np.flatnonzero(sensors.set == number)
+    cells, (along, across) = sensors.cells[rows], sensors.spacings[number]
+    values = np.full(cells.max(axis=0) + 1, np.nan)
+    values[cells[:, 0], cells[:, 1]] = np.where(found.inside, np.nan, found.single.mean(axis=0))[rows]
+    height, width = len(values), len(values[0])
+    extent = (0, width * along, 0, height * across)
+    shades = axes.imshow(values, origin="lower", extent=extent, cmap="inferno", interpolation="nearest")
+    if min(values.shape) > 1 and np.nanmax(values) > np.nanmin(values):
+        x, y = (np.arange(width) + 0.5) * along, (np.arange(height) + 0.5) * across
+        lines = axes.contour(x, y, np.ma.masked_invalid(values), levels=LEVELS, colors="white", linewidths=0.8)
+        axes.clabel(lines, fmt="%g", fontsize=7)
+    row = next(row for row in found.table() if row["name"] == sensors.names[number])
+    what = "illuminance" if found.photometric else "irradiance"
+    axes.set_title(
+        f"{printable(row['name'])}: mean {row['mean']:.4g} {found.unit}, min {row['min']:.4g}, U0 {row['U0']:.2f}", fontsize=9
+    )
+    axes.set_xlabel("m")
+    axes.set_ylabel("m")
+    figure.colorbar(shades, ax=axes, label=f"{what} [{found.unit}]")

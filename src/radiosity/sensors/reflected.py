@@ -1,0 +1,30 @@
+"""The reflected radiosity of a solution, replicate by replicate: what the lines of sensors read."""
+
+import numpy as np
+
+from ..algorithms.table import make
+from ..method import Method
+from ..problem.model import Problem
+from ..sampling.streams import Seed
+from ..solution.model import Solution
+from ..tracing.geometry import Geometry
+
+
+def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.ndarray:
+    """Return B - E of each replicate, (replicates, n_patches, n_groups) float64, in shares of `Problem.unit`.
+
+    A solution without replicates has one.
+    """
+    rho, unit = problem.groups.reflectance, np.maximum(problem.unit, 1e-300)
+    if solution.by_baseline or solution.replicates < 2:
+        leaders = problem.groups.leaders
+        return (rho * solution.irradiance[:, leaders] / unit)[None]
+    facts = solution.provenance
+    seed = Seed(facts["seed"], facts.get("first_replicate", 0))
+    algorithm = make(geometry, problem, Method(**facts["choices"]), seed, solution.replicates)
+    state = algorithm.read(solution.state, algorithm.sizes)
+    found = []
+    for group in range(problem.groups.n_groups):
+        power, scale = algorithm.tally.irradiance(problem, state, group)
+        found.append(np.asarray(power, np.float64) * (scale / unit[group]) / solution.patches.area)
+    return rho * np.stack(found, axis=-1)

@@ -1,0 +1,43 @@
+"""The table of sensors in text."""
+
+import io
+
+from ..errors import printable
+
+WIDE = 1000  # columns; names are never cut off
+MESH = "± holds what lines leave unknown, not the size of patches: finer ones (--cells, --patch-size) show what that is"
+
+
+def report(found) -> str:
+    """Return a head, a row for each set of sensors, and what the figures mean; ± is half of the 95 % interval."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    table.add_column("sensors", no_wrap=True)
+    for name in ("number", f"min {found.unit}", f"mean {found.unit}", f"max {found.unit}", "U0", "U1", "sensor ±"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for row in found.table():
+        table.add_row(
+            Text(printable(row["name"])),
+            f"{row['sensors']:,}",
+            f"{row['min']:.4g}",
+            f"{row['mean']:.4g} ± {row['mean ±']:.1g}",
+            f"{row['max']:.4g}",
+            f"{row['U0']:.3f}",
+            f"{row['U1']:.3f}",
+            f"{row['sensor ±']:.1g}",
+        )
+    text = io.StringIO()
+    Console(file=text, width=WIDE, highlight=False, color_system=None).print(table)
+    what = "illuminance" if found.photometric else "irradiance"
+    head = (
+        f"{what} at {len(found.sensors):,} sensors: {found.rays:,} lines, {len(found.values)} replicates, {found.seconds:.2g} s"
+    )
+    head += "" if found.status == "complete" else f", {found.status}"
+    lines = [line.rstrip() for line in text.getvalue().splitlines()]
+    notes = ["U0 = min / mean, U1 = min / max; sensor ±: of the least certain sensor", MESH]
+    if len(found.values) < 2:
+        notes.append("errors are unknown: one replicate tells none")
+    return "\n".join([head, *lines, *notes])

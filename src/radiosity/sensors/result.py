@@ -1,0 +1,140 @@
+"""What sensors measured."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from ..problem.model import Problem
+from ..solution.model import Solution
+from .model import Sensors
+from .target import half_width
+
+PHOTOPIC = np.array([0.2126, 0.7152, 0.0722])  # of linear red, green and blue (ITU-R BT.709)
+RGB = ("red", "green", "blue")
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """Irradiance or illuminance at sensors.
+
+    Attributes:
+        sensors: where.
+        values: (replicates, n_sensors, n_bands) float64, W/m² or lx.
+        inside: (n_sensors,) bool, sensors that see mostly backs of surfaces: they seem to lie inside of something, and tables
+            leave them out.
+        bands: names of the bands.
+        photometric: values are lx, not W/m².
+        rays: lines of sensors, all replicates together.
+        seconds: wall time, that of a solution made for it included.
+        status: "complete", "interrupted" or "not reached".
+        source: of the scene.
+    """
+
+    sensors: Sensors
+    values: np.ndarray
+    inside: np.ndarray
+    bands: tuple[str, ...]
+    photometric: bool
+    rays: int
+    seconds: float
+    status: str
+    source: str
+
+    @staticmethod
+    def of(
+        solution: Solution,
+        sensors: Sensors,
+        problem: Problem,
+        shares: np.ndarray,
+        inside: np.ndarray,
+        rays: int,
+        seconds: float,
+        status: str,
+    ) -> "Measurement":
+        """Make it from (replicates, n_sensors, n_groups) shares of the unit of light."""
+        groups, scene = problem.groups, solution.patches.scene
+        values = (shares * problem.unit)[..., groups.index] * groups.scale
+        return Measurement(sensors, values, inside, scene.bands, scene.photometric, rays, seconds, status, scene.source)
+
+    @property
+    def unit(self) -> str:
+        """Unit of the values."""
+        return "lx" if self.photometric else "W/m²"
+
+    @cached_property
+    def illuminance(self) -> np.ndarray:
+        """The mean over replicates, (n_sensors, n_bands) float64, lx, or W/m² where the scene is not photometric."""
+        return self.values.mean(axis=0)
+
+    @property
+    def irradiance(self) -> np.ndarray:
+        """The same as ``illuminance``."""
+        return self.illuminance
+
+    @cached_property
+    def standard_error(self) -> np.ndarray:
+        """Of ``illuminance``, (n_sensors, n_bands); NaN (unknown) with one replicate."""
+        count = len(self.values)
+        if count < 2:
+            return np.full(self.values.shape[1:], np.nan)
+        return self.values.std(axis=0, ddof=1) / count**0.5
+
+    def interval(self, level: float = 0.95) -> tuple[np.ndarray, np.ndarray]:
+        """Return the ends of Student's intervals, lower and upper, (n_sensors, n_bands) each; NaN with one replicate."""
+        width = half_width(self.values, level)
+        return np.maximum(self.illuminance - width, 0), self.illuminance + width
+
+    @cached_property
+    def single(self) -> np.ndarray:
+        """One value for all bands in each replicate, (replicates, n_sensors): red, green and blue by photopic weights, or the
+        sum of other bands."""
+        if self.values.shape[2] == 1:
+            return self.values[..., 0]
+        if self.bands == RGB:
+            return self.values @ PHOTOPIC
+        return self.values.sum(axis=2)
+
+    def table(self, level: float = 0.95) -> list[dict]:
+        """Return a row for each set of sensors: number, min, mean, max, U0 = min / mean, U1 = min / max, in ``unit``.
+
+        It has half the width of the mean's interval, too, and of the widest interval of a sensor.
+        """
+        rows = []
+        for number, name in enumerate(self.sensors.names):
+            values = self.single[:, (self.sensors.set == number) & ~self.inside]
+            if not values.size:
+                values = np.full((len(self.values), 1), np.nan)
+            mean_of_each = values.mean(axis=0)
+            low, mean, high = (float(f(mean_of_each)) for f in (np.min, np.mean, np.max))
+            rows.append(
+                {
+                    "name": name,
+                    "sensors": int(((self.sensors.set == number) & ~self.inside).sum()),
+                    "min": low,
+                    "mean": mean,
+                    "max": high,
+                    "U0": low / mean if mean else float("nan"),
+                    "U1": low / high if high else float("nan"),
+                    "mean ±": float(half_width(values.mean(axis=1), level)),
+                    "sensor ±": float(np.max(half_width(values, level))),
+                }
+            )
+        return rows
+
+    def report(self) -> str:
+        """Return the table as text."""
+        from .report import report
+
+        return report(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write a table of sensors (.csv), or isolines of grids (.png, .svg, .pdf), by the name's ending.
+
+        Raises:
+            OutputError: another ending, or a file that cannot be written.
+        """
+        from .outputs import write
+
+        write(self, Path(path))

@@ -1,0 +1,84 @@
+"""Sensors in tables of comma-separated values."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import SceneError
+from .model import Sensors
+
+POINT, NORMAL = ("x", "y", "z"), ("nx", "ny", "nz")
+COLUMNS = (*POINT, *NORMAL, "name")
+
+
+def read(path, name: str | None = None) -> Sensors:
+    """Read sensors from a table with the columns x, y, z in m, and nx, ny, nz and name where it has them.
+
+    A table without a head has x, y, z, or x, y, z, nx, ny, nz (as Radiance's points). Sensors of one name are one set.
+
+    Args:
+        path: the file; its values are separated by commas, semicolons, tabs or spaces.
+        name: of sensors that have none; the file's name by default.
+
+    Raises:
+        SceneError: a file that cannot be read, a column that is missing, or a value that is no number; it names the line.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise SceneError(f"{path}: cannot be read as a table of sensors ({error})") from None
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
+    if not lines:
+        raise SceneError(f"{path}: has no sensors; give a line x,y,z for each")
+    mark = next((mark for mark in (";", "\t", ",") if mark in lines[0][1]), " ")
+    rows = [(number, _cells(line, mark)) for number, line in lines]
+    head = [cell.lower() for cell in rows[0][1]]
+    if _is_number(head[0]):
+        head = list(COLUMNS[: len(head)]) if len(head) in (3, 6, 7) else []
+        if not head:
+            raise SceneError(f"{path}, line {rows[0][0]}: has {len(rows[0][1])} values; points have 3, or 6 with a normal")
+    else:
+        rows = rows[1:]
+    if missing := [one for one in POINT if one not in head]:
+        raise SceneError(f"{path}: has no column {', '.join(missing)}; it has {', '.join(head)}")
+    has_normals = set(NORMAL) <= set(head)
+    points, normals, names = [], [], []
+    for number, cells in rows:
+        if len(cells) != len(head):
+            raise SceneError(f"{path}, line {number}: has {len(cells)} values, and the head has {len(head)}")
+        row = dict(zip(head, cells, strict=True))
+        points.append([_number(row, key, path, number) for key in POINT])
+        normals.append([_number(row, key, path, number) for key in NORMAL] if has_normals else [0.0, 0.0, 1.0])
+        names.append(row.get("name") or name or path.stem)
+    if not points:
+        raise SceneError(f"{path}: has a head and no sensors")
+    found = None
+    for one in dict.fromkeys(names):
+        rows_of = [i for i, other in enumerate(names) if other == one]
+        made = Sensors.of(np.array(points)[rows_of], np.array(normals)[rows_of], name=one)
+        found = made if found is None else found + made
+    assert found is not None
+    return found
+
+
+def _cells(line: str, mark: str) -> list[str]:
+    if mark == " ":
+        return line.split()
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=mark))]
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _number(row: dict[str, str], key: str, path: Path, number: int) -> float:
+    try:
+        return float(row[key])
+    except ValueError:
+        raise SceneError(f"{path}, line {number}: {key} is '{row[key]}'; it must be a number") from None

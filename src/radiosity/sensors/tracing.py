@@ -1,0 +1,138 @@
+"""The lines of sensors: a gather at each of them, which reads a solution."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ..algorithms.gather.beams import Beams
+from ..algorithms.gather.chances import Chances
+from ..algorithms.gather.lamps import Lamps
+from ..algorithms.gather.lines import UNITS, Lines
+from ..device.backend import upload
+from ..method.presets import PRESETS
+from ..problem.model import Problem
+from ..sampling.streams import Purpose, Seed
+from ..tracing.geometry import Geometry
+from .model import Sensors
+from .receivers import Receivers
+
+PILOT = 16  # lines of each kind of each plane
+LEAST = 0.1  # of the mean: the least share of lines of a packet
+POWER = 0.435  # shares go as variance to this power, as those of patches do (`algorithms.gather.shares`)
+
+
+@dataclass(eq=False)
+class Tracing:
+    """Sums of the lines of sensors.
+
+    Attributes:
+        receivers: the lanes.
+        lines: what traces them.
+        read: what cosine lines read, of each group.
+        shares: (2, count) float64, lines of both kinds of each packet, one in the mean over planes and both kinds together.
+        counts: (2, count) int64, lines so far.
+        brought, met: sums, of each group.
+        missed: lines that escaped and were lost.
+    """
+
+    receivers: Receivers
+    lines: Lines
+    read: list
+    shares: np.ndarray
+    counts: np.ndarray
+    brought: list
+    met: list
+    missed: list
+    traced: int = field(default=0)
+
+    @staticmethod
+    def of(
+        geometry: Geometry, problem: Problem, sensors: Sensors, reflected: np.ndarray, replicates: int, seed: Seed
+    ) -> "Tracing":
+        """Run the pilot.
+
+        Args:
+            reflected: (replicates, n_patches, n_groups), see `sensors.reflected`.
+        """
+        geometry.prepare()
+        types, method = geometry.device.types, PRESETS["gather"].method
+        one = Receivers(geometry, 1, sensors=sensors, seed=seed)
+        chances = Chances(Lamps(geometry, problem), one, Beams.of(geometry, problem))
+        pilot = Lines.of(one, chances, problem, method, seed, (Purpose.SENSORS_PILOT, Purpose.SENSORS_PILOT_SHADOW))
+        mean = [upload(types.Float, column.astype(np.float32)) for column in reflected.mean(axis=0).T]
+        few, none = np.full(one.count, PILOT), np.zeros(one.count, np.int64)
+        cosine, _ = pilot.cosine(none, few, read=mean, squares=True)
+        shadow = pilot.shadow(none, few, squares=True)
+        variance = np.stack([_variance(one, sums) for sums in (cosine, shadow)])
+        shares = _shares(variance, one.sizes, has_targets=chances.targets > 0)
+        receivers = Receivers(geometry, replicates, sensors=sensors, seed=seed)
+        lines = Lines.of(receivers, chances, problem, method, seed, (Purpose.SENSORS, Purpose.SENSORS_SHADOW))
+        whole = np.broadcast_to(reflected, (replicates, *reflected.shape[1:]))
+        read = [upload(types.Float, whole[..., group].astype(np.float32)) for group in range(problem.groups.n_groups)]
+        kinds: tuple[Any, ...] = (types.UInt64, types.Int64)
+        brought, met = ([dr.zeros(kind, receivers.lanes) for _ in read] for kind in kinds)
+        missed = [dr.zeros(types.UInt32, receivers.lanes) for _ in range(2)]
+        traced = 2 * PILOT * one.receivers
+        return Tracing(receivers, lines, read, shares, np.zeros((2, one.count), np.int64), brought, met, missed, traced)
+
+    def advance(self, each: float) -> None:
+        """Trace until every plane has about ``each`` lines of both kinds together, in each replicate."""
+        wanted = np.maximum(np.ceil(self.shares * each), (self.shares > 0) * 2).astype(np.int64)
+        more = np.maximum(wanted - self.counts, 0)
+        if more[0].any():
+            met, missed = self.lines.cosine(self.counts[0], more[0], read=self.read)
+            self.met = [total + one for total, one in zip(self.met, met, strict=True)]
+            self.missed = [total + one for total, one in zip(self.missed, missed, strict=True)]
+        if more[1].any():
+            brought = self.lines.shadow(self.counts[1], more[1])
+            self.brought = [total + one for total, one in zip(self.brought, brought, strict=True)]
+        dr.eval(self.met, self.brought, self.missed)
+        self.counts = self.counts + more
+        self.traced += int((more * self.receivers.sizes).sum()) * self.receivers.replicates
+
+    def values(self) -> np.ndarray:
+        """Return the irradiance of each sensor in each replicate, (replicates, n_sensors, n_groups), in shares of the unit."""
+        cosine, rays = (np.maximum(self._of_planes(count), 1) for count in self.counts)
+        found = []
+        for brought, met in zip(self.brought, self.met, strict=True):
+            here = self._planes(brought) / (rays * UNITS) + self._planes(met) / (cosine * self.lines.unit)
+            found.append(self._sensors(here))
+        return np.stack(found, axis=-1)
+
+    def behind(self) -> np.ndarray:
+        """Return the share of each sensor's cosine lines that met absorbing backs, (n_sensors,)."""
+        lost = self._planes(self.missed[1]) / np.maximum(self._of_planes(self.counts[0]), 1)
+        return self._sensors(lost).mean(axis=0)
+
+    def _of_planes(self, counts: np.ndarray) -> np.ndarray:
+        """Return numbers of packets for each plane, (receivers,) float64."""
+        return np.repeat(counts, self.receivers.sizes)[self.receivers.place].astype(np.float64)
+
+    def _planes(self, lanes) -> np.ndarray:
+        return self.receivers.patch_values(np.array(lanes)).astype(np.float64)
+
+    def _sensors(self, planes: np.ndarray) -> np.ndarray:
+        """Return means over the planes of each sensor, (replicates, n_sensors)."""
+        starts = np.flatnonzero(np.diff(self.receivers.sensor, prepend=-1))
+        return np.add.reduceat(planes, starts, axis=1) / np.diff(np.append(starts, planes.shape[1]))
+
+
+def _variance(receivers: Receivers, sums: list) -> np.ndarray:
+    """Return the variance of a line of each packet, (count,), the largest of the groups, relative to the light that comes."""
+    half, found = len(sums) // 2, []
+    for total, square in zip(sums[:half], sums[half:], strict=True):
+        mean, of_squares = (receivers.patch_values(np.array(one, np.float64))[0] / PILOT for one in (total, square))
+        found.append(np.maximum(of_squares - mean**2, 0))
+    return receivers.by_packet(np.max(found, axis=0)) / receivers.sizes
+
+
+def _shares(variance: np.ndarray, sizes: np.ndarray, *, has_targets: bool) -> np.ndarray:
+    """Return the shares of lines of packets, (2, count); one in the mean over planes, both kinds together."""
+    mean = float((variance.sum(axis=0) * sizes).sum() / sizes.sum())
+    weight = (variance + 1e-2 * mean) ** POWER if mean > 0 else np.ones_like(variance)
+    weight[1] *= has_targets
+    each = weight.sum(axis=0)
+    weight *= np.maximum(each, LEAST * each.mean()) / each
+    return weight * (sizes.sum() / (weight.sum(axis=0) * sizes).sum())
