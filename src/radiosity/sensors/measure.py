@@ -87,10 +87,13 @@ def measure(
     number = whole(seed, "seed", 0)
     with limited(memory), turn():
         begun = perf_counter()
-        solution, status = scene, "complete"
+        solution: Scene | Patches | Solution = scene
+        status = "complete"
         if not isinstance(solution, Solution):
-            share = {"rays": None if rays is None else rays * SHARE, "error": None if error is None else error * SHARE}
-            solution = solve(scene, replicates=replicates, seed=number, device=device, progress=progress, **share)
+            part = Budget(rays=None if rays is None else rays * SHARE, error=None if error is None else error * SHARE)
+            solution = solve(
+                scene, rays=part.rays, error=part.error, replicates=replicates, seed=number, device=device, progress=progress
+            )
             budget = replace(budget, rays=None if rays is None else max(rays - solution.rays, 1.0))
             status = solution.status if solution.status == "interrupted" else status
         count = replicates or (solution.replicates if solution.replicates > 1 else 8)
@@ -120,8 +123,8 @@ def measure(
             measured = replace(measured, status="not reached")
             of, now = achieved(measured, error_of)
             warn(
-                f"the relative error of {of} is {now:.2g}, and {error:.2g} was asked for; what is left is the error of the solution: "
-                "solve longer"
+                f"the relative error of {of} is {now:.2g}, and {error:.2g} was asked for; what is left is the error of the "
+                "solution: solve longer"
             )
         return measured
 
@@ -164,7 +167,7 @@ def _inside(tracing: Tracing, sensors: Sensors) -> np.ndarray:
         where = np.flatnonzero(inside)
         names = shown([f"{sensors.names[sensors.set[i]]} at {np.round(sensors.points[i], 3).tolist()}" for i in where], 5)
         warn(
-            f"{len(where)} of {len(sensors)} sensors see mostly backs of surfaces: {names}; they seem to lie inside of something, "
-            "or behind a wall, and are left out of minimum, mean and uniformity. Move them, or turn the surface's faces"
+            f"{len(where)} of {len(sensors)} sensors see mostly backs of surfaces: {names}; they seem to lie inside of "
+            "something, or behind a wall, and are left out of minimum, mean and uniformity. Move them, or turn the faces"
         )
     return inside

@@ -83,7 +83,8 @@ def _grid(found, number: int, axes, figure) -> None:
     sensors = found.sensors
     rows = np.flatnonzero(sensors.set == number)
     cells, (along, across) = sensors.cells[rows], sensors.spacings[number]
-    values = np.full(cells.max(axis=0) + 1, np.nan)
+    shape: tuple[int, ...] = tuple((cells.max(axis=0) + 1).tolist())
+    values = np.full(shape, np.nan)
     values[cells[:, 0], cells[:, 1]] = np.where(found.inside, np.nan, found.single.mean(axis=0))[rows]
     height, width = len(values), len(values[0])
     extent = (0, width * along, 0, height * across)
@@ -94,9 +95,8 @@ def _grid(found, number: int, axes, figure) -> None:
         axes.clabel(lines, fmt="%g", fontsize=7)
     row = next(row for row in found.table() if row["name"] == sensors.names[number])
     what = "illuminance" if found.photometric else "irradiance"
-    axes.set_title(
-        f"{printable(row['name'])}: mean {row['mean']:.4g} {found.unit}, min {row['min']:.4g}, U0 {row['U0']:.2f}", fontsize=9
-    )
+    figures = f"mean {row['mean']:.4g} {found.unit}, min {row['min']:.4g}, U0 {row['U0']:.2f}"
+    axes.set_title(f"{printable(row['name'])}: {figures}", fontsize=9)
     axes.set_xlabel("m")
     axes.set_ylabel("m")
     figure.colorbar(shades, ax=axes, label=f"{what} [{found.unit}]")

@@ -50,6 +50,10 @@ class Gather(AbstractAlgorithm[GatherState]):
         self._lines: Lines | None = None
 
     @property
+    def sizes(self) -> Sizes:
+        return Sizes(self.replicates, self.packets.n, self.groups)  # lights without area are no patches, and gather nothing
+
+    @property
     def quanta(self) -> int:
         return self._quanta
 
