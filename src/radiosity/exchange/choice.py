@@ -2,10 +2,10 @@
 
 Work is counted in lines, so that no clock decides. A ray of a visible share costs about as much as a line. The test whether two
 patches face each other, and an exact factor, cost as many lines as was measured (`FACES`, `EXACT`). Where the work does not
-suffice for a ray of each pair, lines are taken. Otherwise the errors are predicted. That of lines follows from the standard errors of
-a pilot that traces a sixteenth of them or fewer, and from what they leave out of narrow faces. That of polygons follows from the
-visible shares of some pairs, drawn at random. Both are the root of the summed variances of all factors, as they stand in the
-table.
+suffice for a ray of each pair, lines are taken. Otherwise the errors are predicted. That of lines follows from the standard
+errors of a pilot that traces a sixteenth of them or fewer, and from what they leave out of narrow faces. That of polygons
+follows from the visible shares of some pairs, drawn at random. Both are the root of the summed variances of all factors, as they
+stand in the table.
 """
 
 from dataclasses import dataclass
