@@ -35,6 +35,7 @@ class Cut:
 
 SURFACES = Cut(1)
 CUTS = {"544": Cut(8, 1, 3, 1), "4608": Cut(24, 2, 9, 3), "100000": Cut(120, 5, 45, 10)}
+STEPS = {"4608": 96}  # of the rows of a scene every so-many-th is judged; of other scenes all are
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from heat_formulas import grouped, square
-from heat_scene import CUTS, NAMES, SURFACES, Mesh, mesh, parents
+from heat_scene import CUTS, NAMES, STEPS, SURFACES, Mesh, mesh, parents
 
 BETWEEN_SURFACES = "surfaces"
 
@@ -41,20 +41,45 @@ class Ours:
         self.group = "surface" if scene == BETWEEN_SURFACES else "patch"
 
     def run(self, size: float, seed: int):
-        """Factors, CPU seconds of the whole scene, rows, and the result."""
+        """Factors, and CPU seconds."""
         begun = used()
         found = self.package.view_factors(self.patches, rays=size, group=self.group, method=self.method, seed=seed)
         found = found if found.restoration else found.restored()
-        return found.matrix, used() - begun, slice(None), found
+        return found.matrix, used() - begun
+
+
+class Rows(Ours):
+    """Some rows for a reference: exact factors of polygons times visible shares. A size is rays of a pair and replicate."""
+
+    REPLICATES = 8
+
+    def __init__(self, scene: str, _):
+        super().__init__(scene, "polygons")
+        self.rows = np.arange(0, len(self.patches), STEPS.get(scene, 1))
+
+    def run(self, size: int, seed: int):
+        """Factors of these rows, and CPU seconds."""
+        from radiosity.device.backend import choose
+        from radiosity.exchange.from_polygons import FacingPairs
+        from radiosity.factors.polygons import exchange
+        from radiosity.sampling.streams import Seed
+        from radiosity.tracing.geometry import Geometry
+
+        begun, n, corners = used(), len(self.patches), self.patches.corners
+        one, other = np.repeat(self.rows, n), np.tile(np.arange(n), len(self.rows))
+        values = np.concatenate([exchange(corners[np.full(n, row)], corners) for row in self.rows])
+        values[one == other] = 0
+        some = np.flatnonzero(values)
+        pairs = FacingPairs(Geometry(self.patches, choose("auto")), one[some], other[some], values[some])
+        values[some] *= pairs.shares(size, self.REPLICATES, Seed(seed)).mean(axis=0)
+        return values.reshape(len(self.rows), n) / self.patches.area[self.rows, None], used() - begun
 
 
 class Raystrack:
     """raystrack: a size is density, rays of a cell and replicates; row after row, which is the quickest with many surfaces.
 
-    With more than `MOST` surfaces it traces every so-many-th row, and the time is that of one row times their number.
+    Where only some rows are judged it traces these, and the time is that of one row times the number of all.
     """
-
-    MOST, ROWS = 1000, 48
 
     def __init__(self, scene: str, _):
         import raystrack
@@ -68,16 +93,16 @@ class Raystrack:
             corners = faces.corners[some].reshape(-1, 3).astype(np.float32)
             fans = [(4 * k, 4 * k + 1 + h, 4 * k + 2 + h) for k, i in enumerate(some) for h in range(halves[i])]
             meshes[str(number)] = raystrack.Mesh(corners, np.array(fans, np.int32))
-        self.scene, self.count = raystrack.Scene.from_meshes(meshes), len(meshes)
+        self.scene, self.count, self.step = raystrack.Scene.from_meshes(meshes), len(meshes), STEPS.get(scene, 1)
 
     def run(self, size: list[int], seed: int):
-        """Factors, CPU seconds of the whole scene, rows, and nothing."""
+        """Factors of some rows, and CPU seconds of the whole scene."""
         rs, (density, each, replicates) = self.package, size
         options = rs.SolveOptions(
             sampling=rs.Sampling(density=density, rays_per_cell=each, seed=seed),
             accuracy=rs.Accuracy(max_replicates=replicates, min_replicates=replicates, tolerance=0.0),
         )
-        n, step = self.count, 1 if self.count <= self.MOST else self.count // self.ROWS
+        n, step = self.count, self.step
         with rs.Solver(self.scene, device="cpu", bvh="builtin") as solver:
             if step > 1:  # the tree is built, and not timed
                 solver.solve(rs.Query.row("0", receiver_sides=("front",)), options)
@@ -87,7 +112,7 @@ class Raystrack:
             else:
                 queries = [rs.Query.row(str(i), receiver_sides=("front",)) for i in range(0, n, step)]
                 factors = np.array([solver.solve(query, options).dense(unknown=0.0)[0, :n] for query in queries])
-            return factors, (used() - begun) * n / len(factors), slice(None, None, step), None
+            return factors, (used() - begun) * n / len(factors)
 
 
 class Pyviewfactor:
@@ -111,35 +136,43 @@ class Pyviewfactor:
         return self.pyvista.PolyData(points, np.concatenate([[k, *range(i, i + k)] for k, i in zip(corners, first, strict=True)]))
 
     def run(self, size: int, _seed: int):
-        """Factors, CPU seconds of the whole scene, rows, and nothing."""
+        """Factors, and CPU seconds."""
         finer = mesh(self.cut.finer(size))
         polygons, group = self._polygons(finer), self.label[parents(self.cut, size)]
         begun = used()
         factors = self.package.compute_viewfactor_matrix(polygons, obstacles=self.obstacle).T
-        return grouped(factors, finer.area, group), used() - begun, slice(None), None
+        return grouped(factors, finer.area, group), used() - begun
 
 
-PROGRAMS = {"radiosity": Ours, "raystrack": Raystrack, "pyviewfactor": Pyviewfactor}
+PROGRAMS = {"radiosity": Ours, "rows": Rows, "raystrack": Raystrack, "pyviewfactor": Pyviewfactor}
 
 
 class Worker:
     """What answers."""
 
     def __init__(self, scene: str, program: str):
-        name, _, method = program.partition("/")
-        self.program = PROGRAMS[name](scene, method)
+        name, _, self.method = program.partition("/")
+        self.program, self.step = PROGRAMS[name](scene, self.method), STEPS.get(scene, 1)
 
-    def measure(self, size, seed: int, reference: str | None = None) -> dict:
+    def run(self, size, seed: int) -> tuple[np.ndarray, float]:
+        """The rows that are judged, and CPU seconds of the whole scene."""
+        factors, cpu = self.program.run(size, seed)
+        return factors[:: self.step] if len(factors) == factors.shape[1] else factors, cpu
+
+    def warm(self, size) -> dict:
+        """Run once between surfaces, so that everything is loaded and compiled."""
+        type(self.program)(BETWEEN_SURFACES, self.method).run(size, 0)
+        return {}
+
+    def measure(self, size, seed: int, reference: str) -> dict:
         """CPU seconds, and the square of the error against a reference."""
-        factors, cpu, rows, _ = self.program.run(size, seed)
-        if reference is None:
-            return {"cpu": cpu}
-        return {"cpu": cpu, "square": square(factors, np.load(reference)["matrix"][rows])}
+        factors, cpu = self.run(size, seed)
+        return {"cpu": cpu, "square": square(factors, np.load(reference)["matrix"])}
 
     def keep(self, size, seed: int, file: str) -> dict:
         """Two long runs: their mean, and its variance from their difference."""
-        one, cpu, _, _ = self.program.run(size, seed)
-        two, more, _, _ = self.program.run(size, seed + 1000)
+        one, cpu = self.run(size, seed)
+        two, more = self.run(size, seed + 1000)
         mean, variance = (one + two) / 2, square(one, two) / 4
         part = Path(file).with_suffix(".part.npz")
         np.savez(part, matrix=mean, variance=variance)

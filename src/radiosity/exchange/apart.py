@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..factors.polygons.short_axes import largest
 from ..patches.model import Patches
 from .groups import Groups
 
@@ -19,16 +20,27 @@ def apart(patches: Patches, groups: Groups, met: np.ndarray) -> np.ndarray:
     n, count = len(groups.names), len(patches)
     if count > MOST:
         return np.zeros(0, np.int64)
-    corners, normal = patches.corners, patches.normal
-    size = np.abs(corners - corners.mean(axis=(0, 1))).max()
-    plane = np.einsum("ij,ij->i", corners[:, 0], normal)
-    front = np.zeros((count, count), bool)  # [i, j]: some of j is in front of i
-    for at in range(0, count, ROWS):
-        rows = slice(at, at + ROWS)
-        heights = np.einsum("ix,jkx->ijk", normal[rows], corners) - plane[rows, None, None]
-        front[rows] = heights.max(axis=2) > FLAT * size
+    front = in_front(patches, FLAT)
     sees = np.zeros((n, n), bool)
     one, other = np.nonzero(front & front.T)
     sees[groups.labels[one], groups.labels[other]] = True
     sees.ravel()[met] = True
     return np.flatnonzero(~sees)
+
+
+def in_front(patches: Patches, least: float = -FLAT) -> np.ndarray:
+    """Return which patches have a corner in front of which planes, (n_patches, n_patches) bool: in [i, j] j and i's plane.
+
+    Args:
+        least: corners further in front than this are in front, relative to the scene's size; below 0 some that lie in the plane
+            are among them.
+    """
+    count, corners, normal = len(patches), patches.corners, patches.normal
+    size = np.abs(corners - corners.mean(axis=(0, 1))).max(initial=0.0)
+    plane = np.einsum("ij,ij->i", corners[:, 0], normal)
+    front = np.zeros((count, count), bool)
+    for at in range(0, count, ROWS):
+        rows = slice(at, at + ROWS)
+        heights = normal[rows] @ corners.reshape(-1, 3).T - plane[rows, None]
+        front[rows] = largest(heights.reshape(-1, 4)).reshape(-1, count) > least * size
+    return front

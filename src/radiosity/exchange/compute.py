@@ -16,7 +16,7 @@ from ..run.whole_number import whole
 from ..sampling.streams import Seed
 from ..scene.model import Scene
 from ..tracing.geometry import Geometry
-from .choice import FEWEST, PILOT, Rays, polygons_are_better
+from .choice import PILOT, Choice, Rays
 from .from_lines import from_lines
 from .from_polygons import FacingPairs, from_polygons
 from .groups import Groups, groups_of
@@ -25,6 +25,7 @@ from .view_factors import ViewFactors
 
 METHODS = ("auto", "lines", "polygons")
 USUAL = 1_000_000  # lines
+LEAST_RAYS = 2  # of a pair and replicate, where polygons are asked for by name
 LEAST = 16  # lines of a patch and replicate in the pilot; runs that are not twice as long count lines without one
 
 
@@ -54,7 +55,7 @@ def view_factors(
             "patch", a dictionary of names to names of surfaces or patterns, such as ``{"walls": ["north", "south"]}`` (surfaces
             that it does not name are groups of their own), or a whole number for each patch.
         method: "lines" are counted. "polygons" have exact factors without obstacles, and rays find the visible share of each
-            pair, 16 at least. "auto" takes what has the smaller predicted error after the work of as many lines.
+            pair, 2 or more in each replicate. "auto" takes what has the smaller predicted error after the work of as many lines.
         replicates: independent randomised runs; from 2 on there are standard errors. Of lines that were counted: theirs.
         seed: with the same inputs, the same bits.
         sources: names of small surfaces that get more lines, as of `trace_lines`.
@@ -85,25 +86,24 @@ def view_factors(
         groups = groups_of(patches, group)
         facts = {"scene": patches.scene.source, "geometry": patches.hash, "seed": number.value, "work": work}
         arguments = {"replicates": replicates, "seed": number.value, "sources": sources, "numbers": numbers, "device": device}
-        pilot = None
-        few = max(work // PILOT, LEAST * replicates * len(patches))
-        if method == "polygons" or (method == "auto" and replicates > 1 and few <= work // 2):
+        geometry, pilot = Geometry(patches, choose(device)), None
+        if method == "polygons":
             tell(patches.scene, any_light=True)
-            geometry = Geometry(patches, choose(device))
-            if method == "polygons":
-                pairs = FacingPairs.of(geometry, replicates)
-                spent = Rays.of(work, len(patches), len(pairs.one), replicates)
-                return _polygons(pairs, groups, spent, replicates, number, facts)
+            pairs = FacingPairs.of(geometry, replicates)
+            spent = Rays.of(work, len(patches), len(pairs.one), replicates)
+            return _polygons(pairs, groups, spent, replicates, number, facts)
+        few = LEAST * replicates * len(patches)
+        few = max(min(work // PILOT, 4 * few), few)
+        if method == "auto" and few <= work // 2 and (choice := Choice.of(geometry, work, replicates, number)):
             pilot = trace_lines(patches, rays=few, progress=progress, **arguments)
             some = from_lines(pilot.pairs, groups, pilot.rays, {"line_set": pilot.provenance}, pilot.status)
             if pilot.status == "interrupted":
                 return some
-            if some.reciprocal:
-                spent, predicted = polygons_are_better(some.restored(), geometry, groups, work, replicates, number)
-                facts |= {"predicted": predicted}
-                if spent is not None:
-                    return _polygons(FacingPairs.of(geometry, replicates), groups, spent, replicates, number, facts)
-        warn_of_narrow(Geometry(patches, choose(device)), groups)
+            predicted = choice.predicted(some.restored(), groups, work, number)
+            facts |= {"predicted": predicted}
+            if predicted["polygons"] < predicted["lines"]:
+                return _polygons(FacingPairs.of(geometry, replicates), groups, choice.spent, replicates, number, facts)
+        warn_of_narrow(geometry, groups)
         lines = trace_lines(patches, rays=work, progress=progress, resume=pilot, **arguments)
         return from_lines(lines.pairs, groups, lines.rays, facts | {"line_set": lines.provenance}, lines.status)
 
@@ -130,6 +130,6 @@ def _of_lines(lines: LineSet, rays, group, method: str) -> ViewFactors:
 
 
 def _polygons(pairs: FacingPairs, groups: Groups, spent: Rays, replicates: int, seed: Seed, facts: dict) -> ViewFactors:
-    rays = max(spent.pair, FEWEST)
+    rays = max(spent.pair, LEAST_RAYS)
     facts = facts | {"rays_of_a_pair": rays, "lines_of_a_patch": spent.missed}
     return from_polygons(pairs, groups, rays, spent.missed, replicates, seed, facts)

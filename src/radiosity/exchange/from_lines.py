@@ -10,6 +10,7 @@ from ..factors.counted import CountedPairs
 from ..factors.counts import WORD, split
 from ..solution.intervals import least_error
 from .apart import apart
+from .codes import Codes
 from .groups import Groups
 from .restoration import SAMPLED
 from .view_factors import ViewFactors
@@ -42,10 +43,10 @@ def from_lines(pairs: CountedPairs, groups: Groups, rays: int, provenance: dict,
         )
         some, values, lines = gathered(codes, width, weight[rows] * counts / np.maximum(fired, 1)[rows], counts)
         parts.append((some, values / whole[some // width], lines.astype(np.uint32)))
-    codes, values, errors, samples = combined(parts, n <= SAMPLED)
-    numbers = np.zeros(len(codes))
+    known, values, errors, samples = combined(parts, width * width, n <= SAMPLED)
+    codes, numbers = known.each, np.zeros(len(known))
     for some, _, lines in parts:
-        numbers[np.searchsorted(codes, some)] += lines
+        numbers[known.place(some)] += lines
     del parts
     with np.errstate(divide="ignore"):
         each = patches.area / pairs.lines.sum(axis=0)
@@ -77,32 +78,31 @@ def from_lines(pairs: CountedPairs, groups: Groups, rays: int, provenance: dict,
 
 def gathered(codes: np.ndarray, width: int, *values: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return ascending codes, each once, and the sums of some values of each."""
-    if width * width <= 4 * len(codes):
-        found = np.flatnonzero(np.bincount(codes, minlength=width * width))
-        return found, *(np.bincount(codes, value, width * width)[found] for value in values)
-    found, place = np.unique(codes, return_inverse=True)
-    return found, *(np.bincount(place, value, len(found)) for value in values)
+    known = Codes.of(codes, width * width)
+    place = known.place(codes)
+    return known.each, *(np.bincount(place, value, len(known)) for value in values)
 
 
-def combined(parts: Sequence[tuple[np.ndarray, ...]], sampled: bool):
-    """Return codes, values, standard errors (m,) and samples (replicates, m) or None, of the codes and values of replicates."""
-    codes = parts[0][0]
-    for some, *_ in parts[1:]:
-        codes = np.union1d(codes, some)
-    count = len(parts)
-    mean, squares, met = np.zeros(len(codes)), np.zeros(len(codes)), np.zeros(len(codes))
-    for some, values, *_ in parts:
-        mean[np.searchsorted(codes, some)] += values
+def combined(parts: Sequence[tuple[np.ndarray, ...]], size: int, sampled: bool):
+    """Return codes, values, standard errors (m,) and samples (replicates, m) or None, of the codes and values of replicates.
+
+    Args:
+        size: codes are smaller than this.
+    """
+    known, count = Codes.of(np.concatenate([codes for codes, *_ in parts]), size), len(parts)
+    mean, squares, met = np.zeros(len(known)), np.zeros(len(known)), np.zeros(len(known))
+    for codes, values, *_ in parts:
+        mean[known.place(codes)] += values
     mean /= count
-    for some, values, *_ in parts:
-        place = np.searchsorted(codes, some)
+    for codes, values, *_ in parts:
+        place = known.place(codes)
         squares[place] += (values - mean[place]) ** 2
         met[place] += 1
     squares += (count - met) * mean**2  # replicates without the entry
-    errors = np.sqrt(squares / (count * (count - 1))) if count > 1 else np.full(len(codes), np.nan)
+    errors = np.sqrt(squares / (count * (count - 1))) if count > 1 else np.full(len(known), np.nan)
     if not sampled:
-        return codes, mean, errors, None
-    samples = np.zeros((count, len(codes)))
-    for row, (some, values, *_) in zip(samples, parts, strict=True):
-        row[np.searchsorted(codes, some)] = values
-    return codes, mean, errors, samples
+        return known, mean, errors, None
+    samples = np.zeros((count, len(known)))
+    for row, (codes, values, *_) in zip(samples, parts, strict=True):
+        row[known.place(codes)] = values
+    return known, mean, errors, samples

@@ -22,7 +22,7 @@ from ..factors.polygons import exchange
 from ..sampling.streams import Seed
 from ..tracing.geometry import Geometry
 from ..tracing.visibility import Polygons, kernel_means, visible_share
-from .apart import apart
+from .apart import apart, in_front
 from .from_lines import combined, gathered
 from .groups import Groups
 from .restored import PRIOR
@@ -30,7 +30,7 @@ from .small_gaps import closed
 from .view_factors import ViewFactors
 
 CHUNK = 1 << 18  # pairs at a time
-PAIR = 160  # bytes of a pair of patches that face each other, and 8 more in each replicate
+PAIR = 162  # bytes of a pair of patches that face each other, and 8 more in each replicate
 EXACT = 1e-7  # relative error of exact factors
 
 
@@ -58,9 +58,12 @@ class FacingPairs:
         patches, polygons = geometry.patches, Polygons.of(geometry.patches)
         n, found = len(patches), []
         memory.refuse(n * n / 2 * (PAIR + 8 * replicates), f"pairs of {n} patches", "take method='lines', or fewer patches")
+        facing = in_front(patches)
+        facing &= facing.T
         for begin in range(0, n, step := max(CHUNK // max(n, 1), 1)):
             one, other = (x.ravel() for x in np.meshgrid(np.arange(begin, min(begin + step, n)), np.arange(n), indexing="ij"))
-            one, other = one[one < other], other[one < other]
+            some = (one < other) & facing[one, other]
+            one, other = one[some], other[some]
             values = exchange(polygons.corners[one], polygons.corners[other])
             some = values > 0
             found.append((one[some], other[some], values[some]))
@@ -82,7 +85,7 @@ class FacingPairs:
         the edges that polygons share, where the kernel has no bound; a ratio of seen to all points would have a bias there.
         """
         one, other = (self.polygons.take(x) for x in (self.one, self.other))
-        means = np.array([kernel_means(self.geometry, one, other, rays, seed.number_of(r)) for r in range(replicates)])
+        means = kernel_means(self.geometry, one, other, rays, [seed.number_of(r) for r in range(replicates)])
         whole, part = means[:, 0], means[:, 1]
         area = self.geometry.patches.area
         unit = area[self.one] * area[self.other] / (np.pi * self.values)
@@ -122,9 +125,9 @@ def from_polygons(
         )
         some, values = gathered(codes, width, power)
         parts.append((some, values / area[some // width]))
-    codes, values, errors, samples = combined(parts, sampled=True)
+    known, values, errors, samples = combined(parts, width * width, sampled=True)
     assert samples is not None
-    at, rows, columns = np.searchsorted(codes, ways), *np.divmod(codes, width)
+    codes, at, rows, columns = known.each, known.place(ways), *np.divmod(known.each, width)
 
     def of_pairs(variance: np.ndarray) -> np.ndarray:
         return np.bincount(at, np.tile(variance, 2), len(codes)) / area[rows] ** 2

@@ -20,6 +20,7 @@ import numpy as np
 from ..errors import MethodError, RadiosityWarning
 from ..solution.errors import mean_and_error
 from ..solution.intervals import FEW, by_luck
+from .codes import Codes
 from .least_squares import Nearest, Unknowns, nearest
 from .restoration import LEAST_SQUARES, RAW, SAMPLED
 from .restored_many import by_scaling
@@ -54,8 +55,9 @@ def _by_least_squares(factors):
     n, rows, columns = len(factors), factors.rows, factors.columns
     inside = columns < n
     low, high = np.where(inside, np.minimum(rows, columns), rows), np.where(inside, np.maximum(rows, columns), columns)
-    codes, place = np.unique(low * (n + 2) + high, return_inverse=True)
-    one, other = np.divmod(codes, n + 2)
+    code = low * (n + 2) + high
+    pairs = Codes.of(code, (n + 2) ** 2)
+    place, (one, other) = pairs.place(code), np.divmod(pairs.each, n + 2)
     area = factors.area[rows]
     variance = np.maximum(_variance(factors, place), (LEAST * factors.values) ** 2) * area**2
     trust = np.where(variance > 0, 1 / np.where(variance > 0, variance, 1), 0)

@@ -140,10 +140,11 @@ class ViewFactors:
 
     def sparse(self):
         """Return `matrix` as an (n, n) scipy CSR array; pairs that no line joined have no entry."""
-        from scipy.sparse import coo_array
+        from scipy.sparse import csr_array
 
-        some = self.columns < len(self)
-        return coo_array((self.values[some], (self.rows[some], self.columns[some])), shape=(len(self),) * 2).tocsr()
+        n, some = len(self), self.columns < len(self)
+        first = np.concatenate([[0], np.cumsum(np.bincount(self.rows[some], minlength=n))])
+        return csr_array((self.values[some], self.columns[some].astype(np.int32), first), shape=(n, n))
 
     def restored(self) -> "ViewFactors":
         """Return the nearest factors that are reciprocal and close: A_i F_ij = A_j F_ji, rows sum to one, none is negative.

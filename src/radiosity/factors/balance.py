@@ -29,24 +29,57 @@ def restored(factors: Factors, area: np.ndarray, weight: np.ndarray | None = Non
         scalings: largest number of scalings.
     """
     weight = 1 / area if weight is None else weight
-    power = weight[factors.rows] * area[factors.rows] * factors.values
-    one, other = factors.rows.astype(np.uint64), factors.columns.astype(np.uint64)
-    keys, values = np.concatenate([one << WORD | other, other << WORD | one]), np.concatenate([power, power])
-    order = np.argsort(keys, kind="stable")
-    keys, values = keys[order], values[order]
-    first = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]])) if len(keys) else np.zeros(0, np.int64)
-    sums = np.add.reduceat(values, first) if len(keys) else np.zeros(0)
-    rows, columns = split(keys[first])
-    trust = weight[rows] + weight[columns]
-    exchange = np.divide(sums, trust, out=np.zeros(len(sums)), where=trust > 0)
-    wanted = area * np.maximum(1 - factors.escaped - factors.lost, 0)  # a share of all of it may be one and some rounding
+    rows, columns, exchange = _of_pairs(factors, area, weight)
+    escaped, lost = factors.escaped, factors.lost
+    del factors  # the entries may be let go
+    wanted = area * np.maximum(1 - escaped - lost, 0)  # a share of all of it may be one and some rounding
 
-    def row_sums(values: np.ndarray) -> np.ndarray:
+    def row_sums(other: np.ndarray | None = None) -> np.ndarray:
+        if other is None:
+            return np.bincount(rows, weights=exchange, minlength=len(area))
+        values = other[columns]
+        values *= exchange
         return np.bincount(rows, weights=values, minlength=len(area))
 
-    scale = scaling(lambda d: d * row_sums(exchange * d[columns]), wanted, scalings)
-    values = exchange * scale[rows] * scale[columns]
-    return Factors(rows, columns, values * _ratio(wanted, row_sums(values))[rows] / area[rows], factors.escaped, factors.lost)
+    scale = scaling(lambda d: d * row_sums(d), wanted, scalings)
+    exchange *= scale[rows]
+    exchange *= scale[columns]
+    exchange *= _ratio(wanted, row_sums())[rows]
+    exchange /= area[rows]
+    return Factors(rows, columns, exchange, escaped, lost)
+
+
+def _of_pairs(factors: Factors, area: np.ndarray, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return rows, columns and weighted means of A_i F_ij and A_j F_ji, (k,) each: both directions of each pair, in order."""
+    m = len(factors.rows)
+    keys = np.empty(2 * m, np.uint64)
+    for here, one, other in ((keys[:m], factors.rows, factors.columns), (keys[m:], factors.columns, factors.rows)):
+        here[:] = one
+        here <<= WORD
+        here |= other.astype(np.uint64)
+    order = np.argsort(keys, kind="stable")
+    keys = keys[order]
+    order[order >= m] -= m
+    power = weight[factors.rows]
+    power *= area[factors.rows]
+    power *= factors.values
+    del factors
+    values = power[order]
+    del order, power
+    changes = np.ones(2 * m, bool)
+    np.not_equal(keys[1:], keys[:-1], out=changes[1:])
+    first = np.flatnonzero(changes)
+    del changes
+    values = np.add.reduceat(values, first) if m else np.zeros(0)
+    keys = keys[first]
+    del first
+    rows, columns = split(keys)
+    del keys
+    trust = weight[rows]
+    trust += weight[columns]
+    values[trust <= 0] = 0
+    np.divide(values, trust, out=values, where=trust > 0)
+    return rows, columns, values
 
 
 def restored_matrix(matrix: np.ndarray, area: np.ndarray, missed: np.ndarray, weight: np.ndarray | None = None) -> np.ndarray:

@@ -7,7 +7,9 @@ algorithm", SIGGRAPH 1991) differs from it where the kernel varies over the pair
 elements.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -25,6 +27,7 @@ from .hits import first_hit
 from .lanes import CHUNK
 
 MOST = (1 << 16) - 1  # rays of a pair
+FEW = 8  # rays: sums of fewer are made column by column
 WORDS = 10  # of a polygon on the device: origin, two edges, offset
 
 
@@ -66,15 +69,15 @@ def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int 
     Raises:
         MethodError: fewer than one ray, or more than 65 535.
     """
-    whole, part = kernel_means(geometry, one, other, rays, seed)
+    whole, part = kernel_means(geometry, one, other, rays, (seed,))[0]
     return np.divide(part, whole, out=np.zeros(len(whole)), where=whole > 0)
 
 
 @turn()
-def kernel_means(geometry: Geometry, one: Polygons, other: Polygons, rays: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return means of cos cos' / r² over points of pairs, 1/m²: of all points, and of those that see each other, (m,) each.
+def kernel_means(geometry: Geometry, one: Polygons, other: Polygons, rays: int, seeds: Sequence[int]) -> np.ndarray:
+    """Return means of cos cos' / r² over points of pairs, 1/m², (seeds, 2, m): of all points, and of those that see each other.
 
-    Args: see `visible_share`.
+    Args: see `visible_share`; of each seed there are other points.
 
     Raises:
         MethodError: fewer than one ray, or more than 65 535.
@@ -91,47 +94,86 @@ def kernel_means(geometry: Geometry, one: Polygons, other: Polygons, rays: int, 
         first, second = np.where(swap, second, first), np.where(swap, first, second)
     keys = _mixed(first * np.uint64(3) + second)
     size = max(CHUNK // rays, 1)
-    parts = [
-        _chunk(geometry, one.take(rows), other.take(rows), keys[rows], rays, seed)
-        for rows in (slice(at, at + size) for at in range(0, len(keys), size))
-    ]
-    whole, part = np.concatenate(parts, axis=1) if parts else np.zeros((2, 0))
-    return whole * geometry.bvh.scale**2, part * geometry.bvh.scale**2
+    means = np.empty((len(seeds), 2, len(keys)))
+    for rows in (slice(at, at + size) for at in range(0, len(keys), size)):
+        chunk = _Chunk.of(geometry, one.take(rows), other.take(rows), keys[rows], rays)
+        for into, seed in zip(means, seeds, strict=True):
+            into[:, rows] = chunk.means(seed)
+    return means * geometry.bvh.scale**2
 
 
-def _chunk(geometry: Geometry, one: Polygons, other: Polygons, keys: np.ndarray, rays: int, seed: int) -> np.ndarray:
-    """Return both means, (2, m), in the BVH's units."""
-    types, count = geometry.device.types, len(one)
-    Float, UInt32 = types.Float, types.UInt32
-    if count * rays < 2:  # arrays of one entry would compile kernels of their own
-        one, other, keys = one.take([0, 0]), other.take([0, 0]), keys[[0, 0]]
-    records = [upload(Float, _records(geometry, polygons)) for polygons in (one, other)]
-    triangles = upload(UInt32, _is_triangle(one) | 2 * _is_triangle(other))
-    target = upload(UInt32, other.face.astype(np.uint32))
-    words = [upload(UInt32, (keys >> np.uint64(shift)).astype(np.uint32)) for shift in (0, 32)]
-    lane = dr.arange(UInt32, len(one) * rays)
-    pair = lane // dr.opaque(UInt32, rays)
-    index = lane - pair * dr.opaque(UInt32, rays) + 1
-    shift = philox(
-        [*(dr.gather(UInt32, word, pair) for word in words), UInt32(0), UInt32(0)],
-        [dr.opaque(UInt32, seed >> part & 0xFFFFFFFF) for part in (0, 32)],
-    )
-    numbers = ready("sobol", types).points(index, pair, [*shift, UInt32(0)], 16)
-    kinds = dr.gather(UInt32, triangles, pair)
-    start, normal, above = _point(types, records[0], pair, (kinds & 1) != 0, *numbers[:2])
-    end, facing, beyond = _point(types, records[1], pair, (kinds & 2) != 0, *numbers[2:4])
-    way = end - start
-    up, down, square = dr.dot(way, normal), -dr.dot(way, facing), dr.squared_norm(way)
-    faces = (up > above) & (down > beyond)  # nearer to a plane than lines begin there is in the plane
-    kernel = dr.select(faces, up * down / (square * square), 0)
-    origin = start + normal * above
-    hit = first_hit(geometry, origin, dr.normalize(end - origin), active=faces)
-    seen = hit.valid & (
-        dr.gather(UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid) == dr.gather(UInt32, target, pair)
-    )
-    met = dr.select(seen, kernel, 0)
-    dr.eval(kernel, met)
-    return np.array([np.array(x, np.float64).reshape(-1, rays)[:count].sum(axis=1) / rays for x in (kernel, met)])
+@dataclass(frozen=True, eq=False)
+class _Chunk:
+    """Pairs on the device, in the BVH's units.
+
+    Attributes:
+        count: number of pairs.
+        records: of both polygons, see `_records`.
+        triangles: 1 where the first polygon is a triangle, and 2 where the second is.
+        target: faces that lines should hit.
+        words: keys of pairs, low words and high words.
+    """
+
+    geometry: Geometry
+    rays: int
+    count: int
+    records: tuple[Any, Any]
+    triangles: Any
+    target: Any
+    words: tuple[Any, Any]
+
+    @staticmethod
+    def of(geometry: Geometry, one: Polygons, other: Polygons, keys: np.ndarray, rays: int) -> "_Chunk":
+        types, count = geometry.device.types, len(one)
+        if count * rays < 2:  # arrays of one entry would compile kernels of their own
+            one, other, keys = one.take([0, 0]), other.take([0, 0]), keys[[0, 0]]
+        return _Chunk(
+            geometry,
+            rays,
+            count,
+            (upload(types.Float, _records(geometry, one)), upload(types.Float, _records(geometry, other))),
+            upload(types.UInt32, _is_triangle(one) | 2 * _is_triangle(other)),
+            upload(types.UInt32, other.face.astype(np.uint32)),
+            (upload(types.UInt32, keys.astype(np.uint32)), upload(types.UInt32, (keys >> np.uint64(32)).astype(np.uint32))),
+        )
+
+    def means(self, seed: int) -> np.ndarray:
+        """Return both means, (2, count)."""
+        geometry, types, rays = self.geometry, self.geometry.device.types, self.rays
+        UInt32 = types.UInt32
+        lane = dr.arange(UInt32, len(self.target) * rays)
+        pair = lane // dr.opaque(UInt32, rays)
+        index = lane - pair * dr.opaque(UInt32, rays) + 1
+        shift = philox(
+            [*(dr.gather(UInt32, word, pair) for word in self.words), UInt32(0), UInt32(0)],
+            [dr.opaque(UInt32, seed >> part & 0xFFFFFFFF) for part in (0, 32)],
+        )
+        numbers = ready("sobol", types).points(index, pair, [*shift, UInt32(0)], 16)
+        kinds = dr.gather(UInt32, self.triangles, pair)
+        start, normal, above = _point(types, self.records[0], pair, (kinds & 1) != 0, *numbers[:2])
+        end, facing, beyond = _point(types, self.records[1], pair, (kinds & 2) != 0, *numbers[2:4])
+        way = end - start
+        up, down, square = dr.dot(way, normal), -dr.dot(way, facing), dr.squared_norm(way)
+        faces = (up > above) & (down > beyond)  # nearer to a plane than lines begin there is in the plane
+        kernel = dr.select(faces, up * down / (square * square), 0)
+        origin = start + normal * above
+        hit = first_hit(geometry, origin, dr.normalize(end - origin), active=faces)
+        seen = hit.valid & (
+            dr.gather(UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid) == dr.gather(UInt32, self.target, pair)
+        )
+        met = dr.select(seen, kernel, 0)
+        dr.eval(kernel, met)
+        return np.array([_row_sums(np.array(x).reshape(-1, rays)[: self.count]) / rays for x in (kernel, met)])
+
+
+def _row_sums(values: np.ndarray) -> np.ndarray:
+    """Return sums of rows in double precision, (m,)."""
+    if values.shape[1] >= FEW:
+        return values.astype(np.float64).sum(axis=1)
+    total = values[:, 0].astype(np.float64)  # column by column is quicker, and to the same bits
+    for column in values.T[1:]:
+        total += column
+    return total
 
 
 def _point(types, records, pair, is_triangle, x, y):
@@ -163,7 +205,8 @@ def _records(geometry: Geometry, polygons: Polygons) -> np.ndarray:
 
 def _is_triangle(polygons: Polygons) -> np.ndarray:
     """Return 1 for triangles and 0 for parallelograms, (m,) uint32."""
-    return (polygons.corners[:, 2] == polygons.corners[:, 3]).all(axis=1).astype(np.uint32)
+    same = polygons.corners[:, 2] == polygons.corners[:, 3]
+    return (same[:, 0] & same[:, 1] & same[:, 2]).astype(np.uint32)
 
 
 def _keys(corners: np.ndarray) -> np.ndarray:

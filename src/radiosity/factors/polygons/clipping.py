@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .short_axes import largest, lengths
+
 ROUNDING = 32 * np.finfo(np.float64).eps  # of the largest coordinate: points nearer than this lie in the plane
 FLAT = 1e-11  # of the largest distance: points nearer than this lie in the plane, too
 
@@ -20,9 +22,9 @@ def heights(corners: np.ndarray, point: np.ndarray, normal: np.ndarray, rounding
         rounding: (m,) metres, the accuracy of coordinates.
     """
     way = corners - point[:, None, :]
-    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    length = lengths(normal)[:, None]
     height = np.einsum("mkx,mx->mk", way, np.divide(normal, length, out=np.zeros_like(normal), where=length > 0))
-    least = rounding + FLAT * np.linalg.norm(way, axis=2).max(axis=1)
+    least = rounding + FLAT * largest(lengths(way))
     return np.where(np.abs(height) <= least[:, None], 0.0, height)
 
 

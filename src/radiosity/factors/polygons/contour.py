@@ -10,6 +10,7 @@ integrals is numerical where edges are not parallel, see `edges`.
 import numpy as np
 
 from .edges import Edges, logarithm
+from .short_axes import lengths
 
 SQUARE = 1e-14  # cosine: edges whose cosine is smaller add less than rounding
 
@@ -25,8 +26,8 @@ def around(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     pair, e, f = (x.ravel() for x in np.indices((m, k, n)))
     first, second = np.roll(one, -1, axis=1) - one, np.roll(other, -1, axis=1) - other
     dot = np.einsum("mex,mfx->mef", first, second).ravel()
-    lengths = (np.linalg.norm(first, axis=2)[:, :, None] * np.linalg.norm(second, axis=2)[:, None, :]).ravel()
-    count = np.flatnonzero((np.abs(dot) > SQUARE * lengths) & (lengths > 0))
-    pair, e, f, cosine = pair[count], e[count], f[count], dot[count] / lengths[count]
+    both = (lengths(first)[:, :, None] * lengths(second)[:, None, :]).ravel()
+    count = np.flatnonzero((np.abs(dot) > SQUARE * both) & (both > 0))
+    pair, e, f, cosine = pair[count], e[count], f[count], dot[count] / both[count]
     edges = [Edges.of(p[pair, i], p[pair, (i + 1) % p.shape[1]]) for p, i in ((one, e), (other, f))]
     return np.bincount(pair, weights=cosine * logarithm(*edges), minlength=m) / (2 * np.pi)

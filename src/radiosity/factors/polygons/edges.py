@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .short_axes import lengths
+
 NODES = 10
 CLEAR = 1.6  # half lengths from a piece's middle to the next branch point: the error is below 2.8^-20 of the inner integral
 CUT = 0.25  # of a piece that ends at a branch point: it is cut here, and the rest is clear
@@ -36,7 +38,7 @@ class Edges:
     @staticmethod
     def of(begin: np.ndarray, end: np.ndarray) -> "Edges":
         """Make edges from their ends, which must differ."""
-        length = np.linalg.norm(end - begin, axis=1)
+        length = lengths(end - begin)
         return Edges(begin, (end - begin) / length[:, None], length)
 
     def take(self, rows: np.ndarray) -> "Edges":
@@ -57,7 +59,7 @@ def logarithm(one: Edges, other: Edges) -> np.ndarray:
     """Return the double integrals of ln r over m pairs of edges, (m,)."""
     shorter = one.length <= other.length
     one, other = where(shorter, one, other), where(shorter, other, one)
-    sine = np.linalg.norm(np.cross(one.direction, other.direction), axis=1)
+    sine = lengths(np.cross(one.direction, other.direction))
     result, parallel = np.empty(len(sine)), sine < PARALLEL
     for rows, integral in ((np.flatnonzero(parallel), _parallel), (np.flatnonzero(~parallel), _oblique)):
         result[rows] = integral(one.take(rows), other.take(rows))
@@ -107,7 +109,7 @@ def _branch_points(one: Edges, other: Edges) -> tuple[np.ndarray, np.ndarray]:
     begin, slope = (np.einsum("mx,mx->m", x, one.direction) for x in (way, other.direction))
     end = begin + slope * other.length
     ends = (way, way + other.direction * other.length[:, None])
-    depth = [np.linalg.norm(w - x[:, None] * one.direction, axis=1) for w, x in zip(ends, (begin, end), strict=True)]
+    depth = [lengths(w - x[:, None] * one.direction) for w, x in zip(ends, (begin, end), strict=True)]
     normal = np.cross(one.direction, other.direction)
     square = (normal**2).sum(axis=1)
     foot = np.einsum("mx,mx->m", np.cross(way, other.direction), normal) / square

@@ -5,6 +5,7 @@ import numpy as np
 from .areas import over_both
 from .clipping import ROUNDING, heights, in_front, normal_of
 from .contour import around
+from .short_axes import largest, lengths, middles, smallest
 
 FAR = 10.0  # distance of middles over the sum of the radii: beyond it areas are integrated, else rims; the error is 5e-8 in both
 CHUNK = 1 << 13  # pairs at a time: about 100 MB
@@ -25,15 +26,15 @@ def exchange(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def _chunk(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    rounding = ROUNDING * np.maximum(np.abs(one).max(axis=(1, 2)), np.abs(other).max(axis=(1, 2)))
-    centre = (one.mean(axis=1, keepdims=True) + other.mean(axis=1, keepdims=True)) / 2
+    rounding = ROUNDING * np.maximum(*(largest(np.abs(x).reshape(-1, 12)) for x in (one, other)))
+    centre = ((middles(one) + middles(other)) / 2)[:, None]
     one, other = one - centre, other - centre
-    size = np.maximum(np.linalg.norm(one, axis=2).max(axis=1), np.linalg.norm(other, axis=2).max(axis=1))
+    size = np.maximum(largest(lengths(one)), largest(lengths(other)))
     size = np.maximum(size, np.finfo(np.float64).tiny)
     one, other, rounding = one / size[:, None, None], other / size[:, None, None], rounding / size
-    above = heights(one, other.mean(axis=1), normal_of(other), rounding)
-    below = heights(other, one.mean(axis=1), normal_of(one), rounding)
-    faces = np.flatnonzero((above > 0).any(axis=1) & (below > 0).any(axis=1))
+    above = heights(one, middles(other), normal_of(other), rounding)
+    below = heights(other, middles(one), normal_of(one), rounding)
+    faces = np.flatnonzero((largest(above) > 0) & (largest(below) > 0))
     result = np.zeros(len(one))
     result[faces] = _facing(one[faces], other[faces], above[faces], below[faces]) * size[faces] ** 2
     return result
@@ -41,14 +42,13 @@ def _chunk(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 def _facing(one: np.ndarray, other: np.ndarray, above: np.ndarray, below: np.ndarray) -> np.ndarray:
     """Return exchange areas, (m,), of polygons of which some parts see each other; lengths are about 1."""
-    cut = np.any(above < 0, axis=1) | np.any(below < 0, axis=1)
+    cut = (smallest(above) < 0) | (smallest(below) < 0)
     result = np.empty(len(one))
     for rows in (np.flatnonzero(~cut), np.flatnonzero(cut)):
         a, b = one[rows], other[rows]
         if len(rows) and cut[rows[0]]:
             a, b = in_front(a, above[rows]), in_front(b, below[rows])
-        middles, radii = zip(*((p.mean(axis=1), _radius(p)) for p in (a, b)), strict=True)
-        far = np.linalg.norm(middles[1] - middles[0], axis=1) > FAR * (radii[0] + radii[1])
+        far = lengths(middles(b) - middles(a)) > FAR * (_radius(a) + _radius(b))
         for some, integral in ((np.flatnonzero(far), over_both), (np.flatnonzero(~far), around)):
             if len(some):
                 result[rows[some]] = integral(a[some], b[some])
@@ -56,4 +56,4 @@ def _facing(one: np.ndarray, other: np.ndarray, above: np.ndarray, below: np.nda
 
 
 def _radius(polygons: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(polygons - polygons.mean(axis=1, keepdims=True), axis=2).max(axis=1)
+    return largest(lengths(polygons - middles(polygons)[:, None]))
