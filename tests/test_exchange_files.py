@@ -49,12 +49,37 @@ def test_other_files_are_told_apart(heat, tmp_path):
     rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=5_000).save(tmp_path / "room.npz")
     with pytest.raises(rd.SceneError, match="holds a solution, not a radiative exchange"):
         rd.load_exchange(tmp_path / "room.npz")
+    rd.view_factors(heat.patches, rays=2_000).to_npz(tmp_path / "factors.npz")
+    with pytest.raises(rd.SceneError, match="holds view factors, not a radiative exchange; load_view_factors reads it"):
+        rd.load_exchange(tmp_path / "factors.npz")
+    with pytest.raises(rd.SceneError, match="holds a radiative exchange, not view factors; load_exchange reads it"):
+        rd.load_view_factors(path)
     data = path.read_bytes()
     path.write_bytes(data[: len(data) // 2])
     with pytest.raises(rd.SceneError, match="is no radiative exchange of this program, or damaged"):
         rd.load_exchange(path)
     with pytest.raises(rd.SceneError, match="no such file; radiosity exchange SCENE -o"):
         rd.load_exchange(tmp_path / "none.npz")
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("scene_vertices", lambda values: values * np.nan),
+        ("scene_vertices", lambda values: values * 1.5),
+        ("scene_surface", lambda values: values + 99),
+        ("patches_columns", lambda values: values + 1),
+        ("net", lambda values: values * np.nan),
+        ("net_standard_error", lambda values: -1 - values),
+        ("emissivity", lambda values: values + 1),
+    ],
+)
+def test_a_changed_file_is_refused(heat, tmp_path, name, change):
+    with np.load(heat.save(tmp_path / "heat.npz")) as file:
+        arrays = dict(file)
+    np.savez(tmp_path / "heat.npz", **(arrays | {name: change(arrays[name])}))
+    with pytest.raises(rd.SceneError, match="is no radiative exchange of this program, or damaged"):
+        rd.load_exchange(tmp_path / "heat.npz")
 
 
 def test_tables_say_what_the_sign_means(heat, tmp_path):
@@ -137,6 +162,8 @@ def test_the_command_takes_lines(capsys, tmp_path):
         (["--temperature", "load=x"], 2, "'x' is no number"),
         (["--temperature", "load=1", "load=1"], 2, "gives 'load' twice"),
         (["--flux", "load=1,2"], 2, "give one number"),
+        (["--emissivity", "load=0.1", "load:front=0.2"], 2, "gives 'load:front' twice"),
+        (["--emissivity", "load*:back=0.2"], 2, "its back does not radiate"),
         (["--temperature", "q=300"], 2, "no surface is called 'q'"),
         (["--temperature", "load*=900", "--rays", "3k", "--error", "0.001%"], 3, "was not reached with"),
     ],
