@@ -3,6 +3,7 @@
 import csv
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from test_exchange_conditions import oven
 
 import radiosity as rd
 from radiosity.cli import main
+from radiosity.exchange.flow_picture import flows
 
 
 @pytest.fixture(scope="module")
@@ -103,10 +105,30 @@ def test_pictures_of_heat(heat, tmp_path):
         view = np.asarray(picture, float)
     assert view[..., 0].max() > 150  # red, or blue, and not one colour
     assert view.std() > 10
-    with Image.open(tmp_path / "heat.exchange.png") as picture:
-        assert picture.size[0] > 300
+    for name in ("heat.exchange.png", "heat.flows.png"):
+        with Image.open(tmp_path / name) as picture:
+            assert picture.size[0] > 300
     with pytest.raises(rd.OutputError, match=r"unknown output format '.glb'"):
         heat.export(tmp_path / "heat.glb")
+
+
+def test_bands_are_as_wide_as_the_heat_that_flows(tmp_path):
+    """From a to b 3 W and to c 1 W, in columns of pixels: the bar of a, and three quarters of it, and one."""
+    watts = np.zeros((4, 4))
+    watts[0, 1:3], watts[1:3, 0] = (3, 1), (-3, -1)
+    found = SimpleNamespace(exchange=watts, names=("a", "b", "c"), temperature=np.array([400.0, 300, 200]), surroundings=None)
+    flows(found, tmp_path / "flows.png")
+    with Image.open(tmp_path / "flows.png") as picture:
+        pixels = np.asarray(picture.convert("RGB"), int)
+    grey = (np.abs(pixels - 0.45 * 255) < 2).all(axis=2)
+    bars = grey[:, grey.sum(axis=0).argmax()]
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], bars.astype(int), [0]])))
+    (one, other), colors = np.diff(edges)[::2], (np.ptp(pixels, axis=2) > 100)
+    assert one / other == pytest.approx(3, rel=0.05)
+    assert colors[:, : pixels.shape[1] // 2].sum(axis=0).max() == pytest.approx(one + other, rel=0.03)
+    nothing = SimpleNamespace(**(vars(found) | {"exchange": 0 * watts}))
+    flows(nothing, tmp_path / "nothing.png")
+    assert (tmp_path / "nothing.png").stat().st_size > 1_000
 
 
 def test_the_page_runs(tmp_path, monkeypatch):

@@ -98,7 +98,7 @@ def exchange(
         lines are taken.
     output
         Files to write: .csv (the table; beside it NAME.exchange.csv, watts from surface to surface), .npz, .png (a view of net
-        heat; beside it NAME.exchange.png, a matrix of watts).
+        heat; beside it NAME.exchange.png, a matrix of watts, and NAME.flows.png, which shows them as bands).
     """
     from ..exchange.files import check_writable, files_of
 
