@@ -37,10 +37,10 @@ def flows(found, path: Path) -> None:
     told = f" ({MOST} surfaces that exchange most)" if left_out else ""
     axes.set_title(f"net heat straight from one to another{told}", fontsize=9)
     if watts.any():
-        limits = Normalize(np.nanmin(kelvin[given]), np.nanmax(kelvin[given]))
-        colors = ScalarMappable(Normalize(limits.vmin, limits.vmin + (limits.vmax - limits.vmin or 1) / WHITE), COLORS)
+        cold, hot = np.nanmin(kelvin[given]), np.nanmax(kelvin[given])
+        colors = ScalarMappable(Normalize(cold, cold + (hot - cold or 1) / WHITE), COLORS)
         _draw(axes, watts, given, taken, names, colors.to_rgba(kelvin))
-        bar = figure.colorbar(ScalarMappable(limits, colors.get_cmap()), ax=axes, shrink=0.5)
+        bar = figure.colorbar(colors, ax=axes, shrink=0.5)
         bar.set_label("temperature of what gives [K]", fontsize=8)
         bar.ax.tick_params(labelsize=7)
     else:
