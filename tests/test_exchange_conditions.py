@@ -8,8 +8,10 @@ from test_exchange import big_box, cubes, scene_of
 
 import radiosity as rd
 from radiosity.exchange.conditions import Conditions
+from radiosity.exchange.planck import SIGMA
 from radiosity.scene.shapes import box, quad
 
+SHEET = [quad((0.3, 0.3, 0.5), (0.4, 0, 0), (0, 0.4, 0))]
 FEW = {"rays": 2_000, "replicates": 2}
 
 
@@ -42,6 +44,9 @@ def patches():
         ({"temperature": {"*": 300}, "wavelengths": [3, 3]}, "wavelengths are \\[3, 3\\]; give the edges"),
         ({"temperature": {"*": 300}, "wavelengths": range(1, 200)}, "wavelengths are 199 edges between bands; 100 are the most"),
         ({"temperature": {"*": 300}, "wavelengths": [3], "emissivity": {"x*": 0.1}}, "no emissivity is given for 'y low'"),
+        ({"temperature": {"*": 300}, "emissivity": {"*": {"top": 0.1}}}, "emissivity of 'x low' has a side 'top'"),
+        ({"temperature": {"*": 300}, "emissivity": {"*": {"back": 0.1}}}, "emissivity of 'x low': its back does not radiate"),
+        ({"temperature": {"*": {"front": 300, "back": 310}}}, "both sides of a sheet have one; make the sides two surfaces"),
         ({"adiabatic": ["*"]}, "no surface has a temperature, and there are no surroundings"),
         ({"adiabatic": ["*"], "surroundings": 300}, "the temperature of 'x low', .* is not determined"),
         (
@@ -68,6 +73,8 @@ def test_what_makes_no_sense_is_refused_by_name(patches, given, text):
         ({"error": 1.5}, "error is 1.5; it must be above 0 and below 1"),
         ({"error_of": "net:x low"}, "give the error, too"),
         ({"error": 0.01, "replicates": 1}, "2 replicates or more"),
+        ({"error": 0.01, "rays": float("nan")}, "rays is nan; it must be a positive number"),
+        ({"error": 0.01, "rays": "5"}, "rays is '5'; it must be a positive number"),
     ],
 )
 def test_targets_that_make_no_sense_are_refused(patches, given, text):
@@ -283,3 +290,25 @@ def test_faces_too_narrow_for_lines_are_told():
     lines = rd.trace_lines(narrow, **FEW)
     with pytest.warns(rd.RadiosityWarning, match="faces are so narrow"):
         rd.gebhart_factors(lines, emissivity=1.0)
+
+
+def test_a_sheet_needs_an_emissivity_on_both_sides():
+    patches = rd.subdivide(scene_of([("room", box((0, 0, 0), (1, 1, 1), inward=True)), ("sheet", SHEET)], ["sheet"]), cells=1)
+    with pytest.raises(rd.SceneError, match=r"emissivity of surface 'sheet' is \{'front': 0.1\}; give one for its back, too"):
+        rd.radiative_exchange(patches, {"*": 300}, emissivity={"room": 0.5, "sheet": {"front": 0.1}}, **FEW)
+    lines = rd.trace_lines(patches, rays=2_000)
+    shine = {"room": 0.5, "sheet": {"front": 0.1, "back": 0.8}}
+    shares = rd.gebhart_factors(lines, emissivity=shine)
+    assert shares.emissivity.tolist() == pytest.approx([0.5, 0.1, 0.8])
+    heat = rd.radiative_exchange(lines, {"room": 300, "sheet": 310}, emissivity=shine)
+    assert heat["sheet"]["emissivity"] == pytest.approx(0.45)
+    conductor = shares.conductors[1:, 0].sum() * SIGMA * (310**4 - 300**4)
+    assert heat["sheet"]["net"] == pytest.approx(conductor, rel=0.02)
+    with pytest.raises(rd.MethodError, match="none is given for 'sheet', or for one side"):
+        rd.gebhart_factors(lines, emissivity={"room": 0.5, "sheet": {"front": 0.1}})
+
+
+def test_a_surface_that_is_called_like_the_surroundings_is_told():
+    patches = rd.subdivide(scene_of([("surroundings", SHEET), ("b", [SHEET[0][::-1] + np.array([0, 0, 0.2])])]), cells=1)
+    with pytest.warns(rd.RadiosityWarning, match="a surface is called 'surroundings', too; of two rows"):
+        rd.radiative_exchange(patches, {"*": 300}, emissivity=0.5, surroundings=0, **FEW)

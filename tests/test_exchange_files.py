@@ -3,6 +3,7 @@
 import csv
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from test_exchange_conditions import oven
 
 import radiosity as rd
 from radiosity.cli import main
+from radiosity.exchange.flow_picture import flows
 
 
 @pytest.fixture(scope="module")
@@ -49,12 +51,37 @@ def test_other_files_are_told_apart(heat, tmp_path):
     rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), rays=5_000).save(tmp_path / "room.npz")
     with pytest.raises(rd.SceneError, match="holds a solution, not a radiative exchange"):
         rd.load_exchange(tmp_path / "room.npz")
+    rd.view_factors(heat.patches, rays=2_000).to_npz(tmp_path / "factors.npz")
+    with pytest.raises(rd.SceneError, match="holds view factors, not a radiative exchange; load_view_factors reads it"):
+        rd.load_exchange(tmp_path / "factors.npz")
+    with pytest.raises(rd.SceneError, match="holds a radiative exchange, not view factors; load_exchange reads it"):
+        rd.load_view_factors(path)
     data = path.read_bytes()
     path.write_bytes(data[: len(data) // 2])
     with pytest.raises(rd.SceneError, match="is no radiative exchange of this program, or damaged"):
         rd.load_exchange(path)
     with pytest.raises(rd.SceneError, match="no such file; radiosity exchange SCENE -o"):
         rd.load_exchange(tmp_path / "none.npz")
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("scene_vertices", lambda values: values * np.nan),
+        ("scene_vertices", lambda values: values * 1.5),
+        ("scene_surface", lambda values: values + 99),
+        ("patches_columns", lambda values: values + 1),
+        ("net", lambda values: values * np.nan),
+        ("net_standard_error", lambda values: -1 - values),
+        ("emissivity", lambda values: values + 1),
+    ],
+)
+def test_a_changed_file_is_refused(heat, tmp_path, name, change):
+    with np.load(heat.save(tmp_path / "heat.npz")) as file:
+        arrays = dict(file)
+    np.savez(tmp_path / "heat.npz", **(arrays | {name: change(arrays[name])}))
+    with pytest.raises(rd.SceneError, match="is no radiative exchange of this program, or damaged"):
+        rd.load_exchange(tmp_path / "heat.npz")
 
 
 def test_tables_say_what_the_sign_means(heat, tmp_path):
@@ -78,10 +105,30 @@ def test_pictures_of_heat(heat, tmp_path):
         view = np.asarray(picture, float)
     assert view[..., 0].max() > 150  # red, or blue, and not one colour
     assert view.std() > 10
-    with Image.open(tmp_path / "heat.exchange.png") as picture:
-        assert picture.size[0] > 300
+    for name in ("heat.exchange.png", "heat.flows.png"):
+        with Image.open(tmp_path / name) as picture:
+            assert picture.size[0] > 300
     with pytest.raises(rd.OutputError, match=r"unknown output format '.glb'"):
         heat.export(tmp_path / "heat.glb")
+
+
+def test_bands_are_as_wide_as_the_heat_that_flows(tmp_path):
+    """From a to b 3 W and to c 1 W, in columns of pixels: the bar of a, and three quarters of it, and one."""
+    watts = np.zeros((4, 4))
+    watts[0, 1:3], watts[1:3, 0] = (3, 1), (-3, -1)
+    found = SimpleNamespace(exchange=watts, names=("a", "b", "c"), temperature=np.array([400.0, 300, 200]), surroundings=None)
+    flows(found, tmp_path / "flows.png")
+    with Image.open(tmp_path / "flows.png") as picture:
+        pixels = np.asarray(picture.convert("RGB"), int)
+    grey = (np.abs(pixels - 0.45 * 255) < 2).all(axis=2)
+    bars = grey[:, grey.sum(axis=0).argmax()]
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], bars.astype(int), [0]])))
+    (one, other), colors = np.diff(edges)[::2], (np.ptp(pixels, axis=2) > 100)
+    assert one / other == pytest.approx(3, rel=0.05)
+    assert colors[:, : pixels.shape[1] // 2].sum(axis=0).max() == pytest.approx(one + other, rel=0.03)
+    nothing = SimpleNamespace(**(vars(found) | {"exchange": 0 * watts}))
+    flows(nothing, tmp_path / "nothing.png")
+    assert (tmp_path / "nothing.png").stat().st_size > 1_000
 
 
 def test_the_page_runs(tmp_path, monkeypatch):
@@ -137,6 +184,8 @@ def test_the_command_takes_lines(capsys, tmp_path):
         (["--temperature", "load=x"], 2, "'x' is no number"),
         (["--temperature", "load=1", "load=1"], 2, "gives 'load' twice"),
         (["--flux", "load=1,2"], 2, "give one number"),
+        (["--emissivity", "load=0.1", "load:front=0.2"], 2, "gives 'load:front' twice"),
+        (["--emissivity", "load*:back=0.2"], 2, "its back does not radiate"),
         (["--temperature", "q=300"], 2, "no surface is called 'q'"),
         (["--temperature", "load*=900", "--rays", "3k", "--error", "0.001%"], 3, "was not reached with"),
     ],

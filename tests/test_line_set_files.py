@@ -47,7 +47,7 @@ def test_a_file_holds_all_of_it(room, whole, tmp_path):
 
 def test_parts_of_a_seed_are_added_to_the_bits_of_one_run(room, whole):
     one, other = part(room, 0, 1), part(room, 1, 3)
-    for found in (one + other, other + one):
+    for found in (one + other, other + one, sum([one, other])):  # type: ignore[arg-type]
         assert equal(found, whole)
         assert (found.parts, found.rays, found.replicates) == (whole.parts, whole.rays, 4)
         assert found.provenance == whole.provenance

@@ -2038,4 +2038,25 @@ MISTAKES = (
         ("test_exchange_conditions.py",),
         "a temperature stays where a later entry gives a flux",
     ),
+    Mistake(
+        "exchange/conditions.py",
+        "result[:, rows] = _of_bands(one, bands, name)[:, None]",
+        "result[:, here] = _of_bands(one, bands, name)[:, None]",
+        ("test_heat_reports.py", "test_exchange_conditions.py"),
+        "both sides of a shield have the emissivity of one",
+    ),
+    Mistake(
+        "exchange/factor_target.py",
+        "return wide * float(np.sqrt(variance / size))",
+        "return wide * float(np.sqrt(variance / size / factors.replicates))",
+        ("test_factor_target.py",),
+        "view factors stop above the error asked for",
+    ),
+    Mistake(
+        "exchange/factor_target.py",
+        '    return replace(found, status="not reached")\n',
+        "    return found\n",
+        ("test_factor_target.py",),
+        "a run of view factors that ends above its target is called complete",
+    ),
 )

@@ -24,7 +24,8 @@ def conductors(lines: Path, /, *, emissivity: Names, output: Outputs = (), merge
     lines
         An .npz file of `radiosity lines`.
     emissivity
-        Emissivities of surfaces, such as "*=0.9" shield=0.05. Every surface needs one; NAME may be a pattern.
+        Emissivities of surfaces, such as "*=0.9" shield=0.05, or of one side, such as shield:front=0.05. Every surface needs
+        one; NAME may be a pattern.
     output
         Files to write: .csv, a row for each pair of surfaces.
     merge
@@ -38,7 +39,7 @@ def conductors(lines: Path, /, *, emissivity: Names, output: Outputs = (), merge
         check_place(path)
     import radiosity as rd
 
-    values = named_numbers(emissivity, "emissivity")
+    values = named_numbers(emissivity, "emissivity", sides=True)
     group: Any = merged_groups(merge) if merge else "surface"
     found = rd.gebhart_factors(rd.load_lines(lines), emissivity=values, group=group)
     tasks: list = [("the report", lambda: _print(found))]

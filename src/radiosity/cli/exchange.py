@@ -22,7 +22,8 @@ class Conditions:
 
     Attributes:
         temperature: Temperatures in K of surfaces, such as floor=310 "wall*=290". NAME may be a pattern.
-        emissivity: Emissivities of surfaces, such as "*=0.9" shield=0.05, or oven=0.9,0.4 with --wavelengths.
+        emissivity: Emissivities of surfaces, such as "*=0.9" shield=0.05, of one side such as shield:front=0.05, or in bands,
+            such as oven=0.9,0.4, with --wavelengths.
         flux: W that a whole surface gets from elsewhere and gives off, such as heater=500.
         adiabatic: Names of surfaces that get no heat from elsewhere: insulated walls, shields.
         isothermal: Names of those of them that conduct well, so that the whole surface has one temperature.
@@ -97,7 +98,7 @@ def exchange(
         lines are taken.
     output
         Files to write: .csv (the table; beside it NAME.exchange.csv, watts from surface to surface), .npz, .png (a view of net
-        heat; beside it NAME.exchange.png, a matrix of watts).
+        heat; beside it NAME.exchange.png, a matrix of watts, and NAME.flows.png, which shows them as bands).
     """
     from ..exchange.files import check_writable, files_of
 
@@ -124,7 +125,7 @@ def exchange(
     patches = rd.subdivide(loaded, **cut) if isinstance(loaded, rd.Scene) and asked else loaded
     conditions = {
         "temperature": named_numbers(given.temperature, "temperature"),
-        "emissivity": named_numbers(given.emissivity, "emissivity", several=True),
+        "emissivity": named_numbers(given.emissivity, "emissivity", several=True, sides=True),
         "flux": named_numbers(given.flux, "flux"),
         "adiabatic": given.adiabatic,
         "isothermal": given.isothermal,
@@ -149,19 +150,23 @@ def _write(found, path: Path) -> None:
     tell(f"wrote {printable(path)}")
 
 
-def named_numbers(given: tuple[str, ...], what: str, *, several: bool = False) -> dict:
-    """Values by name, from NAME=VALUE; the last = divides."""
+def named_numbers(given: tuple[str, ...], what: str, *, several: bool = False, sides: bool = False) -> dict:
+    """Values by name, from NAME=VALUE; the last = divides. With ``sides``, NAME:front and NAME:back are one side each."""
     found: dict = {}
     for text in given:
         name, equals, value = text.rpartition("=")
         if not equals or not name:
             raise SceneError(f"--{what} is '{text}'; write NAME=VALUE, such as floor=0.9")
-        if name in found:
+        surface, _, side = name.rpartition(":")
+        place, key = found, name
+        if sides and surface and side in ("front", "back"):
+            place, key = found.setdefault(surface, {}), side
+        if not isinstance(place, dict) or key in place:
             raise SceneError(f"--{what} gives '{name}' twice")
         numbers = _numbers(value, what, text)
         if len(numbers) > 1 and not several:
             raise SceneError(f"--{what} is '{text}'; give one number")
-        found[name] = numbers[0] if len(numbers) == 1 else numbers
+        place[key] = numbers[0] if len(numbers) == 1 else numbers
     return found
 
 

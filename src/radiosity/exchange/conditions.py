@@ -10,8 +10,10 @@ import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
 from ..patches.model import Patches
+from ..patches.values import SIDES, of_sides
 from ..scene.heat import HOTTEST, MOST_EDGES, Heat
 from ..scene.named import surfaces_called
+from .report import SURROUNDINGS
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +73,10 @@ class Conditions:
         around = heat.surroundings if surroundings is None else surroundings
         if around is not None:
             around = _number(around, "temperature", None)
+            if SURROUNDINGS in names:
+                text = f"a surface is called '{SURROUNDINGS}', too"
+                text += "; of two rows of that name in a table the last is what is around the scene"
+                warnings.warn(text, RadiosityWarning, stacklevel=3)
         edges = _edges(heat.wavelengths if wavelengths is None else wavelengths)
         of_surface: list[Any] = list(heat.emissivity)
         for i, (value, _) in by_name(emissivity, names, "emissivity").items():
@@ -91,6 +97,10 @@ def _number(value, what: str, name: str | None) -> float:
     """A temperature or flux within its range."""
     where = f"{what} of surface '{name}'" if name is not None else "temperature of the surroundings"
     rule = f"K, from 0 to {HOTTEST:g}" if what == "temperature" else "W, a finite number"
+    if isinstance(value, Mapping):
+        raise SceneError(
+            f"{where} is {value!r}; both sides of a sheet have one; make the sides two surfaces, one behind the other"
+        )
     try:
         number = math.nan if isinstance(value, (bool, str)) else float(value)
     except (TypeError, ValueError):
@@ -157,7 +167,12 @@ def _emissivities(patches: Patches, of_surface: list, bands: int) -> np.ndarray:
     for i in sorted(used):
         here, name, value = patches.surface == i, scene.names[i], of_surface[i]
         if value is not None:
-            result[:, here] = _of_bands(value, bands, name)[:, None]
+            for rows, one in of_sides(patches, here, value, "emissivity", name):
+                result[:, rows] = _of_bands(one, bands, name)[:, None]
+            bare = here & np.isnan(result[0])
+            if bare.any():
+                side = SIDES[int(patches.is_back[bare][0])]
+                raise SceneError(f"emissivity of surface '{name}' is {value!r}; give one for its {side}, too")
         elif name in scene.assumed:
             assumed.append(name)
         elif bands > 1 or (patches.reflectance[here] != patches.reflectance[here][:, :1]).any():

@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..solution.npz import FACTORS
 from ..solution.whole import whole_file
 from .restoration import SAMPLED
 
-KIND, FORMAT = "view factors", 1
+FORMAT = 1
 TEXTS = ("names", "replicates", "method", "reciprocal", "restoration", "rays", "status", "provenance")
 DERIVED = ("matrix", "standard_error", "escaped", "escaped_standard_error", "lost", "lost_standard_error")
 
@@ -32,7 +33,7 @@ def save(factors, path) -> None:
     arrays = {name: value for name, value in arrays.items() if value is not None}
     if len(factors) <= SAMPLED:
         arrays |= {name: getattr(factors, name) for name in DERIVED}
-    meta = {"kind": KIND, "format": FORMAT, **{name: getattr(factors, name) for name in TEXTS}}
+    meta = {"kind": FACTORS, "format": FORMAT, **{name: getattr(factors, name) for name in TEXTS}}
     arrays["meta"] = np.array(json.dumps(meta))
     with whole_file(Path(path)) as file:
         np.savez(file, **arrays)

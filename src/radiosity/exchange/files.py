@@ -9,6 +9,7 @@ from ..solution.csv_rows import write_rows
 from .report import SURROUNDINGS
 
 SUFFIXES = (".npz", ".csv", ".png")
+BESIDE = {".csv": ("exchange",), ".png": ("exchange", "flows")}  # words of the files beside one
 UNITS = {"area": "m²", "flux": "W/m²"} | {
     f"{what}{end}": unit for what, unit in (("temperature", "K"), ("net", "W")) for end in ("", " error", " low", " high")
 }
@@ -17,10 +18,11 @@ UNITS = {"area": "m²", "flux": "W/m²"} | {
 def files_of(path) -> tuple[Path, ...]:
     """Return the files that `export` writes for a path.
 
-    Beside ``x.csv`` goes ``x.exchange.csv``, and beside ``x.png``, the picture of net heat, ``x.exchange.png``.
+    Beside ``x.csv`` goes ``x.exchange.csv``, and beside ``x.png``, the picture of net heat, ``x.exchange.png`` and
+    ``x.flows.png``.
     """
     path = Path(path)
-    return (path,) if path.suffix.lower() == ".npz" else (path, path.with_name(f"{path.stem}.exchange{path.suffix}"))
+    return (path, *(path.with_name(f"{path.stem}.{word}{path.suffix}") for word in BESIDE.get(path.suffix.lower(), ())))
 
 
 def check_writable(path) -> None:
@@ -42,15 +44,16 @@ def export(found, path: Path) -> Path:
     suffix = path.suffix.lower()
     if suffix == ".npz":
         return found.save(path)
-    first, second = files_of(path)
+    files = files_of(path)
     if suffix == ".csv":
-        _table(found, first)
-        _exchange(found, second)
+        _table(found, files[0])
+        _exchange(found, files[1])
     elif suffix == ".png":
-        from . import pictures
+        from . import flow_picture, pictures
 
-        pictures.heat(found, first)
-        pictures.exchange(found, second)
+        pictures.heat(found, files[0])
+        pictures.exchange(found, files[1])
+        flow_picture.flows(found, files[2])
     else:
         raise OutputError(f"{path}: unknown output format '{path.suffix}'; known are {', '.join(SUFFIXES)}")
     return path

@@ -15,6 +15,7 @@ from ..device.backend import choose
 from ..errors import MethodError, SceneError, shown
 from ..factors.counted import CountedPairs
 from ..patches.model import Patches
+from ..patches.values import of_sides
 from ..run.line_set.model import LineSet
 from ..solution.csv_rows import write_rows
 from ..solution.errors import mean_and_error
@@ -111,7 +112,8 @@ def gebhart_factors(lines: LineSet, *, emissivity, group="surface") -> GebhartFa
     Args:
         lines: what `trace_lines` has counted.
         emissivity: one number above 0 and at most 1, a dictionary of names of surfaces (or patterns) to numbers, which must name
-            every surface, or a number for each patch. An exact name goes before a pattern, and that before ``"*"``.
+            every surface (in place of a number it may hold sides, ``{"front": 0.05, "back": 0.8}``), or a number for each patch.
+            An exact name goes before a pattern, and that before ``"*"``.
         group: as of `view_factors`.
 
     Raises:
@@ -179,13 +181,16 @@ def _emissivities(patches: Patches, given) -> np.ndarray:
     """
     names = patches.scene.names
     if isinstance(given, dict):
-        of_surface = np.full(len(names), np.nan)
+        result = np.full(len(patches), np.nan)
         for i, (value, _) in by_name(given, list(names), "emissivity").items():
-            of_surface[i] = _number(value, names[i])
-        lacking = [names[s] for s in np.unique(patches.surface) if np.isnan(of_surface[s])]
+            for rows, one in of_sides(patches, patches.surface == i, value, "emissivity", names[i]):
+                result[rows] = _number(one, names[i])
+        lacking = [names[s] for s in np.unique(patches.surface[np.isnan(result)])]
         if lacking:
-            raise MethodError(f"emissivity: none is given for {shown(lacking)}; name them, or '*' for all others")
-        return of_surface[patches.surface]
+            raise MethodError(
+                f"emissivity: none is given for {shown(lacking)}, or for one side; name them, or '*' for all others"
+            )
+        return result
     values = np.asarray(given, dtype=object)
     if values.ndim == 0:
         return np.full(len(patches), _number(given, "all surfaces"))

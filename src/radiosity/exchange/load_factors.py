@@ -9,7 +9,9 @@ import numpy as np
 
 from ..errors import SceneError
 from ..solution.archive import check_sizes
-from .factor_file import FORMAT, KIND, TEXTS
+from ..solution.npz import FACTORS, READERS, SOLUTION
+from ..solution.reading import holds
+from .factor_file import FORMAT, TEXTS
 from .restoration import LEAST_SQUARES, RAW, SCALING
 from .view_factors import ViewFactors
 
@@ -43,7 +45,10 @@ def load_view_factors(path) -> ViewFactors:
             check_sizes(opened, path)
             with np.load(opened, allow_pickle=False) as file:
                 meta = json.loads(str(file["meta"]))
-                if meta.get("kind") != KIND or meta["format"] != FORMAT:
+                found = meta.get("kind", SOLUTION if "quanta" in meta else None)  # solutions say no kind
+                if found != FACTORS and found in READERS:
+                    raise SceneError(f"{path}: {holds(found)}, not view factors; {READERS[found]} reads it")
+                if found != FACTORS or meta["format"] != FORMAT:
                     raise ValueError(f"kind '{meta.get('kind')}', format {meta.get('format')}")
                 known = [field.name for field in fields(ViewFactors) if field.name not in TEXTS]
                 arrays = {name: file[name] for name in known if name in file.files}
@@ -76,6 +81,7 @@ def _checked(factors: ViewFactors) -> ViewFactors:
             raise ValueError(f"'{name}' is {array.dtype} {array.shape}")
     codes = factors.rows * (n + 2) + factors.columns
     good = m == 0 or (codes[0] >= 0 and (np.diff(codes) > 0).all() and factors.rows[-1] < n and (factors.columns < n + 2).all())
+    good = good and not any((array < 0).any() for array in (factors.errors, factors.line)) and (factors.hits >= -1).all()
     good = good and (factors.columns >= 0).all() and np.abs(factors.row_sums - 1).max(initial=0) < 1e-6
     if not good or factors.restoration not in (RAW, LEAST_SQUARES, SCALING) or not (factors.area > 0).all():
         raise ValueError("rows that do not sum to one, or entries out of order")

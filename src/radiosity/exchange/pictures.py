@@ -10,11 +10,10 @@ from ..image import bitmap, false_color
 from ..image.picture import choose_camera, first_hits, take
 from ..image.quantity import Quantity
 from ..solution.replacing import replacing
+from .picture_words import LONGEST, in_watts, most_active
 from .report import SIGN, SURROUNDINGS
 
 COLORS = "coolwarm"  # blue takes heat, red gives it off
-MOST = 24  # surfaces of a matrix; those that exchange least are left out
-LONGEST = 24  # characters of a name
 
 
 def heat(found, path: Path) -> None:
@@ -36,9 +35,7 @@ def exchange(found, path: Path) -> None:
     from matplotlib.figure import Figure
 
     watts, names = found.exchange, np.array([*found.names, SURROUNDINGS], object)
-    size = np.abs(watts).sum(axis=1)
-    rows = np.sort(np.argsort(-size, kind="stable")[:MOST])
-    rows = rows[size[rows] > 0] if size.any() else rows
+    rows, left_out = most_active(watts)
     watts = watts[np.ix_(rows, rows)]
     labels = [printable(name)[:LONGEST] for name in names[rows]]
     figure = Figure(figsize=(3 + 0.55 * len(rows), 2.4 + 0.5 * len(rows)), dpi=120, layout="constrained")
@@ -51,14 +48,9 @@ def exchange(found, path: Path) -> None:
     axes.set_xlabel("to")
     axes.set_ylabel("from")
     for i, j in np.argwhere(watts > 0):
-        axes.text(j, i, _watts(watts[i, j]), ha="center", va="center", fontsize=7)
-    left = "" if len(rows) == (size > 0).sum() else f" ({len(rows)} surfaces that exchange most)"
+        axes.text(j, i, in_watts(watts[i, j]), ha="center", va="center", fontsize=7)
+    left = f" ({len(rows)} surfaces that exchange most)" if left_out else ""
     axes.set_title(f"net heat straight from one to another [W]{left}", fontsize=9)
     figure.colorbar(shades, ax=axes, label="W")
     with replacing(path) as temporary:
         figure.savefig(temporary, format="png")
-
-
-def _watts(value: float) -> str:
-    """Return three digits at least, and no exponent below a million: 3,020 rather than 3.02e+03."""
-    return f"{value:,.0f}" if 100 <= abs(value) < 1e6 else f"{value:.3g}"

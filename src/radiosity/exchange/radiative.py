@@ -9,6 +9,7 @@ import numpy as np
 from ..device.backend import choose
 from ..errors import MethodError, RadiosityWarning
 from ..patches import Patches, subdivide
+from ..run.budget import Budget
 from ..run.line_set.model import LineSet
 from ..run.progress import Listener
 from ..run.whole_number import whole
@@ -58,7 +59,8 @@ def radiative_exchange(
         scene: a `Scene` (cut into about 2 000 patches), the `Patches` of one, or a `LineSet` whose lines are taken.
         temperature: K, of surfaces by name.
         emissivity: by name, or one number for all surfaces; above 0, at most 1; with ``wavelengths`` also a list, one number a
-            band. Absorptance is the same. Default: 1 - reflectance, if the scene's file gives it, which is told.
+            band. Sides may differ: ``{"shield": {"front": 0.05, "back": 0.8}}``. Absorptance is the same. Default: 1 -
+            reflectance, if the scene's file gives it, which is told.
         flux: W that a whole surface gets from elsewhere and gives off; negative: that it is cooled by.
         adiabatic: names of surfaces that get nothing from elsewhere. Each cell of such a surface, and of one of given flux, takes
             a temperature of its own, the same on both sides where both radiate: so a sheet is a radiation shield.
@@ -128,7 +130,7 @@ def _until(target: Target, estimator: Estimator, rays: float | None, options: di
 
     Ctrl-C returns those of the last stage that was solved.
     """
-    patches, most = estimator.patches, float(MOST if rays is None else rays)
+    patches, most = estimator.patches, int(Budget(rays=MOST if rays is None else rays).rays or 0)
     goal = min(max(FIRST * len(patches), 2000 * options["replicates"]), most)
     last = None
     while True:

@@ -159,7 +159,7 @@ class RadiativeExchange:
         return save(self, Path(path))
 
     def export(self, path) -> Path:
-        """Write a file: .npz (`save`), .csv (the table, and beside it NAME.exchange.csv), .png (pictures, needs matplotlib).
+        """Write a file: .npz (`save`), .csv (the table, and beside it NAME.exchange.csv), .png (three pictures).
 
         Raises:
             OutputError: the format is unknown, or the file cannot be written.

@@ -33,7 +33,7 @@ class ViewFactors:
         reciprocal: False where backs let lines pass, so that A_i F_ij and A_j F_ji may differ.
         restoration: "" (as measured), "least squares" or "scaling": how reciprocity was restored.
         rays: lines that were traced, all replicates together.
-        status: "complete" or "interrupted", where there are fewer lines than were asked for.
+        status: "complete", "interrupted" (there are fewer lines than were asked for), or "not reached" (the error asked for).
         provenance: what the factors were made of.
 
     Example:

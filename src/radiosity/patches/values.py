@@ -75,7 +75,7 @@ def _by_name(patches: Patches, given: Mapping, what: str) -> np.ndarray:
         if not isinstance(name, str):
             raise SceneError(f"{source}: {what} names a surface {name!r}; it must be a text")
         rows = np.isin(patches.surface, surfaces_called(names, name))
-        for some, one in _of_sides(patches, rows, value, what, name):
+        for some, one in of_sides(patches, rows, value, what, name):
             row = array(one, np.float64, f"{what} of '{name}'", source)
             if row.ndim > 1 or row.size == 0:
                 raise SceneError(f"{source}: {what} of '{name}' has shape {row.shape}; expected one number, or one for each band")
@@ -87,8 +87,8 @@ def _by_name(patches: Patches, given: Mapping, what: str) -> np.ndarray:
     return result
 
 
-def _of_sides(patches: Patches, rows: np.ndarray, value, what: str, name: str):
-    """Yield which patches of a surface a value is for, and the value.
+def of_sides(patches: Patches, rows: np.ndarray, value, what: str, name: str):
+    """Yield which patches of a surface a value is for, and the value; a dictionary of sides has one for each.
 
     An emission without a side is that of the sides that emit in the scene, face by face; where none does, that of all.
     """

@@ -4,8 +4,8 @@ An array of the scene has the key ``scene_NAME``, of a paint ``reflectance_paint
 one text of JSON, ``meta``. Line sets are such files, too, with the same keys of scene and patches.
 """
 
-SOLUTION, LINES, EXCHANGE = "solution", "line set", "radiative exchange"  # kinds of files
-READERS = {SOLUTION: "load_solution", LINES: "load_lines", EXCHANGE: "load_exchange"}
+SOLUTION, LINES, EXCHANGE, FACTORS = "solution", "line set", "radiative exchange", "view factors"  # kinds of files
+READERS = {SOLUTION: "load_solution", LINES: "load_lines", EXCHANGE: "load_exchange", FACTORS: "load_view_factors"}
 # of solutions; the second where patches have values of their own, the third where there are lights without area: older versions
 # do not know these
 FORMAT, FORMAT_OF_OWN, FORMAT_OF_LIGHTS = 1, 2, 3

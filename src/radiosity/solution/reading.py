@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import SceneError
 from .archive import check_sizes
-from .npz import EXCHANGE, LINES, READERS, SOLUTION
+from .npz import EXCHANGE, FACTORS, LINES, READERS, SOLUTION
 
 LAST_CHARACTER = 0x10FFFF
 AGAIN = {SOLUTION: "solve the scene again", LINES: "trace the lines again", EXCHANGE: "make it again"}
@@ -41,7 +41,7 @@ def read(path: Path, kind: str, formats: tuple[int, ...], restore: Callable[[dic
         meta = json.loads(_text(arrays["meta"]))
         found = meta.get("kind", SOLUTION)
         if found != kind and found in READERS:
-            raise SceneError(f"{path}: holds a {found}, not a {kind}; {READERS[found]} reads it")
+            raise SceneError(f"{path}: {holds(found)}, not a {kind}; {READERS[found]} reads it")
         if meta["format"] not in formats:
             raise SceneError(f"{path}: written in format {meta['format']}; this version reads {', '.join(map(str, formats))}")
         return restore(arrays, meta)
@@ -56,6 +56,11 @@ def read(path: Path, kind: str, formats: tuple[int, ...], restore: Callable[[dic
             raise
         text = " ".join(str(error).split())[:200]
         raise SceneError(f"{path}: is no {kind} of this program, or damaged ({text}); {AGAIN[kind]}") from None
+
+
+def holds(kind: str) -> str:
+    """Return what a file of a kind holds, in words."""
+    return f"holds {kind}" if kind == FACTORS else f"holds a {kind}"
 
 
 def _text(value: np.ndarray) -> str:

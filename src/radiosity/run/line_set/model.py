@@ -143,6 +143,10 @@ class LineSet:
             return NotImplemented
         return replace(self, **fields_of_sum(self, other))
 
+    def __radd__(self, other: int) -> "LineSet":
+        """Return the set itself where other is 0, with which `sum` begins."""
+        return self if isinstance(other, int) and other == 0 else NotImplemented
+
     def _state(self, groups: int) -> MatrixState:
         sizes = Sizes(self.replicates, len(self.patches), groups)
         numbers = {"quanta": self.quanta, "reached": self.quanta, "replicates": self.replicates}
