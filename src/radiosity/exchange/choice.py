@@ -102,7 +102,7 @@ def polygons_are_better(
         rays: lines of the whole run, which is its work.
     """
     patches: Patches = geometry.patches
-    if geometry.some_backs_pass or not 2 <= len(patches) <= LARGEST or replicates < 2:
+    if geometry.some_backs_pass or geometry.panes is not None or not 2 <= len(patches) <= LARGEST or replicates < 2:
         return None, {}
     sample = Sample.of(geometry, groups, seed)
     spent = Rays.of(rays, len(patches), sample.facing, replicates)
