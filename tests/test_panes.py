@@ -36,7 +36,7 @@ def two_rooms(emission, transmittance=T, **more) -> rd.Scene:
     )
 
 
-def glazed(*heights, transmittance=0.5, turn=1) -> rd.Scene:
+def glazed(*heights, transmittance=0.5, turn=1, back=Back.RADIATES) -> rd.Scene:
     """A black lamp of 1 W/m² under a black square 1 m above it, with larger black panes between them at these heights."""
     size = [SQUARE, ABOVE]
     panes = [(SQUARE - np.array([0.5, 0.5, 0])) * 4 + np.array([0.5, 0.5, height]) for height in heights]
@@ -50,7 +50,7 @@ def glazed(*heights, transmittance=0.5, turn=1) -> rd.Scene:
         np.arange(n) == 0,
         surface=range(n),
         names=["lamp", "target", *(f"pane {i}" for i in range(n - 2))],
-        back=[Back.ABSORBS] * 2 + [Back.RADIATES] * (n - 2),
+        back=[Back.ABSORBS] * 2 + [back] * (n - 2),
         transmittance=np.where(np.arange(n) < 2, 0, transmittance),
     )
 
@@ -98,8 +98,9 @@ def test_panes_dim_what_is_behind_them(heights, share):
 
 def test_a_pane_on_a_wall_is_the_wall():
     """Of a pane and an opaque face at one place a line meets the opaque one, whichever comes first."""
-    for through, turn in itertools.product(([0, 0, 0.5, 0.0], [0, 0, 0.0, 0.5]), (1, -1)):
-        scene = glazed(0.5, 0.5, transmittance=np.array(through), turn=turn)
+    sides = ((1, Back.RADIATES), (-1, Back.RADIATES), (-1, Back.PASSES))  # -1: fronts look at the lamp
+    for through, (turn, back) in itertools.product(([0, 0, 0.5, 0.0], [0, 0, 0.0, 0.5]), sides):
+        scene = glazed(0.5, 0.5, transmittance=np.array(through), turn=turn, back=back)
         solution = rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=1e4, seed=1)
         assert solution.irradiance[1, 0] == 0.0
 
