@@ -15,6 +15,13 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "exchange/panes.py",
+        "np.minimum(emissivity / (1 - through), 1.0)",
+        "emissivity",
+        ("test_panes_heat.py",),
+        "a pane emits and absorbs less than it says",
+    ),
+    Mistake(
         "tracing/panes.py",
         "philox([*words, face, UInt32(0)], WORD)",
         "philox([*words, UInt32(0), UInt32(0)], WORD)",
