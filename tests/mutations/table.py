@@ -15,6 +15,41 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "exchange/panes.py",
+        "np.minimum(emissivity / (1 - through), 1.0)",
+        "emissivity",
+        ("test_panes_heat.py",),
+        "a pane emits and absorbs less than it says",
+    ),
+    Mistake(
+        "tracing/panes.py",
+        "philox([*words, face, UInt32(0)], WORD)",
+        "philox([*words, UInt32(0), UInt32(0)], WORD)",
+        ("test_panes.py",),
+        "a line has one number for all panes, so that two in a row pass as much as one",
+    ),
+    Mistake(
+        "tracing/visibility.py",
+        "part = part * (1 - through[one.face])",
+        "part = part * 1",
+        ("test_panes.py",),
+        "a pane that sends counts whole, and one that receives does not",
+    ),
+    Mistake(
+        "scene/coplanar.py",
+        'np.argsort(scene.panes, kind="stable")',
+        "np.arange(scene.n_faces)",
+        ("test_panes.py",),
+        "a pane stands for the wall at the same place",
+    ),
+    Mistake(
+        "patches/model.py",
+        "return self._over_solid(self.pane_of.emission)",
+        "return self.pane_of.emission",
+        ("test_panes.py",),
+        "a pane emits less than it says",
+    ),
+    Mistake(
         "exchange/restored.py",
         "trust = np.where(variance > 0, 1 / np.where(variance > 0, variance, 1), 0)",
         "trust = np.where(variance > 0, 1, 0)",
@@ -1317,8 +1352,8 @@ MISTAKES = (
     ),
     Mistake(
         "tracing/ties.py",
-        "[back == Back.RADIATES, back == Back.ABSORBS], [0, 1], 2)",
-        "[back == Back.RADIATES, back == Back.ABSORBS], [1, 0], 2)",
+        "[passes, scene.panes, back == Back.RADIATES], [3, 2, 0], 1)",
+        "[passes, scene.panes, back == Back.RADIATES], [3, 2, 1], 0)",
         ("test_coplanar.py",),
         "of copies the absorbing back is met first",
     ),

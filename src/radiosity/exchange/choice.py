@@ -114,7 +114,7 @@ class Choice:
     def of(geometry: Geometry, work: float, replicates: int, seed: Seed) -> "Choice | None":
         """Look at some pairs."""
         n = len(geometry.patches)
-        if geometry.some_backs_pass or not 2 <= n <= LARGEST or replicates < 2:
+        if geometry.some_backs_pass or geometry.panes is not None or not 2 <= n <= LARGEST or replicates < 2:
             return None
         sample = Sample.of(geometry, seed)
         spent = Rays.of(work, n, sample.facing, replicates)

@@ -179,7 +179,7 @@ def _emissivities(patches: Patches, of_surface: list, bands: int) -> np.ndarray:
             coloured.append(name)
         else:
             told.append(name)
-            result[0, here] = 1 - patches.reflectance[here, 0]
+            result[0, here] = 1 - patches.reflectance[here, 0] - patches.transmittance[here]
     if assumed:
         raise SceneError(f"no emissivity is given for {shown(assumed)}, and no file gives a reflectance; give emissivity")
     if coloured:
@@ -188,7 +188,8 @@ def _emissivities(patches: Patches, of_surface: list, bands: int) -> np.ndarray:
             f"{'bands' if bands > 1 else 'one band'}: give emissivity"
         )
     if told:
-        text = f"no emissivity is given for {shown(told)}; 1 - reflectance is taken"
+        rest = " - transmittance" if scene.panes.any() else ""
+        text = f"no emissivity is given for {shown(told)}; 1 - reflectance{rest} is taken"
         warnings.warn(text, RadiosityWarning, stacklevel=4)
     return result
 

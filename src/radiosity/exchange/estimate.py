@@ -1,6 +1,6 @@
 """Watts and temperatures from counted lines, with standard errors."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ from .conditions import Conditions
 from .jackknife import Jackknife
 from .network import Network, Pooled
 from .nodes import Nodes
+from .panes import of_solid
 from .planck import SIGMA
 
 MOST = 4000  # surfaces: their matrices then take 1 GB
@@ -55,7 +56,8 @@ class Estimator:
                 f"{len(patches.scene.names):,} surfaces would exchange heat in a matrix of as many rows; {MOST:,} are the "
                 "most: give surfaces that belong together one name"
             )
-        self.patches, self.conditions = patches, conditions
+        self.patches = patches
+        self.conditions = replace(conditions, emissivity=of_solid(patches, conditions.emissivity))
 
     @cached_property
     def floats(self) -> np.ndarray:

@@ -108,6 +108,10 @@ def from_polygons(
     geometry = pairs.geometry
     if geometry.some_backs_pass:
         raise MethodError("polygons: backs of this scene let lines pass (sides 1 of MGF), one way only; take method='lines'")
+    if geometry.panes is not None:
+        raise MethodError(
+            "polygons: some surfaces let light through (transmittance), so that few pairs are seen whole; take method='lines'"
+        )
     patches, n, width = geometry.patches, len(groups.names), len(groups.names) + 2
     area, labels = groups.area(patches), groups.labels
     shares = pairs.shares(rays, replicates, seed)

@@ -23,6 +23,7 @@ from ..tracing.geometry import Geometry
 from .conditions import by_name
 from .groups import Groups, groups_of
 from .narrow import warn_of_narrow
+from .panes import of_solid
 
 ESCAPED, LOST = "(escaped)", "(lost)"
 AT_ONCE = 16  # groups that emit in one call of the solver
@@ -132,6 +133,7 @@ def gebhart_factors(lines: LineSet, *, emissivity, group="surface") -> GebhartFa
         raise MethodError(f"gebhart_factors takes a LineSet, not {type(lines).__name__}; count lines with trace_lines")
     patches, groups = lines.patches, groups_of(lines.patches, group)
     share = _emissivities(patches, emissivity)
+    solid = of_solid(patches, share)
     n, replicates = len(groups.names), lines.replicates
     memory.refuse(8.0 * (replicates + 4) * n * (n + 2), f"Gebhart factors of {n} groups", "take fewer groups")
     if not lines.pairs.lines.all():
@@ -146,7 +148,7 @@ def gebhart_factors(lines: LineSet, *, emissivity, group="surface") -> GebhartFa
     carried = replace(lines.pairs, directed=True)  # from where lines begin: all that is sent ends somewhere
     for begin in range(0, n, AT_ONCE):
         some = np.arange(begin, min(begin + AT_ONCE, n))
-        values[:, some], bias[some] = _absorbed(carried, groups, share, some)
+        values[:, some], bias[some] = _absorbed(carried, groups, solid, some)
     mean, error = mean_and_error(values)
     area = groups.area(patches)
     return GebhartFactors(

@@ -35,7 +35,7 @@ def save(found, path: Path) -> Path:
     arrays, facts = stored(found.patches)
     arrays |= {name: getattr(found, name) for name in ("emissivity", *SURFACES, *PATCHES, *MATRICES)}
     meta = {name: getattr(found, name) for name in (*SCALARS, *REST)}
-    arrays["meta"] = np.array(json.dumps(meta | facts | {"kind": EXCHANGE, "format": FORMAT}))
+    arrays["meta"] = np.array(json.dumps(meta | {"kind": EXCHANGE, "format": FORMAT} | facts))
     with whole_file(path) as file:
         np.savez(file, **arrays)
     return path

@@ -1,7 +1,7 @@
 """Patches: the radiating sides of congruent cells of the scene's faces."""
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -9,6 +9,8 @@ import numpy as np
 from ..scene.model import Back, Scene
 from . import cells
 from .paint_means import cell_means
+
+MOST = float(np.nextafter(1.0, 0.0))  # a reflectance
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,6 +22,7 @@ class Patches:
         columns, rows: (n_faces,) int32, cells along the face's first and second edge (equal for triangles).
         own_reflectance, own_emission: (n_patches, n_bands) float64, where patches have values of their own in place of the
             scene's, see `patches.relit.relit`; else None.
+        pane_of: the patches whose solid part these are, see `solid`; else None.
 
     Example:
         >>> patches = rd.subdivide(rd.load_scene("room"), cells=2)
@@ -32,6 +35,7 @@ class Patches:
     rows: np.ndarray
     own_reflectance: np.ndarray | None = None
     own_emission: np.ndarray | None = None
+    pane_of: "Patches | None" = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return int(self.first[-1])
@@ -53,6 +57,26 @@ class Patches:
 
     def _cut(self):
         return hashlib.sha256(self.columns.tobytes() + self.rows.tobytes())
+
+    @cached_property
+    def solid(self) -> "Patches":
+        """The patches as the equation has them; these patches themselves where no face is a pane.
+
+        A pane of transmittance t is like a screen with tiny holes, t of its area. The solid part has 1 - t of the area, and what
+        the pane reflects and emits comes from there: reflectance and exitance are those of the whole pane over 1 - t. Lines end
+        on it as on any other patch. The irradiance is that of the whole pane.
+        """
+        return self if self.scene.transmittance is None or self.pane_of is not None else replace(self, pane_of=self)
+
+    @property
+    def whole(self) -> "Patches":
+        """The patches with whole panes, see `solid`."""
+        return self if self.pane_of is None else self.pane_of
+
+    @cached_property
+    def transmittance(self) -> np.ndarray:
+        """The share of lines that goes straight on through each patch, (n_patches,) float64; 0 where it is no pane."""
+        return np.zeros(len(self)) if self.scene.transmittance is None else self.scene.transmittance[self.face]
 
     @cached_property
     def cells_per_face(self) -> np.ndarray:
@@ -103,6 +127,8 @@ class Patches:
     @cached_property
     def area(self) -> np.ndarray:
         """Areas, (n_patches,) float64, m²."""
+        if self.pane_of is not None:
+            return self.pane_of.area * (1 - self.transmittance)
         return (self.scene.area / self.cells_per_face)[self.face]
 
     @cached_property
@@ -128,6 +154,8 @@ class Patches:
     @cached_property
     def reflectance(self) -> np.ndarray:
         """Reflectances, (n_patches, n_bands) float64."""
+        if self.pane_of is not None:
+            return np.minimum(self._over_solid(self.pane_of.reflectance), MOST)
         if self.own_reflectance is not None:
             return self.own_reflectance
         return self._of_side(self.scene.reflectance, self.scene.back_reflectance, self.scene.reflectance_paint)
@@ -135,9 +163,14 @@ class Patches:
     @cached_property
     def emission(self) -> np.ndarray:
         """Self-emitted radiosity, (n_patches, n_bands) float64, W/m² or lm/m²."""
+        if self.pane_of is not None:
+            return self._over_solid(self.pane_of.emission)
         if self.own_emission is not None:
             return self.own_emission
         return self._of_side(self.scene.emission, self.scene.back_emission, self.scene.emission_paint)
+
+    def _over_solid(self, values: np.ndarray) -> np.ndarray:
+        return values / (1 - self.transmittance)[:, None]
 
     def _of_side(self, front, back, paint) -> np.ndarray:
         if paint is None:

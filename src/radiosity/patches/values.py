@@ -122,7 +122,16 @@ def _emitting(patches: Patches, rows: np.ndarray) -> np.ndarray:
 
 
 def _check(patches: Patches, values: np.ndarray, what: str) -> None:
-    """Refuse values out of range."""
+    """Refuse values out of range, and panes that would give back more light than they get."""
+    through = patches.transmittance
+    excess = (through > 0)[:, None] & (values + through[:, None] >= 1)
+    if what == "reflectance" and excess.any():
+        patch, band = np.argwhere(excess)[0]
+        where = f"patch {patch} (surface '{patches.scene.names[patches.surface[patch]]}', band {band})"
+        raise SceneError(
+            f"{patches.scene.source}: reflectance of {where} is {values[patch, band]:g}, and its transmittance {through[patch]:g}"
+            "; the sum must be strictly below 1"
+        )
     top = 1.0 if what == "reflectance" else LARGEST
     wrong = ~((values >= 0) & (values < top))
     if wrong.any():

@@ -18,7 +18,7 @@ class Problem:
     """A scene's equation.
 
     Attributes:
-        patches: the unknowns are their radiosities.
+        patches: the unknowns are their radiosities; of panes it is the solid part (`Patches.solid`).
         groups: bands that are one problem (see `BandGroups`).
         source: the scalar problem of the largest band of each row (contract 3).
         rows: what fires lines: the patches, and lights without area.
@@ -63,6 +63,7 @@ class Problem:
             lights = lights_of(patches.scene, patches.emission.shape[1])
         elif not isinstance(lights, AllLights):
             lights = AllLights((lights,))
+        patches = patches.solid
         power = np.zeros((0, patches.emission.shape[1])) if lights is None else lights.power
         groups = BandGroups.of(patches, power)
         rows = SourceRows.of(patches, groups, power[:, groups.leaders])

@@ -76,7 +76,7 @@ def choice_for(patches: Patches, budget: Budget, part: Part, device: str, resume
         return _chosen(FALLBACK, reason, 0)
     if problem.lights is not None:
         return _chosen("gather", "shadow rays go to lights without area", 0)
-    geometry = Geometry(patches, choose(device))
+    geometry = Geometry(problem.patches, choose(device))
     geometry.prepare()
     method = PRESETS["gather"].method
     errors = predicted(problem, pilot.Pilot.of(geometry, problem, Chances.of(geometry, problem), method, part.seed))

@@ -92,7 +92,7 @@ class Run(Generic[R]):
         if resume is not None:
             check_same(resume.provenance, self.record.provenance, self.record.kind)
         made = None if choice is None else choice.geometry
-        self.geometry = Geometry(patches, self.device) if made is None else made
+        self.geometry = Geometry(self.problem.patches, self.device) if made is None else made
 
     def solve(self) -> R:
         """Run stage after stage until the budget is used up, or until Ctrl-C."""

@@ -176,6 +176,7 @@ def prepared(
         choice = replace(choice, seconds=perf_counter() - begun)
         chosen = choice.method
     refuse_open(scene.scene, chosen)
+    refuse_panes(scene.scene, chosen)
     keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, chosen)
     tell(scene.scene)
     from .record import Record
@@ -209,3 +210,20 @@ def refuse_open(scene: Scene, method: Method | Baseline) -> None:
         f"lines pass through the lamps {names} (null BSDF), and only walks that begin at the lights follow them: "
         "take --method random-walk, or give the lamps a black diffuse BSDF"
     )
+
+
+def refuse_panes(scene: Scene, method: Method | Baseline) -> None:
+    """Raise where a scene has panes and the method cannot solve it.
+
+    Global lines pair the two sides of what they cross, and hierarchies take links for seen or not: neither goes on through panes.
+    """
+    if isinstance(method, Method):
+        reason = "" if method.lines == "local" else f"lines '{method.lines}' pair the faces on both sides of a pane"
+    else:
+        reason = "links of a hierarchy do not go on through panes" if method.scheme == "hierarchical" else ""
+    if reason and scene.panes.any():
+        names = shown([scene.names[i] for i in np.unique(scene.surface[scene.panes])])
+        raise MethodError(
+            f"{scene.source}: {names} let light through (transmittance), and {reason}: take local lines, such as "
+            "--method random-walk"
+        )

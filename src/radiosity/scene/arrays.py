@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import SceneError, shown
-from . import arguments
+from . import arguments, panes
 from .habits import warn
 from .paint import Paint
 
@@ -29,6 +29,7 @@ def checked_fields(
     back_emission=None,
     bands=None,
     photometric=False,
+    transmittance=None,
     cameras=(),
     source="arrays",
 ) -> tuple[dict[str, Any], np.ndarray]:
@@ -64,6 +65,8 @@ def checked_fields(
     for value, what in zip(values, ("reflectance", "emission", "back reflectance", "back emission"), strict=True):
         arguments.check_values(value, what, surface, names, source)
     arguments.check_open(back, values[0], surface, names, source)
+    transmittance = panes.transmittances(transmittance, n, source)
+    panes.check(transmittance, back, (values[0], values[2]), surface, names, source)
     bands = arguments.bands_of(bands, n_bands, source)
     crossed = _crossed(vertices, faces)
     if len(crossed):
@@ -84,6 +87,7 @@ def checked_fields(
         "names": names,
         "bands": bands,
         "photometric": bool(photometric),
+        "transmittance": None if transmittance is None else transmittance[rows],
         "patch_size": np.full(len(names), np.nan),
         "cameras": arguments.cameras_of(cameras, source),
         "source": str(source),

@@ -70,6 +70,7 @@ def assemble(
         back_emission=each([spread(m.emission if m.back_emission is None else m.back_emission) for m in material]),
         bands=bands,
         photometric=photometric,
+        transmittance=each([m.transmittance for m in material]),
         cameras=cameras,
         source=source,
     )

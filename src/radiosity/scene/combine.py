@@ -6,6 +6,7 @@ import numpy as np
 
 from .model import Scene
 from .paint import Paint
+from .panes import panes_or_none
 
 
 def combine(scenes: list[Scene], *, source: str, photometric: bool, scale: float) -> Scene:
@@ -33,6 +34,7 @@ def combine(scenes: list[Scene], *, source: str, photometric: bool, scale: float
         back_reflectance=stack("back_reflectance"),
         back_emission=stack("back_emission"),
         surface=np.concatenate([np.array([index[name] for name in s.names], np.int32)[s.surface] for s in scenes]),
+        transmittance=panes_or_none(_transmittances(scenes)),
         names=names,
         bands=bands,
         photometric=photometric,
@@ -63,3 +65,8 @@ def _paints(scenes: list[Scene], key: str, n_bands: int) -> Paint | None:
         color.append(np.broadcast_to(paint.color, (n, 4, n_bands)))
         limit = min(limit, paint.limit)
     return Paint(tuple(images), np.concatenate(image), np.concatenate(uv), np.concatenate(color), limit, tuple(samplers))
+
+
+def _transmittances(scenes: list[Scene]) -> np.ndarray:
+    """The transmittances of all faces; 0 for faces of scenes without panes."""
+    return np.concatenate([np.zeros(s.n_faces) if s.transmittance is None else s.transmittance for s in scenes])

@@ -34,10 +34,16 @@ def contacts(scene: Scene) -> Contacts:
 
 
 def copied(scene: Scene) -> np.ndarray:
-    """Return the first face with the same corners in the same order, or else the face itself, (n_faces,) int64."""
+    """Return the first face with the same corners in the same order, or else the face itself, (n_faces,) int64.
+
+    A pane stands for others only where none of them is opaque.
+    """
     rows = _corners(scene).reshape(scene.n_faces, 12)
-    _, first, number = np.unique(numbered(rows), return_index=True, return_inverse=True)
-    first = first[number.ravel()]
+    order = np.argsort(scene.panes, kind="stable")
+    _, first, number = np.unique(numbered(rows)[order], return_index=True, return_inverse=True)
+    place = np.empty(len(order), np.int64)
+    place[order] = number.ravel()
+    first = order[first][place]
     return np.where((rows == rows[first]).all(axis=1), first, np.arange(scene.n_faces))
 
 
@@ -53,7 +59,8 @@ def _find(scene: Scene) -> Contacts:
     if len(two):
         ulp = EPSILON * np.maximum(np.abs(corners[two]).max(axis=(1, 2)), scene.plane_reach[two])
         yes = np.ones(len(two), bool)
-        parts.append(Contacts(first[two], two, np.zeros(len(two)), ulp, np.ones(len(two)), yes, yes))
+        low, high = np.minimum(first[two], two), np.maximum(first[two], two)
+        parts.append(Contacts(low, high, np.zeros(len(two)), ulp, np.ones(len(two)), yes, yes))
     return Contacts.joined(parts)
 
 

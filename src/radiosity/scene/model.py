@@ -12,6 +12,7 @@ from .camera import Camera
 from .heat import Heat
 from .lights.model import Lights
 from .paint import Paint
+from .panes import panes_or_none
 from .precision import median_centre, plane_reach
 from .sampler import DEFAULT_SAMPLER
 
@@ -42,6 +43,8 @@ class Scene:
         heat: what the file says about temperatures, or None; light does not depend on it.
         assumed: names of surfaces whose reflectance no file gives; a default was taken.
         lights: luminaires, suns and the sky, which are no surfaces.
+        transmittance: (n_faces,) float64 in [0, 1), the share of lines that goes straight on through each face from either side
+            (panes), equal in all bands; None where no face is a pane.
 
     Example:
         >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -70,6 +73,7 @@ class Scene:
     heat: Heat | None = None
     assumed: tuple[str, ...] = ()
     lights: Lights = field(default_factory=Lights)
+    transmittance: np.ndarray | None = None
 
     @staticmethod
     def from_arrays(
@@ -86,6 +90,7 @@ class Scene:
         back_emission=None,
         bands=None,
         photometric=False,
+        transmittance=None,
         cameras=(),
         source="arrays",
     ) -> "Scene":
@@ -104,6 +109,8 @@ class Scene:
             back_reflectance, back_emission: of radiating backs, default as the front.
             bands: band names; default ("grey",), ("red", "green", "blue") or numbers.
             photometric: emission is in lm/m².
+            transmittance: a number or (n_faces,) in [0, 1): the share of light that goes straight on through a face (a clear
+                pane), from either side. With the reflectance of each side it must stay below 1; the rest is absorbed.
 
         Raises:
             SceneError: shapes, indices or values out of range; nothing left that has an area.
@@ -123,6 +130,7 @@ class Scene:
             back_emission=back_emission,
             bands=bands,
             photometric=photometric,
+            transmittance=transmittance,
             cameras=cameras,
             source=source,
         )
@@ -137,6 +145,11 @@ class Scene:
     def n_bands(self) -> int:
         """Number of bands."""
         return self.reflectance.shape[1]
+
+    @property
+    def panes(self) -> np.ndarray:
+        """True where a face lets light through from both sides, (n_faces,) bool."""
+        return np.zeros(self.n_faces, bool) if self.transmittance is None else self.transmittance > 0
 
     @property
     def unit(self) -> str:
@@ -221,12 +234,18 @@ class Scene:
         if self.lights:
             digest.update(self.lights.digest())
         digest.update(repr((self.names, self.bands, self.photometric)).encode())
-        return digest.hexdigest()
+        return self._with_panes(digest).hexdigest()
 
     @cached_property
     def geometry_hash(self) -> str:
-        """SHA-256 of everything that lines depend on: faces, backs and surfaces, and neither emission nor reflectance."""
-        return _digest(self.vertices, self.faces, self.back, self.surface).hexdigest()
+        """SHA-256 of everything that lines depend on: faces, backs, panes and surfaces, and neither emission nor reflectance."""
+        return self._with_panes(_digest(self.vertices, self.faces, self.back, self.surface)).hexdigest()
+
+    def _with_panes(self, digest):
+        """Add the panes to a digest, where there are any: other scenes keep the hashes of older versions."""
+        if self.transmittance is not None:
+            digest.update(_digest(self.transmittance).digest())
+        return digest
 
     def take(self, keep: np.ndarray) -> "Scene":
         """The scene of a choice of faces (indices or mask)."""
@@ -240,6 +259,7 @@ class Scene:
             back_reflectance=self.back_reflectance[rows],
             back_emission=self.back_emission[rows],
             surface=self.surface[rows],
+            transmittance=panes_or_none(None if self.transmittance is None else self.transmittance[rows]),
             reflectance_paint=self.reflectance_paint and self.reflectance_paint.take(rows),
             emission_paint=self.emission_paint and self.emission_paint.take(rows),
         )

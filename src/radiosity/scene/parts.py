@@ -26,6 +26,7 @@ class Material:
         diffuse: False where the file's material is not diffuse and was taken by its diffuse albedo.
         given: the user's own .toml sets the reflectance, below 1: it is taken as it is.
         origin: the file that sets the reflectance, where it is another one than the scene's.
+        transmittance: the share of light that goes straight on through a clear pane, from either side.
     """
 
     reflectance: tuple[float, ...] | None = None
@@ -36,6 +37,7 @@ class Material:
     diffuse: bool = True
     given: bool = False
     origin: str = ""
+    transmittance: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

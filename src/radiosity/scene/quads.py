@@ -80,6 +80,8 @@ def _equal_rows(scene: Scene, one, two) -> np.ndarray:
     same = scene.back[one] == scene.back[two]
     for value in (scene.reflectance, scene.emission, scene.back_reflectance, scene.back_emission):
         same &= (value[one] == value[two]).all(axis=1)
+    if scene.transmittance is not None:
+        same &= scene.transmittance[one] == scene.transmittance[two]
     return same
 
 

@@ -87,9 +87,10 @@ def measure(
     number = whole(seed, "seed", 0)
     with limited(memory), turn():
         begun = perf_counter()
-        solution: Scene | Patches | Solution = scene
         status = "complete"
-        if not isinstance(solution, Solution):
+        if isinstance(scene, Solution):
+            solution = scene
+        else:
             part = Budget(rays=None if rays is None else rays * SHARE, error=None if error is None else error * SHARE)
             solution = solve(
                 scene, rays=part.rays, error=part.error, replicates=replicates, seed=number, device=device, progress=progress

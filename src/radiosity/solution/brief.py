@@ -33,7 +33,7 @@ def brief(solution) -> str:
 def area_mean(solution):
     """The mean irradiance over the scene, without sides that no line reached, (n_bands,)."""
     inside = ~solution.sides.left_out
-    area = solution.patches.area[inside]
+    area = solution.patches.solid.area[inside]
     return area @ solution.irradiance[inside] / area.sum()
 
 

@@ -162,7 +162,7 @@ def least_error(
 def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     """The intervals of `Solution.interval`."""
     check(quantity)
-    mean, error, area = solution.irradiance, solution.irradiance_standard_error, solution.patches.area
+    mean, error, area = solution.irradiance, solution.irradiance_standard_error, solution.patches.solid.area
     # form factors that agree tell nothing about their error
     shown = np.where(error > 0, error, np.nan) if solution.by_baseline else error
     half = student(level, solution.replicates) * shown
@@ -185,7 +185,7 @@ def power_of_none(solution) -> np.ndarray:
     Their standard error is made of it. Files of older versions have a zero there: then it is the power of a usual line, or of
     a line from the lights. Entries of other patches mean nothing.
     """
-    patches, mean = solution.patches, solution.irradiance
+    patches, mean = solution.patches.solid, solution.irradiance
     one = solution.irradiance_standard_error * patches.area[:, None]
     line = power_of_a_line(patches.emission, patches.area, solution.quanta * solution.replicates)
     return np.where(one > 0, one, usual_power(mean, solution.arrivals, patches.area, line))

@@ -63,7 +63,7 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
     """
     if quantity != "absorbed":
         check(quantity)
-    patches, some = solution.patches, key >= 0
+    patches, some = solution.patches.solid, key >= 0
     here, shape = key[some], (n, patches.emission.shape[1])
     its_area, reflectance = patches.area[some], patches.reflectance[some]
     area = np.bincount(here, its_area, n)
@@ -91,6 +91,11 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
         least = least if quantity == "irradiance" else 0 * least  # where reflectances differ, lines may hit the darkest
         few = (arrivals < FEW)[:, None] | (got == 0)
         low, high = widened(low, high, few, least, most * share, mean if solution.signed else None)
+    if quantity != "irradiance" and patches.pane_of is not None:  # what leaves or heats the solid part, over the whole area
+        whole = np.bincount(here, patches.whole.area[some], n)
+        part = np.divide(area, whole, out=np.ones(n), where=whole > 0)[:, None]
+        error, low, high = error * part, low * part, high * part
+        area = area / part[:, 0]
     if quantity == "radiosity":
         emission = patches.emission[some]
         emitted = np.stack([np.bincount(here, its_area * band, n) for band in emission.T], axis=1) / area[:, None]
@@ -103,7 +108,7 @@ def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
     It is the usual power, or the most that a line would have brought to its patches that received nothing.
     """
-    mean, area = solution.irradiance, solution.patches.area
+    mean, area = solution.irradiance, solution.patches.solid.area
     one = np.tile(usual_power(mean, solution.arrivals, area), (shape[0], 1))
     some = key >= 0
     np.maximum.at(one, key[some], np.where(mean == 0, power_of_none(solution), 0)[some])
@@ -112,4 +117,4 @@ def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 def _cluster(solution) -> np.ndarray:
     """The `cluster` of patches, which are more numerous than sets, (n_bands,)."""
-    return cluster(solution.irradiance, solution.irradiance_standard_error, solution.arrivals, solution.patches.area)
+    return cluster(solution.irradiance, solution.irradiance_standard_error, solution.arrivals, solution.patches.solid.area)

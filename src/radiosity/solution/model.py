@@ -21,7 +21,7 @@ class Solution:
 
     Attributes:
         patches: the patches solved for.
-        irradiance: (n_patches, n_bands) float64, W/m² or lm/m².
+        irradiance: (n_patches, n_bands) float64, W/m² or lm/m²; of a pane it includes what goes through.
         irradiance_standard_error: the same shape; NaN (unknown) without replicates. With density estimation it includes the size
             of the bias: it is the root of the sum of both squares.
         arrivals: (n_patches,) int64, the hit count of each patch, all replicates together. 0: no line reached it, so its value is
@@ -66,7 +66,10 @@ class Solution:
 
     @cached_property
     def radiosity(self) -> np.ndarray:
-        """The radiosity, emission plus reflectance times irradiance, (n_patches, n_bands) float64."""
+        """The radiosity, emission plus reflectance times irradiance, (n_patches, n_bands) float64.
+
+        What goes straight on through a pane is no radiosity of the pane: lines carry it from where it comes from.
+        """
         return self.patches.emission + self.patches.reflectance * self.irradiance
 
     @cached_property
@@ -152,7 +155,8 @@ class Solution:
     def _relative(self, rows: np.ndarray | slice) -> float:
         if self.by_baseline and not self.irradiance_standard_error[rows].any():
             return float("nan")
-        values = (self.patches.reflectance, self.irradiance, self.irradiance_standard_error, self.patches.area)
+        patches = self.patches.solid
+        values = (patches.reflectance, self.irradiance, self.irradiance_standard_error, patches.area)
         return relative_error(*(value[rows] for value in values))
 
     @property

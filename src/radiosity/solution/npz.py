@@ -9,6 +9,8 @@ READERS = {SOLUTION: "load_solution", LINES: "load_lines", EXCHANGE: "load_excha
 # of solutions; the second where patches have values of their own, the third where there are lights without area: older versions
 # do not know these
 FORMAT, FORMAT_OF_OWN, FORMAT_OF_LIGHTS = 1, 2, 3
+FORMAT_OF_PANES = 4  # of all kinds of files, where the scene has panes, which older versions would take for opaque faces
+PANES = "scene_transmittance"
 OWN_ARRAYS = ("own_reflectance", "own_emission")  # of patches, that may be missing
 SCENE_ARRAYS = (
     "vertices",

@@ -13,11 +13,11 @@ from ..scene.model import Scene
 from ..scene.paint import Paint
 from ..scene.sampler import Sampler
 from . import stored_lights
-from .npz import OWN_ARRAYS, PAINT_ARRAYS, SCENE_ARRAYS
+from .npz import FORMAT_OF_PANES, OWN_ARRAYS, PAINT_ARRAYS, PANES, SCENE_ARRAYS
 
 
 def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the arrays of patches and their scene by key, and the facts "scene" and "paints"."""
+    """Return the arrays of patches and their scene by key, and the facts "scene" and "paints"; with panes "format", too."""
     scene = patches.scene
     arrays = {f"scene_{name}": getattr(scene, name) for name in SCENE_ARRAYS}
     paints = {}
@@ -48,7 +48,9 @@ def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
     if scene.lights:
         of_lights, facts["lights"] = stored_lights.stored(scene.lights)
         arrays |= of_lights
-    return arrays, {"paints": paints, "scene": facts}
+    if scene.transmittance is None:
+        return arrays, {"paints": paints, "scene": facts}
+    return arrays | {PANES: scene.transmittance}, {"paints": paints, "scene": facts, "format": FORMAT_OF_PANES}
 
 
 def restored(arrays: dict[str, Any], meta: dict[str, Any]) -> Patches:
@@ -73,6 +75,7 @@ def restored(arrays: dict[str, Any], meta: dict[str, Any]) -> Patches:
         heat=Heat.of(described["heat"]) if "heat" in described else None,
         assumed=tuple(described.get("assumed", ())),
         lights=stored_lights.restored(arrays, described["lights"]) if "lights" in described else Lights(),
+        transmittance=arrays.get(PANES),
     )
     own = {name: arrays.get(f"patches_{name}") for name in OWN_ARRAYS}
     return Patches(scene, arrays["patches_columns"], arrays["patches_rows"], **own)

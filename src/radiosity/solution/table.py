@@ -15,23 +15,23 @@ def surface_table(solution) -> list[dict]:
     - side: front, back, lit (fronts of some faces and backs of others), or both (no line hit either)
     - patches; area, m² of this side; dark, m²
     - for each band (suffix " [band]" where there are several): radiosity and irradiance (means); and in W or lm: emitted,
-      received, reflected, absorbed, left (emitted + reflected: the power that leaves), net (left - received = emitted - absorbed:
-      above zero where the surface sends out more than it receives), net error (standard error of net), net low and net high (ends
-      of its 95 % interval)
+      received (of a pane: without what goes through), reflected, absorbed, left (emitted + reflected: the power that leaves),
+      net (left - received = emitted - absorbed: above zero where the surface sends out more than it receives), net error
+      (standard error of net), net low and net high (ends of its 95 % interval)
     - interval: half the 95 % interval of the mean irradiance, relative to it, the largest of the bands
     - error: relative, RMS over the patches
     - arrivals: hits
     - few (patches with few hits) and unvisited (patches), both without dark patches
     """
-    patches, sides = solution.patches, solution.sides
+    patches, sides = solution.patches.solid, solution.sides
     scene, n, some = patches.scene, len(sides.surface), sides.row >= 0
-    row, area = sides.row[some], patches.area[some]
+    row, area, whole = sides.row[some], patches.area[some], patches.whole.area[some]
 
     def total(values):
         return np.bincount(row, weights=values, minlength=n)
 
-    count, areas = np.bincount(row, minlength=n), total(area)
-    safe = np.where(areas > 0, areas, 1)
+    count, areas, solid = np.bincount(row, minlength=n), total(whole), total(area)
+    safe, stops = (np.where(some > 0, some, 1) for some in (areas, solid))
     absorbs = of_rows(solution, 0.95, "absorbed")
     columns: dict[str, np.ndarray] = {"patches": count, "area": areas, "dark": sides.dark_area}
     for band, name in enumerate(scene.bands):
@@ -40,7 +40,7 @@ def surface_table(solution) -> list[dict]:
         reflected = patches.reflectance[some, band] * power
         emitted = area * patches.emission[some, band]
         columns[f"radiosity{tail}"] = (total(emitted) + total(reflected)) / safe
-        columns[f"irradiance{tail}"] = total(power) / safe
+        columns[f"irradiance{tail}"] = total(power) / stops
         columns[f"emitted{tail}"] = total(emitted)
         columns[f"received{tail}"] = total(power)
         columns[f"reflected{tail}"] = total(reflected)

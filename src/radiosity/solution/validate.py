@@ -83,6 +83,9 @@ def _scene(scene: Scene) -> None:
         _array(name, value, "f", (n, bands))
         most = 1 if "reflectance" in name else MOST
         _that(((value >= 0) & (value < most)).all(), f"{name} out of range")
+    if scene.transmittance is not None:
+        _array("transmittance", scene.transmittance, "f", (n,))
+        _that(((scene.transmittance >= 0) & (scene.transmittance < 1)).all(), "transmittance out of range")
     for paint in (scene.reflectance_paint, scene.emission_paint):
         if paint is not None:
             _paint(paint, n, bands)

@@ -15,6 +15,7 @@ from ..pieces import pieces
 from ..scene.model import Back, Scene
 from .bvh import Bvh, primitives
 from .faces import COLUMN_BITS, INVERTED, NORMAL_BITS, NORMAL_ONE, OFFSET, QUAD, SECOND_HALF, Faces
+from .panes import Panes
 from .ties import Ties
 
 INSET = 4 * OFFSET  # of a face's largest coordinate: so far from its edges lines begin, and the offset leads through no neighbour
@@ -60,12 +61,19 @@ class Geometry:
         _ = self.bvh, self.hit_records, self.faces.primitive_faces, self.faces.offsets
         if self.ties is not None:
             self.ties.prepare()
+        if self.panes is not None:
+            _ = self.panes.thresholds
 
     @cached_property
     def ties(self) -> Ties | None:
         """Faces in one plane, where there are any."""
         ties = Ties(self.faces)
         return ties if len(ties.standing) else None
+
+    @cached_property
+    def panes(self) -> Panes | None:
+        """Faces that let a share of lines through from both sides, where there are any."""
+        return Panes(self.scene, self.device) if self.scene.panes.any() else None
 
     @cached_property
     def some_backs_pass(self) -> bool:

@@ -43,14 +43,20 @@ class Hit:
 def first_hit(geometry: Geometry, origin, direction, *, coherent: bool = False, active=True) -> Hit:
     """Trace lines to the first side that does not let them pass."""
     geometry.prepare_hits()
-    if not geometry.some_backs_pass:
+    panes = geometry.panes
+    if panes is None and not geometry.some_backs_pass:
         return _hit(geometry, origin, direction, coherent, active)[0]
+    words = None if panes is None else panes.words(origin, direction)
     types = geometry.device.types
     Float, Bool, UInt32 = types.Float, types.Bool, types.UInt32
 
     def body(origin, going, hit):
         new, normal = _hit(geometry, origin, direction, coherent, going)
         passes = going & new.passes
+        if panes is not None:
+            met = going & new.valid
+            face = dr.gather(UInt32, geometry.faces.primitive_faces, new.primitive, met)
+            passes |= panes.passed(words, face, met)
         done = going & ~passes
         travelled = dr.select(going, hit[5] + new.distance, hit[5])
         kept = [dr.select(done, value, old) for value, old in zip(_fields(new), hit, strict=True)]

@@ -1,9 +1,9 @@
 """Ties: which of several faces in one plane a line meets.
 
 Where faces lie within 4 ulps of each other (`scene.coplanar`), the BVH gives any one of them. Here a line meets first a face
-whose radiating side it comes to, then one whose back absorbs, and last one that lets it pass. Of several it meets the
-smallest, which lies on the others; of equal ones the first in the scene's order. Each face is tried with the line itself. So
-what is met is a function of the line and the faces, not of the packet in which the line was traced, nor of how faces are cut.
+whose radiating side it comes to, then one whose back absorbs, then a pane, and last one that lets it pass. Of several it meets
+the smallest, which lies on the others; of equal ones the first in the scene's order. Each face is tried with the line itself.
+So what is met is a function of the line and the faces, not of the packet in which the line was traced, nor of how faces are cut.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ import numpy as np
 from ..device.backend import upload
 from ..device.recorded import loop
 from ..scene.coplanar import contacts, copied
-from ..scene.model import Back
+from ..scene.model import Back, Scene
 from ..scene.precision import EPSILON
 from .faces import Faces
 
@@ -61,7 +61,7 @@ class Ties:
     @cached_property
     def behind(self) -> np.ndarray:
         """The copy of each face that a line from behind meets first; the face itself where it has none: (n_faces,) int64."""
-        order = np.argsort(_kinds(self.table.scene.back), kind="stable")
+        order = np.argsort(_kinds(self.table.scene), kind="stable")
         best = np.arange(len(order))
         copies, first = np.unique(self.copied[order], return_index=True)
         best[copies] = order[first]
@@ -87,7 +87,7 @@ class Ties:
         """Five tables on the device: cells of faces, where cells' entries begin, ranks of faces in cells, records, words.
 
         A face's entry says where its cells begin and how many there are along an edge. A rank has a record and four words:
-        first patch, flags, the BVH's first triangle, and 0.
+        first patch, flags, the BVH's first triangle, and 1 for a pane, else 0.
         """
         table = self.table
         types, scene, patches = table.device.types, table.scene, table.patches
@@ -101,7 +101,7 @@ class Ties:
         record[:, :12] = np.concatenate([origin, one, two, normal], axis=1)
         words = np.zeros((len(self.faces), 4), np.uint32)
         words[:, 0], words[:, 1] = patches.first[:-1][self.faces], table.packed[self.faces]
-        words[:, 2] = table.first_primitives[self.faces]
+        words[:, 2], words[:, 3] = table.first_primitives[self.faces], scene.panes[self.faces]
         UInt32, padded = types.UInt32, lambda a: np.concatenate([a.ravel(), np.zeros(LEAST, a.dtype)])
         return (
             upload(UInt32, padded(cells)),
@@ -168,16 +168,18 @@ class Ties:
         cell = first + dr.minimum(y, along - 1) * along + dr.minimum(x, along - 1)
         at, end = dr.gather(UInt32, begins, cell, flagged), dr.gather(UInt32, begins, cell + 1, flagged)
         nobody = dr.full(UInt32, NONE, dr.width(at))
-        count = 1 + beyond
+        count, some_panes = 1 + beyond, bool(self.table.scene.panes.any())
 
         def body(at, *best):
             going = at < end
             rank = dr.gather(UInt32, entries, at, going)
-            inside, front, packed, *_ = self._tried(rank, origin, direction, going)
+            inside, front, packed, *_, pane = self._tried(rank, origin, direction, going)
             kind = packed >> 30
             behind = dr.select(kind == int(Back.RADIATES), UInt32(0), dr.select(kind == int(Back.ABSORBS), UInt32(1), UInt32(2)))
             before = dr.select(kind == int(Back.OPEN), UInt32(2), UInt32(0))
             shown = [dr.select(front, before, behind), dr.select(front, behind, before)][:count]
+            if some_panes:
+                shown = [dr.select(side == 2, UInt32(3), dr.select(pane == 1, UInt32(2), side)) for side in shown]
             found = [rank | (side << KIND_BIT) for side in shown]
             best = [dr.select(going & inside, dr.minimum(old, new), old) for old, new in zip(best, found, strict=True)]
             return at + 1, *best
@@ -189,21 +191,22 @@ class Ties:
     def _met(self, key, turned: bool, origin, direction, flagged) -> tuple:
         found = flagged & (key != NONE)
         rank = key & ((1 << KIND_BIT) - 1)
-        _, front, packed, first, primitive, u, v, distance, normal = self._tried(rank, origin, direction, found)
+        _, front, packed, first, primitive, u, v, distance, normal, _ = self._tried(rank, origin, direction, found)
         return found, (found, primitive, u, v, ~front if turned else front, distance, first, packed), normal
 
     def _tried(self, rank, origin, direction, active) -> tuple:
         """Intersect lines with the planes of faces (T. Möller, B. Trumbore, JGT 2(1), 1997).
 
         Returns:
-            Whether the line goes through the face, whether from the front, and the face's words, coordinates, distance, normal.
+            Whether the line goes through the face, whether from the front; the face's words, coordinates, distance, normal; and
+            1 for a pane.
         """
         types = self.table.device.types
         *_, records, words = self.tables
         block = dr.gather(types.Array44f, records, rank, active)
         parts = [block[i // 4][i % 4] for i in range(WORDS)]
         corner, one, two, normal = (types.Array3f(*parts[at : at + 3]) for at in range(0, 12, 3))
-        first, packed, primitive, _ = dr.gather(types.Array4u, words, rank, active)
+        first, packed, primitive, pane = dr.gather(types.Array4u, words, rank, active)
         away, across = origin - corner, dr.cross(direction, two)
         turned, area = dr.cross(away, one), dr.dot(one, across)
         scale = 1 / area
@@ -213,9 +216,11 @@ class Ties:
         quad = (packed & QUAD) != 0
         inside = (u >= -beside_u) & (v >= -beside_v)
         inside &= dr.select(quad, (u <= 1 + beside_u) & (v <= 1 + beside_v), u + v <= 1 + beside_u + beside_v)
-        return inside, dr.dot(direction, normal) < 0, packed, first, primitive, u, v, distance, normal
+        return inside, dr.dot(direction, normal) < 0, packed, first, primitive, u, v, distance, normal, pane
 
 
-def _kinds(back: np.ndarray) -> np.ndarray:
-    """Return the rank of backs, lowest first: those that radiate, that absorb, that let lines pass."""
-    return np.select([back == Back.RADIATES, back == Back.ABSORBS], [0, 1], 2)
+def _kinds(scene: Scene) -> np.ndarray:
+    """Return the rank of backs, lowest first: those that radiate, that absorb, those of panes, those that let lines pass."""
+    back = scene.back
+    passes = (back == Back.PASSES) | (back == Back.OPEN)
+    return np.select([passes, scene.panes, back == Back.RADIATES], [3, 2, 0], 1)

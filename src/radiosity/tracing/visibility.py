@@ -60,7 +60,8 @@ def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int 
     """Return the share of what goes from ``one`` to ``other`` that meets nothing on its way: (m,) float64 in [0, 1], for m pairs.
 
     A share is a function of the two polygons, rays and seed alone. It is the same both ways, unless backs let lines pass: then
-    it holds from ``one`` to ``other`` only. It is zero where the two do not face each other at any pair of points.
+    it holds from ``one`` to ``other`` only. It is zero where the two do not face each other at any pair of points. Of panes only
+    the solid part counts, at both ends (`Patches.solid`); what goes through panes in between is seen.
 
     Args:
         rays: points of each pair, of the Sobol' sequence in four dimensions with a digital shift for each pair; powers of two
@@ -99,6 +100,9 @@ def kernel_means(geometry: Geometry, one: Polygons, other: Polygons, rays: int, 
         chunk = _Chunk.of(geometry, one.take(rows), other.take(rows), keys[rows], rays)
         for into, seed in zip(means, seeds, strict=True):
             into[:, rows] = chunk.means(seed)
+    through = geometry.scene.transmittance
+    if through is not None and len(keys):  # lines end on the solid part of ``other`` alone
+        means[:, 1] *= 1 - through[one.face]
     return means * geometry.bvh.scale**2
 
 

@@ -10,7 +10,7 @@ from ...factors.counted import CountedPairs
 from ...factors.counts import split
 from ...method import Method
 from ...sampling.streams import Seed
-from ...solution.npz import LINES
+from ...solution.npz import FORMAT_OF_PANES, LINES
 from ...solution.reading import read
 from ...solution.stored_patches import restored
 from ...solution.validate import validate_patches
@@ -34,7 +34,7 @@ def load_lines(path) -> LineSet:
         >>> rd.load_lines("lines.npz").solve(reflectance=0.3).status
         'complete'
     """
-    return read(Path(path), LINES, (FORMAT,), _restore)
+    return read(Path(path), LINES, (FORMAT, FORMAT_OF_PANES), _restore)
 
 
 def _restore(arrays: dict[str, Any], meta: dict[str, Any]) -> LineSet:
@@ -67,7 +67,7 @@ def _restore(arrays: dict[str, Any], meta: dict[str, Any]) -> LineSet:
     seconds, status, sources = meta["seconds"], meta["status"], meta["sources"]
     _that(isinstance(seconds, int | float) and math.isfinite(seconds) and seconds >= 0, f"seconds {seconds!r}")
     _that(isinstance(status, str) and all(isinstance(name, str) for name in sources), "a status or sources that are no text")
-    pairs = CountedPairs(patches, keys, counts, replicates, both_ways, directed, keeps=True)
+    pairs = CountedPairs(patches.solid, keys, counts, replicates, both_ways, directed, keeps=True)
     return LineSet(pairs, meta["rays"], quanta, float(seconds), status, method, parts, tuple(sources), provenance)
 
 

@@ -58,7 +58,7 @@ class LineSet:
     @property
     def patches(self) -> Patches:
         """The patches that lines join, with the emission and reflectance of the scene."""
-        return self.pairs.patches
+        return self.pairs.patches.whole
 
     @property
     def replicates(self) -> int:

@@ -67,6 +67,7 @@ def _listed(given) -> dict[str, str]:
 
 def problem_of(patches: Patches, sources: Sources) -> Problem:
     """Return the problem whose emission says which patches get more lines: those of the sources, or none."""
+    patches = patches.solid
     emission = np.where(sources.rows if sources.rows.any() else True, np.ones(len(patches)), 0.0)[:, None]
     groups = BandGroups(np.zeros(1, np.int64), np.ones(1), emission, np.zeros_like(emission), np.zeros(1, np.int64))
     rows = SourceRows(len(patches), groups.emission, groups.reflectance, patches.area)

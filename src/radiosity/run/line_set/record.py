@@ -42,6 +42,6 @@ class LineRecord(AbstractRecord[LineSet]):
         assert isinstance(self.method, Method)
         directed = some_backs_pass(self.patches)
         both = self.both_ways and self.method.lines == "local" and not directed
-        pairs = CountedPairs(self.patches, state.keys, state.counts, state.replicates, both, directed, keeps=True)
+        pairs = CountedPairs(self.patches.solid, state.keys, state.counts, state.replicates, both, directed, keeps=True)
         rays, parts = int(state.counts.sum(dtype="u8")), (self.part,)
         return LineSet(pairs, rays, state.reached, seconds, status, self.method, parts, self.sources, self.provenance)

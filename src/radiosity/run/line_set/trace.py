@@ -18,7 +18,7 @@ from ..checkpoint import Checkpoint
 from ..part import Part
 from ..progress import Listener
 from ..shortfall import warn_of_more
-from ..solve import patches_of, refuse_open
+from ..solve import patches_of, refuse_open, refuse_panes
 from ..whole_number import whole
 from .model import LineSet
 from .problem import Sources, problem_of
@@ -99,6 +99,7 @@ def trace_lines(
                 f"cannot go on from lines of {len(resume.patches)} patches with {len(patches)}; cut the scene alike"
             )
         refuse_open(patches.scene, method)
+        refuse_panes(patches.scene, method)
         chosen = Sources.of(patches, sources)
         if chosen.names and lines != "local":
             raise MethodError(f"sources get more local lines, and lines '{lines}' begin at no surface; leave one of the two out")

@@ -1,0 +1,49 @@
+"""Panes: whether a line goes on through a clear pane that it meets.
+
+Every line has two words, hashed from the bits of its origin and direction in the BVH. Hashed again with the number of the pane's
+face they give a number in [0, 1): the line goes on where that is below the transmittance. So what becomes of a line is a function
+of the line and the scene alone (contracts 2 and 17). It does not depend on the numbers that made the line, nor on the order in
+which lines are traced, and of several panes each decides for itself.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ..device.backend import Device, upload
+from ..sampling.numbers.random import philox
+from ..scene.model import Scene
+
+WORD = (0x50414E45, 0x53524159)  # the key of both hashes: any two words do
+ONE = 2.0**32
+
+
+@dataclass(frozen=True, eq=False)
+class Panes:
+    """The panes of a scene on a device, for kernels."""
+
+    scene: Scene
+    device: Device
+
+    @cached_property
+    def thresholds(self) -> Any:
+        """Transmittances times 2^32, (n_faces,) UInt32; 0 for faces that are no panes."""
+        assert self.scene.transmittance is not None
+        fixed = np.minimum(np.round(self.scene.transmittance * ONE), ONE - 1)
+        return upload(self.device.types.UInt32, fixed.astype(np.uint32))
+
+    def words(self, origin, direction) -> tuple[Any, Any]:
+        """Return the two words of each line; called in a kernel."""
+        UInt32 = self.device.types.UInt32
+        bits = [dr.reinterpret_array(UInt32, value) for value in (*origin, *direction)]
+        first, second, *_ = philox(bits[:4], bits[4:])
+        return first, second
+
+    def passed(self, words, face, active):
+        """Return which lines go on through the faces that they meet; called in a kernel."""
+        UInt32 = self.device.types.UInt32
+        drawn = philox([*words, face, UInt32(0)], WORD)[0]
+        return active & (drawn < dr.gather(UInt32, self.thresholds, face, active))
