@@ -1,12 +1,13 @@
 """Grids of sensors on a plane in front of a surface."""
 
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 import numpy as np
 
 from ..errors import SceneError, shown
 from ..scene.model import Back, Scene
-from .model import LARGEST, Sensors
+from .limits import LARGEST
 
 FLAT = 1e-3  # cosine less than one: faces whose normals differ by more lie in another plane
 MOST = 1_000_000  # sensors of a grid
@@ -24,33 +25,18 @@ def spacing_of(longer: float, shorter: float) -> float:
     return min(0.2 * 5 ** np.log10(d), 10.0)
 
 
-def grid(
-    scene: Scene,
-    surface: str,
-    height: float = 0.0,
-    spacing: float | None = None,
-    *,
-    margin: float = 0.0,
-    name: str | None = None,
-    direction=None,
-    kind: str = "plane",
-) -> Sensors:
-    """Make a grid of sensors on a plane in front of a surface. It follows the surface's outline.
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Points of a grid: (n, 3) m; the plane's normal, (3,); row and column of each point, (n, 2); and how far apart they are."""
 
-    Args:
-        scene: that has the surface.
-        surface: its name, or a pattern. Where its faces lie in several planes, the plane with the largest area is taken.
-        height: m, of the plane above the surface, along the surface's normal. Faces that radiate on both sides count from the
-            side that looks up.
-        spacing: m, how far apart sensors are at most; by default as EN 12464-1 says (`spacing_of`).
-        margin: m, how far sensors stay away from the outline.
-        name: of the set; that of the surface by default.
-        direction: (3,) where the sensors' planes look; the surface's normal by default.
-        kind: "plane" or "cylindrical", see `Sensors.of`.
+    points: np.ndarray
+    normal: np.ndarray
+    cells: np.ndarray
+    steps: np.ndarray
 
-    Raises:
-        SceneError: no such surface, no sensor within its outline, or more than a million.
-    """
+
+def grid(scene: Scene, surface: str, height: float, spacing: float | None, margin: float) -> Grid:
+    """Make a grid of points on a plane in front of a surface, see `Sensors.grid`."""
     chosen = [number for number, one in enumerate(scene.names) if one == surface]
     chosen = chosen or [number for number, one in enumerate(scene.names) if fnmatchcase(one, surface)]
     faces = np.flatnonzero(np.isin(scene.surface, chosen))
@@ -90,8 +76,7 @@ def grid(
     places, cells = places[inside], np.column_stack([row, column])[inside]
     plane = float((polygons @ normal).mean()) + height
     points = places[:, :1] * first + places[:, 1:] * second + plane * normal
-    made = Sensors.of(points, normal if direction is None else direction, name=name or surface, kind=kind)
-    return Sensors(made.points, made.normals, made.set, made.names, cells, made.cylindrical, steps[None])
+    return Grid(points, normal, cells, steps)
 
 
 def _largest_plane(scene: Scene, faces: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -7,8 +7,10 @@ from numpy.typing import ArrayLike
 
 from ..errors import SceneError, shown
 from ..scene.model import Scene
+from .grid import grid
+from .limits import LARGEST
+from .table import read
 
-LARGEST = 1e6  # m: farther points are errors of units
 KINDS = ("plane", "cylindrical")
 
 
@@ -74,18 +76,52 @@ class Sensors:
         return Sensors(points, normals / length[:, None], np.zeros(n, np.int64), (name,), none, every)
 
     @staticmethod
-    def grid(scene: Scene, surface: str, height: float = 0.0, spacing: float | None = None, **options) -> "Sensors":
-        """Make a grid of sensors on a plane in front of a surface, see `sensors.grid.grid`."""
-        from .grid import grid
+    def grid(
+        scene: Scene,
+        surface: str,
+        height: float = 0.0,
+        spacing: float | None = None,
+        *,
+        margin: float = 0.0,
+        name: str | None = None,
+        direction: ArrayLike | None = None,
+        kind: str = "plane",
+    ) -> "Sensors":
+        """Make a grid of sensors on a plane in front of a surface. It follows the surface's outline.
 
-        return grid(scene, surface, height, spacing, **options)
+        Args:
+            scene: that has the surface.
+            surface: its name, or a pattern. Where its faces lie in several planes, the plane with the largest area is taken.
+            height: m, of the plane above the surface, along the surface's normal. Faces that radiate on both sides count from
+                the side that looks up.
+            spacing: m, how far apart sensors are at most; by default as EN 12464-1 says: p = 0.2 * 5^(log10 d).
+            margin: m, how far sensors stay away from the outline.
+            name: of the set; that of the surface by default.
+            direction: (3,) where the sensors' planes look; the surface's normal by default.
+            kind: "plane" or "cylindrical", see `Sensors.of`.
+
+        Raises:
+            SceneError: no such surface, no sensor within its outline, or more than a million.
+        """
+        found = grid(scene, surface, height, spacing, margin)
+        made = Sensors.of(found.points, found.normal if direction is None else direction, name=name or surface, kind=kind)
+        return replace(made, cells=found.cells, spacings=found.steps[None])
 
     @staticmethod
     def from_csv(path, *, name: str | None = None) -> "Sensors":
-        """Read sensors from a table, see `sensors.table.read`."""
-        from .table import read
+        """Read sensors from a table with the columns x, y, z in m, and nx, ny, nz and name where it has them.
 
-        return read(path, name)
+        A table without a head has x, y, z, or x, y, z, nx, ny, nz (as Radiance's points). Sensors of one name are one set.
+
+        Args:
+            path: the file; its values are separated by commas, semicolons, tabs or spaces.
+            name: of sensors that have none; the file's name by default.
+
+        Raises:
+            SceneError: a file that cannot be read, a column that is missing, or a value that is no number; it names the line.
+        """
+        sets = [Sensors.of(points, normals, name=one) for one, points, normals in read(path, name)]
+        return sum(sets[1:], sets[0])
 
     def __add__(self, other: "Sensors") -> "Sensors":
         """Put sets of sensors side by side.

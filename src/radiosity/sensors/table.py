@@ -6,24 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import SceneError
-from .model import Sensors
 
 POINT, NORMAL = ("x", "y", "z"), ("nx", "ny", "nz")
 COLUMNS = (*POINT, *NORMAL, "name")
 
 
-def read(path, name: str | None = None) -> Sensors:
-    """Read sensors from a table with the columns x, y, z in m, and nx, ny, nz and name where it has them.
-
-    A table without a head has x, y, z, or x, y, z, nx, ny, nz (as Radiance's points). Sensors of one name are one set.
-
-    Args:
-        path: the file; its values are separated by commas, semicolons, tabs or spaces.
-        name: of sensors that have none; the file's name by default.
-
-    Raises:
-        SceneError: a file that cannot be read, a column that is missing, or a value that is no number; it names the line.
-    """
+def read(path, name: str | None = None) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Return the sets of sensors of a table, see `Sensors.from_csv`: name, points and normals, (n, 3) each."""
     path = Path(path)
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -54,13 +43,8 @@ def read(path, name: str | None = None) -> Sensors:
         names.append(row.get("name") or name or path.stem)
     if not points:
         raise SceneError(f"{path}: has a head and no sensors")
-    found = None
-    for one in dict.fromkeys(names):
-        rows_of = [i for i, other in enumerate(names) if other == one]
-        made = Sensors.of(np.array(points)[rows_of], np.array(normals)[rows_of], name=one)
-        found = made if found is None else found + made
-    assert found is not None
-    return found
+    rows_of = {one: [i for i, other in enumerate(names) if other == one] for one in dict.fromkeys(names)}
+    return [(one, np.array(points)[some], np.array(normals)[some]) for one, some in rows_of.items()]
 
 
 def _cells(line: str, mark: str) -> list[str]:
