@@ -21,6 +21,7 @@ from .lamps import Lamps
 from .packets import Packets
 
 CLUSTER = 256  # lanes
+SMALLER = (16, 64)  # lanes, where there are lights without area: their light changes within a few metres
 ENTRIES = 1 << 22  # of the table of probabilities: clusters times groups
 BY_POWER = 0.1  # share of the probability that goes by power alone
 PIECE = 1 << 20  # entries that are computed at a time
@@ -48,8 +49,16 @@ class Chances:
         return geometry.made["chances"]
 
     @cached_property
+    def size(self) -> int:
+        """The lanes of a cluster: fewer where there are lights without area, and the table is not too large."""
+        if self.beams is None:
+            return CLUSTER
+        fitting = (size for size in SMALLER if -(-self.packets.width // size) * self.targets <= ENTRIES // 2)
+        return next(fitting, CLUSTER)
+
+    @cached_property
     def clusters(self) -> int:
-        return -(-self.packets.width // CLUSTER)
+        return -(-self.packets.width // self.size)
 
     @property
     def targets(self) -> int:
@@ -78,7 +87,7 @@ class Chances:
     @cached_property
     def boxes(self) -> Boxes:
         """The boxes around clusters."""
-        return Boxes.of(self.packets, CLUSTER)
+        return Boxes.of(self.packets, self.size)
 
     @cached_property
     def groups(self) -> np.ndarray:
@@ -168,7 +177,7 @@ class Chances:
 
     def row(self, place):
         """Return where the probabilities of the lanes' clusters begin."""
-        return (place // CLUSTER) * dr.opaque(self.types.UInt32, len(self.groups) - 1)
+        return (place // self.size) * dr.opaque(self.types.UInt32, len(self.groups) - 1)
 
     def choose(self, row, number):
         """Return a target and its density, the probability over its area, from a number in [0, 1); called in a kernel."""

@@ -245,10 +245,9 @@ class Lines:
             nothing = types.UInt32(0)
             end, facing = self._point_of_opening(lamp, u) if lamps.openings is not None else (types.Array3f(0), types.Array3f(0))
             return end, facing, nothing, nothing
-        of_face = self._point_of_face(lamp if len(lamps) == lamps.n_faces else dr.minimum(lamp, lamps.n_faces - 1), u)
         if self.chances.targets == lamps.n_faces:
-            return of_face
-        end, facing, first, cells = of_face
+            return self._point_of_face(lamp, u)
+        end, facing, first, cells = self._point_of_face(dr.minimum(lamp, lamps.n_faces - 1), u)
         is_face = lamp < lamps.n_faces
         if lamps.openings is not None:
             there, towards = self._point_of_opening(dr.maximum(lamp, lamps.n_faces), u)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...factors.polygons.exchange import exchange
-from .chances import CLUSTER, Chances
+from .chances import Chances
 from .lines import KERNEL
 
 ENOUGH = 10.0  # hits in all replicates together: from there on their spread is known well enough
@@ -58,8 +58,8 @@ class Near:
         near = Near(np.zeros(packets.n), np.zeros((packets.n, groups.n_groups)))
         cluster, lamp = pairs(chances)
         for at in range(0, len(cluster), STEP):
-            row, which = np.nonzero(cluster[at : at + STEP, None] * CLUSTER + np.arange(CLUSTER) < packets.n)
-            patch, other = order[cluster[at + row] * CLUSTER + which], lamp[at + row]
+            row, which = np.nonzero(cluster[at : at + STEP, None] * chances.size + np.arange(chances.size) < packets.n)
+            patch, other = order[cluster[at + row] * chances.size + which], lamp[at + row]
             limit = KERNEL * chances.probability[cluster[at + row], chances.group_of[other]]
             limit = limit * chances.within[other] / lamps.area[other]
             kernel = largest_kernel(points[patch], normals[patch], reach[patch], corners[other], lamps.facing[other])
