@@ -35,6 +35,11 @@ if TYPE_CHECKING:
     from .run.refine import refine_check
     from .run.solve import solve
     from .scene import Back, Camera, Scene, load_scene
+    from .scene.lights.skies import cie_sky, uniform_sky
+    from .scene.lights.sky import Sky
+    from .scene.lights.sun import Sun, sun
+    from .scene.lights.sun_position import sun_position
+    from .scene.lights.weather import epw_sky, perez_sky
     from .sensors.measure import measure
     from .sensors.model import Sensors
     from .sensors.result import Measurement
@@ -70,6 +75,11 @@ _HOMES = {
     "run.refine": ("refine_check",),
     "run.solve": ("solve",),
     "scene": ("Back", "Camera", "Scene", "load_scene"),
+    "scene.lights.skies": ("cie_sky", "uniform_sky"),
+    "scene.lights.sky": ("Sky",),
+    "scene.lights.sun": ("Sun", "sun"),
+    "scene.lights.sun_position": ("sun_position",),
+    "scene.lights.weather": ("epw_sky", "perez_sky"),
     "sensors.measure": ("measure",),
     "sensors.model": ("Sensors",),
     "sensors.result": ("Measurement",),
@@ -98,9 +108,13 @@ __all__ = [
     "Scene",
     "SceneError",
     "Sensors",
+    "Sky",
     "Solution",
+    "Sun",
     "ViewFactors",
     "check",
+    "cie_sky",
+    "epw_sky",
     "gebhart_factors",
     "load_exchange",
     "load_lines",
@@ -109,11 +123,15 @@ __all__ = [
     "load_view_factors",
     "measure",
     "merge",
+    "perez_sky",
     "radiative_exchange",
     "refine_check",
     "solve",
     "subdivide",
+    "sun",
+    "sun_position",
     "trace_lines",
+    "uniform_sky",
     "view_factors",
 ]
 

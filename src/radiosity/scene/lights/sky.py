@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,6 +22,11 @@ class Sky:
             ``axes[0]``.
         axes: (3, 3) float64, rows of unit length: the directions of azimuth 0, of azimuth 90 (both at the horizon), and up.
         kind: what the table was made of, for reports.
+
+    Example:
+        >>> sky = rd.cie_sky("overcast", 7000)
+        >>> sky.radiance.shape, sky.at([0, 0, 1]).round(3).tolist()
+        ((4, 1, 1), [2864.789])
     """
 
     name: str
@@ -45,9 +51,9 @@ class Sky:
         half = len(self.sines) // 2
         return horizontal_weights(2 * half)[half:] @ self.radiance[half:].mean(axis=1)
 
-    def at(self, directions: np.ndarray) -> np.ndarray:
+    def at(self, directions: ArrayLike) -> np.ndarray:
         """Return the radiance that lines of directions see, (..., 3) of unit length, as (..., n_bands)."""
-        along, aside, up = (directions @ axis for axis in self.axes)
+        along, aside, up = (np.asarray(directions, np.float64) @ axis for axis in self.axes)
         rows, columns = self.radiance.shape[:2]
         half = rows // 2
         elevation = np.arcsin(np.clip(up, -1, 1)) * ((half - 1) / (np.pi / 2))
