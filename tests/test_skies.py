@@ -79,7 +79,7 @@ def test_tables_of_a_degree_light_facades_to_a_thousandth():
     """Against tables of a third of a degree, of skies with narrow bright surroundings of the sun; docs/daylight.md has more."""
     for direct, diffuse, height in ((900, 60, 85.0), (300, 150, 10.0)):
         weather = Weather(direct, diffuse, (np.radians(height), 1.234), 100)
-        rough, fine = (sky_of("", weather.relative(), AXES, 1.0, 0, (), "", *n) for n in ((91, 360), (271, 1080)))
+        rough, fine = (sky_of("", weather.relative(), AXES, 1.0, 0, (), "", True, *n) for n in ((91, 360), (271, 1080)))
         for azimuth in (0, 70, 180, 250):
             assert vertical(rough, azimuth) == pytest.approx(vertical(fine, azimuth), rel=1e-3)
 

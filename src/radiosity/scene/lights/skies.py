@@ -20,6 +20,7 @@ def uniform_sky(
     *,
     ground: float = 0.0,
     suns: Iterable[Sun] = (),
+    photometric: bool = True,
     up: ArrayLike | str = "z",
     north: ArrayLike | None = None,
     name: str = "sky",
@@ -27,9 +28,10 @@ def uniform_sky(
     """Return a sky that has the same radiance everywhere.
 
     Args:
-        horizontal: W/m² or lm/m² on a horizontal plane: pi times the radiance.
+        horizontal: lm/m² (or W/m²) on a horizontal plane: pi times the radiance.
         ground: share of what falls on the horizontal that the ground below the horizon reflects.
         suns: their light falls on the ground, too.
+        photometric: horizontal is in lm/m². False: W/m².
         up, north: where up and north are in the scene, see `sky_axes`.
         name: of the light.
 
@@ -41,7 +43,9 @@ def uniform_sky(
         >>> sky.horizontal.tolist()
         [10000.0]
     """
-    return sky_of(name, lambda altitude, azimuth: np.ones(1), sky_axes(up, north), horizontal, ground, suns, "uniform", 2, 1)
+    return sky_of(
+        name, lambda altitude, azimuth: np.ones(1), sky_axes(up, north), horizontal, ground, suns, "uniform", photometric, 2, 1
+    )
 
 
 def cie_sky(
@@ -51,6 +55,7 @@ def cie_sky(
     sun: tuple[float, float] | None = None,
     ground: float = 0.0,
     suns: Iterable[Sun] = (),
+    photometric: bool = True,
     up: ArrayLike | str = "z",
     north: ArrayLike | None = None,
     name: str = "sky",
@@ -59,10 +64,11 @@ def cie_sky(
 
     Args:
         kind: "overcast", "clear" or "intermediate"; or 1 to 15, a type of the general sky (ISO 15469).
-        horizontal: W/m² or lm/m² on a horizontal plane, by the sky alone.
+        horizontal: lm/m² (or W/m²) on a horizontal plane, by the sky alone.
         sun: altitude and azimuth of the sun, degrees. Skies that depend on it need it, also where it sends no light itself.
         ground: share of what falls on the horizontal that the ground below the horizon reflects.
         suns: their light falls on the ground, too. Without ``sun``, the first of them says where the sun is.
+        photometric: horizontal is in lm/m². False: W/m².
         up, north: where up and north are in the scene, see `sky_axes`.
         name: of the light.
 
@@ -77,13 +83,22 @@ def cie_sky(
     """
     axes, suns = sky_axes(up, north), tuple(suns)
     if kind == "overcast":
-        return sky_of(name, overcast, axes, horizontal, ground, suns, "CIE overcast", 2, 1)
+        return sky_of(name, overcast, axes, horizontal, ground, suns, "CIE overcast", photometric, 2, 1)
     number = CLEAR if kind == "clear" else kind
     if isinstance(number, bool) or (kind not in NAMED and number not in GENERAL):
         raise SceneError(f"sky '{name}': there is no CIE sky {kind!r}; known are {', '.join(NAMED)}, and 1 to {len(GENERAL)}")
     if number in NO_SUN:
         return sky_of(
-            name, general(int(number), (0.0, 0.0)), axes, horizontal, ground, suns, f"CIE general, type {number}", ROWS, 1
+            name,
+            general(int(number), (0.0, 0.0)),
+            axes,
+            horizontal,
+            ground,
+            suns,
+            f"CIE general, type {number}",
+            photometric,
+            ROWS,
+            1,
         )
     place = place_of(axes, suns[0].direction) if sun is None and suns else sun
     if place is None:
@@ -91,4 +106,4 @@ def cie_sky(
     check_place(f"sky '{name}'", *place)
     relative = intermediate(radians(place)) if kind == "intermediate" else general(int(number), radians(place))
     called = f"CIE {kind}" if kind in NAMED else f"CIE general, type {number}"
-    return sky_of(name, relative, axes, horizontal, ground, suns, f"{called}, {told(place)}")
+    return sky_of(name, relative, axes, horizontal, ground, suns, f"{called}, {told(place)}", photometric)

@@ -21,6 +21,7 @@ def sky_of(
     ground: float,
     suns: Iterable[Sun],
     kind: str,
+    photometric: bool = True,
     rows: int = ROWS,
     columns: int = COLUMNS,
 ) -> Sky:
@@ -34,6 +35,7 @@ def sky_of(
         ground: share of the horizontal irradiance that the ground reflects, the same in all directions.
         suns: their light falls on the ground, too.
         kind: what the sky is, for reports.
+        photometric: the unit is lm/m².
 
     Raises:
         SceneError: a value out of range, or the formula gives no light at all.
@@ -50,4 +52,4 @@ def sky_of(
     upper = upper * (horizontal / received)
     direct = sum(float(sun.irradiance.mean()) * max(float(sun.direction @ axes[2]), 0.0) for sun in suns)
     below = np.full_like(upper, ground * (horizontal + direct) / np.pi)
-    return Sky(name, np.concatenate([below, upper])[..., None], axes, kind)
+    return Sky(name, np.concatenate([below, upper])[..., None], axes, kind, photometric)

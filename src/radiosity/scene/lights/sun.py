@@ -20,6 +20,7 @@ class Sun:
         direction: (3,) float64, of unit length, towards the sun.
         irradiance: (n_bands,) float64, W/m² or lm/m², on a plane that is perpendicular to the direction.
         diameter: degrees, of the disc; 0: parallel light.
+        photometric: its irradiance is in lm/m², not W/m².
 
     Example:
         >>> rd.sun(90_000, altitude=90, azimuth=0).irradiance.tolist()
@@ -30,6 +31,7 @@ class Sun:
     direction: np.ndarray
     irradiance: np.ndarray
     diameter: float = DIAMETER
+    photometric: bool = True
 
 
 def sun(
@@ -39,6 +41,7 @@ def sun(
     azimuth: float | None = None,
     direction: ArrayLike | None = None,
     diameter: float = DIAMETER,
+    photometric: bool = True,
     up: ArrayLike | str = "z",
     north: ArrayLike | None = None,
     name: str = "sun",
@@ -46,10 +49,11 @@ def sun(
     """Return a sun, a disc of equal radiance as far away as the stars.
 
     Args:
-        irradiance: W/m² or lm/m² on a plane that is perpendicular to its light: one number, or one for each band.
+        irradiance: lm/m² (or W/m²) on a plane that is perpendicular to its light: one number, or one for each band.
         altitude, azimuth: degrees above the horizon, and from north through east.
         direction: instead, towards the sun.
         diameter: degrees, of the disc; 0: parallel light.
+        photometric: the irradiance is in lm/m². False: W/m².
         up, north: where up and north are in the scene, see `sky_axes`.
         name: of the light.
 
@@ -68,8 +72,8 @@ def sun(
     if direction is not None:
         if altitude is not None or azimuth is not None:
             raise SceneError(f"sun '{name}': direction and altitude, azimuth exclude each other; give one")
-        return Sun(name, unit(f"sun '{name}': direction", direction), values, diameter)
+        return Sun(name, unit(f"sun '{name}': direction", direction), values, diameter, photometric)
     if altitude is None or azimuth is None:
         raise SceneError(f"sun '{name}': give its direction, or its altitude and azimuth in degrees")
     check_place(f"sun '{name}'", altitude, azimuth)
-    return Sun(name, towards(sky_axes(up, north), altitude, azimuth), values, diameter)
+    return Sun(name, towards(sky_axes(up, north), altitude, azimuth), values, diameter, photometric)

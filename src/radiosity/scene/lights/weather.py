@@ -71,11 +71,11 @@ def perez_sky(
     of_direct, of_diffuse = weather.lumens if photometric else (1.0, 1.0)
     kind = f"Perez, clearness {weather.clearness:.2f}, brightness {weather.brightness:.3f}, {told((altitude, azimuth))}"
     suns = (
-        (Sun("sun", towards(axes, altitude, azimuth), np.array([direct * of_direct]), diameter),)
+        (Sun("sun", towards(axes, altitude, azimuth), np.array([direct * of_direct]), diameter, photometric),)
         if direct * of_direct > 0 and altitude > 0
         else ()
     )
-    return sky_of(name, weather.relative(), axes, diffuse * of_diffuse, ground, suns, kind), suns
+    return sky_of(name, weather.relative(), axes, diffuse * of_diffuse, ground, suns, kind, photometric), suns
 
 
 def epw_sky(
