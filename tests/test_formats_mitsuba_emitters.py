@@ -154,19 +154,20 @@ def test_what_is_open_reflects_nothing():
         rd.Scene.from_arrays(square, [[0, 1, 2, 3]], 0.5, 1.0, back=rd.Back.OPEN)
 
 
-def test_a_partial_mask_is_told_and_taken_as_opaque(load):
+def test_a_partial_mask_is_a_pane(load):
     mask = f'<bsdf type="mask"><float name="opacity" value="0.3"/>{WHITE}</bsdf>'
-    with pytest.warns(rd.RadiosityWarning, match=r"transparency \(mask\) .* opaque.*'net \(0.3\)'"):
+    with pytest.warns(rd.RadiosityWarning, match=r"masks, .* make clear panes, .*'net \(0.7\)'"):
         scene = load(shape("net", "", mask))
-    assert (scene.reflectance.item(), scene.back.item()) == (pytest.approx(0.5), rd.Back.ABSORBS)
+    assert (scene.reflectance.item(), scene.back.item()) == (pytest.approx(0.15), rd.Back.ABSORBS)
+    assert scene.transmittance.tolist() == [0.7]
 
 
 @pytest.mark.parametrize(("weight", "order"), [("0.25", 1), ("0.75", -1)])
 def test_a_blend_with_nothing_is_a_mask(load, weight, order):
     both = "".join((NULL, WHITE)[::order])
-    with pytest.warns(rd.RadiosityWarning, match=r"'net \(0.25\)'"):
+    with pytest.warns(rd.RadiosityWarning, match=r"'net \(0.75\)'"):
         scene = load(shape("net", "", f'<bsdf type="blendbsdf"><float name="weight" value="{weight}"/>{both}</bsdf>'))
-    assert scene.reflectance.item() == pytest.approx(0.5)
+    assert scene.reflectance.item() == pytest.approx(0.125)
 
 
 def test_a_whole_mask_is_the_material_itself_and_none_leaves_nothing(load):

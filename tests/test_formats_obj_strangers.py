@@ -194,5 +194,5 @@ def test_transparency_by_a_texture_displacements_and_decals_are_told(load):
     assert told == [
         "displacements (disp) are left out: 'grey'",
         "decals (decal) are left out: 'grey'",
-        "transparency is left out, taken as opaque: 'grey'",
+        "transparency is left out, taken as opaque: 'grey'; transmittance in a .toml makes panes",
     ]

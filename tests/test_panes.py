@@ -7,6 +7,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.factors.polygons import exchange
+from radiosity.image import picture, quantity
 from radiosity.scene.back import Back
 
 T, RHO = 0.4, 0.25
@@ -36,7 +37,7 @@ def two_rooms(emission, transmittance=T, **more) -> rd.Scene:
     )
 
 
-def glazed(*heights, transmittance=0.5, turn=1, back=Back.RADIATES) -> rd.Scene:
+def glazed(*heights, transmittance=0.5, turn=1, back=Back.RADIATES, emission=None) -> rd.Scene:
     """A black lamp of 1 W/m² under a black square 1 m above it, with larger black panes between them at these heights."""
     size = [SQUARE, ABOVE]
     panes = [(SQUARE - np.array([0.5, 0.5, 0])) * 4 + np.array([0.5, 0.5, height]) for height in heights]
@@ -47,7 +48,7 @@ def glazed(*heights, transmittance=0.5, turn=1, back=Back.RADIATES) -> rd.Scene:
         vertices,
         faces,
         0.0,
-        np.arange(n) == 0,
+        np.arange(n) == 0 if emission is None else emission,
         surface=range(n),
         names=["lamp", "target", *(f"pane {i}" for i in range(n - 2))],
         back=[Back.ABSORBS] * 2 + [back] * (n - 2),
@@ -184,3 +185,16 @@ def test_methods_that_cannot_are_refused_by_name():
         rd.view_factors(patches, rays=1e5, method="polygons")
     with pytest.raises(rd.SceneError, match=r"surface 'pane', band 0.*0\.7, and its transmittance 0\.4"):
         rd.trace_lines(patches, rays=1e4).solve(reflectance={"pane": 0.7})
+
+
+def test_pictures_see_through_panes():
+    """A pane shows its radiosity, and its share of what is behind it; irradiances show what is behind a clear pane."""
+    scene = glazed(0.3, 0.7, transmittance=np.array([0, 0, 0.5, 0.6]), emission=[0, 8, 1, 2])
+    solution = rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=1e4, seed=1)
+    camera = rd.Camera(origin=(0.5, 0.5, 0.1), target=(0.5, 0.5, 1.0), up=(0, 1, 0), fov=5, width=4, height=3)
+    shot = picture.take(solution, quantity.choose(solution), camera)
+    assert shot.values == pytest.approx(np.full((3, 4, 1), 1 + 0.5 * 2 + 0.5 * 0.6 * 8))
+    assert shot.cover.min() == 1
+    assert shot.own_light.all()
+    behind = picture.take(solution, quantity.choose(solution, "irradiance"), camera)
+    assert behind.values == pytest.approx(np.full((3, 4, 1), solution.irradiance[1, 0]))

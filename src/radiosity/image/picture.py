@@ -10,6 +10,7 @@ from . import tone
 from .fit import fitted
 from .lookup import Lookup
 from .quantity import Quantity
+from .through import Sight
 from .view import check, directions
 
 CHUNK = 1 << 19  # lines of sight at once
@@ -45,7 +46,7 @@ def take(solution, shown: Quantity, camera: Camera, *, smooth=True, samples=4, h
     if isinstance(samples, bool) or int(samples) != samples or not 1 <= samples <= 1024:
         raise OutputError(f"samples is {samples}; it must be a whole number from 1 to 1024")
     hits, camera, samples = hits or first_hits, check(camera), int(samples)
-    look = Lookup(solution.patches, shown.values, smooth)
+    sight = Sight(solution.patches.scene, Lookup(solution.patches, shown.values, smooth), hits, shown.adds)
     width, n = int(camera.width), int(camera.width) * int(camera.height)
     total, count, own = np.zeros((n, shown.values.shape[1])), np.zeros(n), np.zeros(n)
     offsets = np.stack([(np.arange(samples) + 0.5) / samples, _bits_reversed(samples)], axis=1)
@@ -54,11 +55,10 @@ def take(solution, shown: Quantity, camera: Camera, *, smooth=True, samples=4, h
         pixel = np.arange(begin, min(begin + step, n))
         x, y = (pixel % width)[:, None] + offsets[:, 0], (pixel // width)[:, None] + offsets[:, 1]
         rays = directions(camera, x.ravel(), y.ravel())
-        values, patch = look(hits(solution.patches.scene, np.broadcast_to(camera.origin, rays.shape).copy(), rays))
-        seen = patch >= 0
+        values, seen, lamps = sight(np.broadcast_to(camera.origin, rays.shape).copy(), rays, shown.own_light)
         total[pixel] = values.reshape(len(pixel), samples, -1).sum(axis=1)
         count[pixel] = seen.reshape(len(pixel), samples).sum(axis=1)
-        own[pixel] = (seen & shown.own_light[patch]).reshape(len(pixel), samples).sum(axis=1)
+        own[pixel] = lamps.reshape(len(pixel), samples).sum(axis=1)
     shape = (int(camera.height), width)
     values = total / np.maximum(count, 1)[:, None]
     return Picture(values.reshape(*shape, -1), (count / samples).reshape(shape), (own > 0).reshape(shape), camera)

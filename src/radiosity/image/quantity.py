@@ -26,6 +26,7 @@ class Quantity:
         unit: W/m², lm/m² or %.
         bands: names of the columns.
         own_light: (n_patches,) bool, patches that emit; they are left out where scales are found.
+        adds: values of a pane and of what is behind it add up.
     """
 
     values: np.ndarray
@@ -33,6 +34,7 @@ class Quantity:
     unit: str
     bands: tuple[str, ...]
     own_light: np.ndarray
+    adds: bool = False
 
 
 def choose(solution, name: str = "radiosity", band: str | int | None = None, *, single: bool = False) -> Quantity:
@@ -64,7 +66,7 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         # errors of the bands come from the same lines, so they are added as if fully correlated: never too small
         values, base, names = tone.luminance(values)[:, None], tone.luminance(base)[:, None], ["all"]
     if name != "relative_error":
-        return Quantity(values, title, solution.unit, tuple(names), own)
+        return Quantity(values, title, solution.unit, tuple(names), own, name == "radiosity")
     ratio = np.divide(values, base, out=np.full(values.shape, np.nan), where=base > 0)
     return Quantity(100 * ratio, title, "%", tuple(names), own)
 

@@ -13,6 +13,7 @@ from .arguments import LARGEST
 from .parts import Part, ReadOptions
 
 DEFAULT_REFLECTANCE = 0.5
+MOST_CLEAR = 1 - 1e-9  # a transmittance; what is above is refused later
 BELOW_ONE = float(np.nextafter(1.0, 0.0))
 
 
@@ -23,10 +24,13 @@ def settle(parts: list[Part], source: str, options: ReadOptions) -> list[Part]:
     Raises:
         SceneError: a coordinate, colour, reflectance or emission that makes no sense.
     """
-    missing, bright, glossy, result = {}, {}, {}, []
+    missing, bright, glossy, absent, result = {}, {}, {}, {}, []
     for part in parts:
         _check_arrays(part, source)
         m = part.material
+        if m.transmittance >= 1 and not any(m.emission):
+            absent[part.name] = True
+            continue
         if not m.diffuse:
             glossy[part.name] = True
         if m.reflectance is None:
@@ -35,13 +39,16 @@ def settle(parts: list[Part], source: str, options: ReadOptions) -> list[Part]:
         _check_values(part.name, m, source)
         for value in (m.reflectance, m.back_reflectance):
             highest = 0.0 if value is None else float(np.max(np.asarray(value) * _peak(part)))
+            highest /= 1 - min(m.transmittance, MOST_CLEAR)  # of what does not go through
             if highest > options.max_reflectance + 1e-12 and not m.given:
                 of_file = bright.setdefault(m.origin or source, {})
                 of_file[part.name] = max(of_file.get(part.name, 0.0), highest)
         part = replace(part, material=m)
-        result.append(part if m.given else _lower(part, options.max_reflectance))
+        result.append(part if m.given else _lower(part, options.max_reflectance * (1 - min(m.transmittance, MOST_CLEAR))))
     if missing:
         warn(f"{source}: no material for {shown(missing)}; reflectance {DEFAULT_REFLECTANCE} taken")
+    if absent:
+        warn(f"{source}: surfaces that let all light through are not there, and left out: {shown(absent)}")
     for file, those in bright.items():
         warn(
             f"{file}: reflectance above {options.max_reflectance:g} brought down to it (at most {max(those.values()):.4g}): "
@@ -70,6 +77,11 @@ def _peak(part: Part) -> np.ndarray:
 def _lower(part: Part, limit: float) -> Part:
     m = part.material
     front = m.reflectance or ()
+    if m.transmittance > 0:  # the paint's limit is that of opaque faces
+        highest = max(float(np.max(np.asarray(value) * _peak(part))) for value in (front, m.back_reflectance or front))
+        share = min(limit / highest, 1.0) if highest > 0 else 1.0
+        back = m.back_reflectance and tuple(v * share for v in m.back_reflectance)
+        return replace(part, material=replace(m, reflectance=tuple(v * share for v in front), back_reflectance=back))
     if part.color is None and part.texture is None:
         back = m.back_reflectance and tuple(min(v, limit) for v in m.back_reflectance)
         return replace(part, material=replace(m, reflectance=tuple(min(v, limit) for v in front), back_reflectance=back))

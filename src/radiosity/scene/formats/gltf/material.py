@@ -8,11 +8,13 @@ from ....errors import shown
 from ...assemble import DEFAULT_REFLECTANCE, Material, warn
 from ...model import Back
 from ...sampler import DEFAULT_SAMPLER, Sampler
+from ..color import luminance_weights
 from ..mesh_colors import warn_of_bytes
 from ..textures import linear_image, warn_of_black
 from .extensions import GLOSSY
 from .file import GltfFile
 
+NOT_MIRRORED = 0.96  # of the light on a dielectric of index 1.5, at normal incidence
 GLOSSY_ROUGHNESS = 0.3  # a material that is explicitly smoother counts as not diffuse
 WRAPS = {10497: "repeat", 33648: "mirror", 33071: "clamp"}
 FILTERS = {9728: "nearest", 9729: "linear"}
@@ -55,6 +57,7 @@ class Materials:
     finishes: dict[int, Finish] = field(default_factory=dict)
     images: dict[int, np.ndarray] = field(default_factory=dict)
     transparent: list[str] = field(default_factory=list)
+    panes: dict[str, float] = field(default_factory=dict)  # transmittances
     unlit: list[str] = field(default_factory=list)
     colorless: dict[str, None] = field(default_factory=dict)
     bytes: dict[str, None] = field(default_factory=dict)  # objects whose vertex colours are counted from 0 to 255
@@ -85,8 +88,12 @@ class Materials:
         warn_of_bytes(self.file.path, self.bytes)
         if self.unlit:
             warn(f"{self.file.path}: unlit materials are taken as diffuse ones of their base colour: {shown(self.unlit)}")
+        if self.panes:
+            told = shown([f"{name} ({value:.3g})" for name, value in self.panes.items()])
+            warn(f"{self.file.path}: transmission makes clear panes, with one transmittance for all angles and colours: {told}")
         if self.transparent:
-            warn(f"{self.file.path}: transparency is left out, taken as opaque: {shown(self.transparent)}")
+            text = "transparency is left out, taken as opaque"
+            warn(f"{self.file.path}: {text}: {shown(self.transparent)}; transmittance in a .toml makes panes")
 
     def _read(self, info: dict, name: str) -> Finish:
         file, what = self.file, f"material '{name}'"
@@ -110,15 +117,35 @@ class Materials:
             self.black[name] = f"{key}Factor"
         if info.get("alphaMode", "OPAQUE") != "OPAQUE":
             self.transparent.append(name)
+        base = self._texture(texture, what)
+        through, transmittance = self._transmission(extensions, factor[:3], base, name)
         material = Material(
-            reflectance=_unless_grey(factor[:3]),
+            reflectance=_unless_grey(tuple(value * (1 - through) for value in factor[:3]) if through else factor[:3]),
+            transmittance=transmittance,
             emission=_unless_grey(np.pi * radiance),
             back=Back.RADIATES if info.get("doubleSided") is True else Back.ABSORBS,
             diffuse=not self._is_glossy(metal, extensions, what),
         )
         emissive = self._texture(info.get("emissiveTexture"), what) if radiance.any() else None
         plain = f"{key}Factor" not in colors and texture is None
-        return Finish(name, material, self._texture(texture, what), emissive, plain)
+        return Finish(name, material, base, emissive, plain)
+
+    def _transmission(self, extensions: dict, color, base: Texture | None, name: str) -> tuple[float, float]:
+        """Return the factor of KHR_materials_transmission, and the transmittance that it makes; zeros where it is not read.
+
+        Light that is not mirrored goes through with the base colour: at normal incidence, and with the usual index of 1.5,
+        4 % are mirrored. A texture of the factor is not read.
+        """
+        what = f"transmission of '{name}'"
+        held = self.file.dictionary(extensions.get("KHR_materials_transmission", {}), what)
+        (factor,) = self.file.numbers({"v": [held.get("transmissionFactor", 0.0)]}, "v", (0.0,), what)
+        if factor and "transmissionTexture" in held:
+            self.transparent.append(name)
+        if "transmissionTexture" in held or not 0 < factor <= 1:
+            return 0.0, 0.0
+        mean = np.ones(3) if base is None else np.broadcast_to(base.image.mean(axis=(0, 1)), (3,))
+        self.panes[name] = transmittance = factor * NOT_MIRRORED * min(float(luminance_weights() @ (mean * color)), 1.0)
+        return factor, transmittance
 
     def _is_glossy(self, metal: dict, extensions: dict, what: str) -> bool:
         """Return whether the file states that the material is glossy.

@@ -1,9 +1,10 @@
 """Read the Materials and Geometry Format (MGF) through the program of Radiance that reduces it to faces.
 
-A surface is object x material: ``desk.drawer/wood``. ``rd`` and ``ed`` count, each with its colour; ``rs``, ``td`` and ``ts``
-make a material one that is not diffuse. With ``sides 1`` a face is invisible from behind. A two-sided face, the default, looks
-identical from both sides (specification, entity ``sides``): it reflects, and emits ``ed`` lm/m², on either, as in RenderPark.
-Curved primitives arrive with 20 edges around, inscribed, so that their area is a little small.
+A surface is object x material: ``desk.drawer/wood``. ``rd`` and ``ed`` count, each with its colour. ``ts`` makes a clear pane, of
+one transmittance for all angles and colours. ``rs`` and ``td`` make a material one that is not diffuse. With ``sides 1`` a face
+is invisible from behind. A two-sided face, the default, looks identical from both sides (specification, entity ``sides``): it
+reflects, and emits ``ed`` lm/m², on either, as in RenderPark. Curved primitives arrive with 20 edges around, inscribed, so that
+their area is a little small.
 """
 
 from pathlib import Path
@@ -46,6 +47,9 @@ def read(path: Path, options: ReadOptions) -> Scene:
     if not any(len(part.faces) for part in parts):
         raise SceneError(f"{path}: no faces could be read from this MGF file{faults.first()}")
     faults.warn()
+    tinted = {name: None for name, one in reader.polygons if one.transmittance > 0 and not is_neutral(*one.transmittance_color)}
+    if tinted:
+        warn(f"{path}: coloured panes let all colours through alike, by their luminance (ts): {shown(tinted)}")
     if several := [f"{name} ({len(places)})" for name, places in reader.begun.items() if len(places) > 1]:
         warn(f"{path}: objects of the same name become one: {shown(several)}")
     return assemble(parts, str(path), options, photometric=True)
@@ -57,6 +61,7 @@ def _material(material: MgfMaterial) -> Material:
         emission=_colored(material.emittance, material.emittance_color),
         back=Back.PASSES if material.one_sided else Back.RADIATES,
         diffuse=not material.not_diffuse,
+        transmittance=material.transmittance,
         origin=material.file,
     )
 

@@ -16,7 +16,9 @@ class MgfMaterial:
     reflectance_color: tuple[float, float] = NEUTRAL
     emittance: float = 0.0  # lm/m²
     emittance_color: tuple[float, float] = NEUTRAL
-    not_diffuse: frozenset[bytes] = frozenset()  # those of rs, td, ts that are not zero
+    transmittance: float = 0.0  # specular: light goes straight on
+    transmittance_color: tuple[float, float] = NEUTRAL
+    not_diffuse: frozenset[bytes] = frozenset()  # those of rs, td that are not zero
     one_sided: bool = False
     defined: bool = True
     file: str = field(default="", compare=False)  # that sets the reflectance
@@ -55,7 +57,7 @@ class NamedContexts:
             b"ed": self._set_emittance,
             b"rs": self._set_not_diffuse,
             b"td": self._set_not_diffuse,
-            b"ts": self._set_not_diffuse,
+            b"ts": self._set_transmittance,
         }
 
     @property
@@ -121,6 +123,10 @@ class NamedContexts:
 
     def _set_emittance(self, words) -> None:
         self._set(emittance=_value(words, inf), emittance_color=self._colors[self._color], defined=True)
+
+    def _set_transmittance(self, words) -> None:
+        color = self._colors[self._color]
+        self._set(transmittance=_value(words, 1.0), transmittance_color=color, defined=True, file=self.file)
 
     def _set_not_diffuse(self, words) -> None:
         kind = {words[0]}

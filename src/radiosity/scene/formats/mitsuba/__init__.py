@@ -127,8 +127,9 @@ class Reader:
         if several := repeated(self._given):
             warn(f"{self._path}: shapes of the same name get numbers ('name 2', ...) in the order of the file: {shown(several)}")
         if self._masked:
-            shares = [f"{name} ({opacity:.3g})" for name, opacity in self._masked.items()]
-            warn(f"{self._path}: transparency (mask) is left out, taken as opaque, with the mean opacity: {shown(shares)}")
+            shares = [f"{name} ({1 - opacity:.3g})" for name, opacity in self._masked.items()]
+            text = "with one transmittance for all places and angles of a shape, the mean"
+            warn(f"{self._path}: masks, blends with nothing and thin dielectrics make clear panes, {text}: {shown(shares)}")
         if self._averaged:
             warn(f"{self._path}: textures averaged where the two sides differ: {shown(self._averaged)}")
         if any(part.n_bands == 3 for part in self._parts):

@@ -7,6 +7,7 @@ import numpy as np
 from ....errors import SceneError, shown
 from .color import Color, Colors, Image, VertexColors
 from .node import Node
+from .thin_pane import thin_pane
 
 ALBEDO = {
     "diffuse": ("reflectance", 0.5),
@@ -32,7 +33,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Sides:
-    """Front and back; no back: it absorbs. ``opacity``: the share of the light that meets a surface; 0: there is none."""
+    """Front and back; no back: it absorbs. ``opacity``: the share of the light that meets a surface; the rest goes through."""
 
     front: Side
     back: Side | None = None
@@ -79,6 +80,8 @@ def read_bsdf(node: Node, colors: Colors) -> Sides:
         weight = _mean(colors.get(node, "weight", 0.5))
         sides = read_bsdf(inner[kinds.index("null") - 1], colors)
         return replace(sides, opacity=sides.opacity * (weight if kinds[0] == "null" else 1 - weight))
+    if node.plugin == "thindielectric":
+        return Sides(_side(node, colors), opacity=1 - thin_pane(node) * _mean(colors.get(node, "specular_transmittance", 1.0)))
     return Sides(_side(node, colors), opacity=0.0 if node.plugin == "null" else 1.0)
 
 

@@ -27,10 +27,11 @@ def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None,
     glow = glow if isinstance(glow, Image) else None
     uv = geometry.uv
     material = Material(
-        reflectance=_base(front),
+        reflectance=_seen(front, sides.opacity),
         emission=emission,
         back=Back.OPEN if sides.opacity == 0 else Back.ABSORBS if back is None else Back.RADIATES,
-        back_reflectance=None if back is None or back == front else _base(back),
+        back_reflectance=None if back is None or back == front else _seen(back, sides.opacity),
+        transmittance=1 - sides.opacity if 0 < sides.opacity < 1 else 0.0,
         back_emission=(0.0,),
         diffuse=front.diffuse and (back is None or back.diffuse),
     )
@@ -82,3 +83,9 @@ def _mean(side: Side, geometry: Geometry, name: str) -> Side:
 def _base(side: Side) -> Color | None:
     """The base that textures and vertex colours multiply, or the reflectance itself."""
     return (1.0,) if isinstance(side.albedo, Image | VertexColors) else side.albedo
+
+
+def _seen(side: Side, opacity: float) -> Color | None:
+    """The base of what light meets; the rest goes through."""
+    base = _base(side)
+    return base if base is None or opacity in (0, 1) else tuple(value * opacity for value in base)

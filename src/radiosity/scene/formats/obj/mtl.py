@@ -66,7 +66,7 @@ def read_library(path: Path, options: ReadOptions, codec: str) -> dict[str, Fini
         if _number(path, entry, "d", 1.0) < 1 or _number(path, entry, "tr", 0.0) > 0 or "map_d" in entry
     ]
     if see_through:
-        warn(f"{path}: transparency is left out, taken as opaque: {shown(see_through)}")
+        warn(f"{path}: transparency is left out, taken as opaque: {shown(see_through)}; transmittance in a .toml makes panes")
     return result
 
 

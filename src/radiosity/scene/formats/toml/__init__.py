@@ -16,6 +16,7 @@ from ...model import Back, Camera, Scene
 from ..beside import in_any_case, warn_of_case
 from ..units import UNITS
 from .heat import check_bands, heat_of, reflecting
+from .panes import check_pane
 
 BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
 SIDES = {1: Back.ABSORBS, 2: Back.RADIATES}
@@ -90,7 +91,7 @@ class Looks:
 
     def apply(self, part: Part) -> Part:
         """A part with what the entries say, but for powers: they need the areas of all parts."""
-        material, flipped, emissivity = part.material, False, None
+        material, flipped, emissivity, clear = part.material, False, None, False
         for number, entry in enumerate(self.entries):
             if not self.means(entry, part.name):
                 continue
@@ -99,6 +100,9 @@ class Looks:
                 of_side = {"reflectance": tuple(entry.reflectance), "back_reflectance": None, "diffuse": True}
                 material = replace(material, **of_side, given=max(entry.reflectance) < 1, origin=self.source)
                 part = replace(part, color=None, texture=None)
+            if entry.transmittance is not None:
+                material = replace(material, transmittance=entry.transmittance)
+                clear = entry.transmittance > 0
             exitance = _exitance(entry)
             if exitance is not None:
                 material = replace(material, emission=exitance, back_emission=None)
@@ -113,8 +117,11 @@ class Looks:
             flipped = flipped if entry.flip is None else entry.flip
             if entry.patch_size is not None:
                 part = replace(part, patch_size=entry.patch_size)
-        material = reflecting(material, emissivity, self.source)
-        return replace(part, material=material, faces=_turned(np.asarray(part.faces)) if flipped else part.faces)
+        material = reflecting(material, emissivity, self.source, part.name)
+        part = replace(part, material=material)
+        if clear:
+            check_pane(part, self.source)
+        return replace(part, faces=_turned(np.asarray(part.faces)) if flipped else part.faces)
 
     def with_powers(self, scene: Scene, source: str) -> Scene:
         """The scene with powers as exitances: they are spread over the radiating sides of all faces that an entry holds for."""

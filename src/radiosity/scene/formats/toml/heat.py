@@ -9,6 +9,8 @@ from ....errors import SceneError, shown
 from ...heat import Heat
 from ...parts import Material
 
+ROUNDING = 1e-12  # by which a sum may be above 1
+
 
 def check_bands(asked, source: str) -> None:
     """Refuse emissivities of another number of bands than the file has.
@@ -59,8 +61,20 @@ def heat_of(asked, names: tuple[str, ...], means: Callable[[object, str], bool],
     return whole if said else None
 
 
-def reflecting(material: Material, emissivity: list[float] | None, source: str) -> Material:
-    """Return a material that reflects 1 - emissivity, where no file gives a reflectance and the emissivity is one number."""
+def reflecting(material: Material, emissivity: list[float] | None, source: str, name: str) -> Material:
+    """Return a material that reflects 1 - emissivity, where no file gives a reflectance and the emissivity is one number.
+
+    A pane reflects 1 - emissivity - transmittance.
+
+    Raises:
+        SceneError: that is below 0.
+    """
     if material.reflectance is not None or emissivity is None or len(emissivity) != 1:
         return material
-    return replace(material, reflectance=(1 - emissivity[0],), back_reflectance=None, diffuse=True, given=True, origin=source)
+    rest = 1 - emissivity[0] - material.transmittance
+    if rest < -ROUNDING:
+        raise SceneError(
+            f"{source}: surface '{name}' has emissivity {emissivity[0]:g} and transmittance {material.transmittance:g}, above 1 "
+            "together; lower one of them"
+        )
+    return replace(material, reflectance=(max(rest, 0.0),), back_reflectance=None, diffuse=True, given=True, origin=source)

@@ -30,6 +30,12 @@ def _ascending(value: list[float]) -> list[float]:
     return value
 
 
+def _clear(value: float) -> float:
+    if value >= 1:
+        raise ValueError("expected a share below 1; what lets all light through is not there: leave the surface out")
+    return value
+
+
 Bands = Annotated[list[NotNegative], BeforeValidator(_listed), AfterValidator(_one_or_three)]
 Emissivities = Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1), BeforeValidator(_listed)]
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
@@ -58,6 +64,7 @@ class Surface(_Table):
 
     name: Annotated[str, Field(min_length=1)]
     reflectance: Bands | None = None
+    transmittance: Annotated[NotNegative, AfterValidator(_clear)] | None = None
     emission: Bands | None = None
     radiance: Bands | None = None
     power: Bands | None = None

@@ -1,0 +1,77 @@
+"""What lines of sight see where there are panes: each pane, and through it what is behind.
+
+A pane shows its own radiosity, and its transmittance times what is behind it: a sum without noise. Values of other kinds, such as
+irradiances, do not add up: a line shows the first face that is no pane, or a pane that lets less than half of the light through.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..scene.model import Scene
+from .lookup import Lookup
+
+MOST = 64  # panes behind each other
+STEP = 2e-6  # of the scene's reach, by which a line begins behind a pane
+HALF = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """Lines of sight in a scene.
+
+    Attributes:
+        scene: that is looked at.
+        look: finds values from hits.
+        hits: as of `radiosity.image.render`.
+        adds: values add up through panes.
+    """
+
+    scene: Scene
+    look: Lookup
+    hits: Callable[..., Any]
+    adds: bool
+
+    @cached_property
+    def _opaque(self) -> Scene:
+        """The scene with opaque panes."""
+        return replace(self.scene, transmittance=None)
+
+    def __call__(self, origins: np.ndarray, rays: np.ndarray, marked: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return values, (m, n), whether a patch is seen, (m,), and whether a marked one is, (m,).
+
+        Args:
+            marked: (n_patches,) bool.
+        """
+        through = self.scene.transmittance
+        if through is None:
+            values, patch = self.look(self.hits(self.scene, origins, rays))
+            return values, patch >= 0, (patch >= 0) & marked[patch]
+        step = STEP * max(self.scene.reach, float(np.abs(origins - self.scene.centre).max(initial=0.0)))
+        rays = rays / np.linalg.norm(rays, axis=1, keepdims=True)
+        going, share, last = np.arange(len(rays)), np.ones(len(rays)), np.full(len(rays), -1)
+        total = np.zeros((len(rays), self.look.values.shape[1]))
+        seen, own = np.zeros((2, len(rays)), bool)
+        for _ in range(MOST):
+            met = self.hits(self._opaque, origins, rays[going])
+            values, patch = self.look(met)
+            face, t = np.asarray(met.face), np.where(np.asarray(met.face) >= 0, through[met.face], 0.0)
+            again = (face >= 0) & (face == last[going])  # the step was too short
+            shows = ~again & (patch >= 0) & ((t < HALF) | self.adds)
+            here = going[shows]
+            total[here] += share[here, None] * values[shows]
+            seen[here] = True
+            own[here] |= marked[patch[shows]]
+            on = again | ((t > 0) & ((t >= HALF) | self.adds))
+            share[going] *= np.where(again, 1.0, t)
+            last[going] = face
+            origins = origins[on] + rays[going[on]] * (np.asarray(met.distance)[on] + step)[:, None]
+            going = going[on]
+            if not self.adds:
+                share[going] = 1.0
+            if not len(going):
+                break
+        return total, seen, own
