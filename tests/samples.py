@@ -173,6 +173,29 @@ MTL = "newmtl white\nKd 0.5 0.5 0.5\nnewmtl light\nKd 0 0 0\nKe 3 2 1\n"
 
 # ---- of many statements, to be damaged ------------------------------------------------------------------------------
 
+VS3 = """T a box of 4 x 3 x 2.5 m
+C encl=1 list=2 out=1 emit=1
+F 3
+!  #   x  y  z
+V  1   0. 0. 0.
+V  2   4. 0. 0.
+V  3   4. 3. 0.
+V  4   0. 3. 0.
+V  5   0. 0. 2.5
+V  6   4. 0. 2.5
+V  7   4, 3, 2.5
+V  8   0. 3. 2.5
+!  #   v1 v2 v3 v4 base cmb  emit  name
+S  1    1  2  3  4   0   0   0.90  floor
+S  2    5  8  7  6   0   0   0.80  top!  ! the name is top!
+S  3    1  5  6  2   0   0   0.05  walls
+S  4    2  6  7  3   0   3   0.05  east
+S  5    3  7  8  4   0   3   0.05  north
+S  6    4  8  5  0   0   3   0.05  west-a
+S  7    4  5  1  0   0   3   0.05  west-b
+End of data
+S  9    what comes here is not read
+"""
 TOML = """geometry = ["lamp.stl", {file = "room.ply", unit = "mm", scale = 2.5, name = "room"}]
 unit = "cm"
 photometric = false

@@ -18,6 +18,7 @@ FORMATS = {
     ".ply": "mesh",
     ".stl": "mesh",
     ".mgf": "mgf",
+    ".vs3": "vs3",
     ".toml": "toml",
 }
 

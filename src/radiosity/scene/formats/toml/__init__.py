@@ -67,7 +67,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
         gaze = np.subtract(camera.target, camera.origin)
         if not np.linalg.norm(np.cross(gaze, camera.up)) > 1e-9 * np.linalg.norm(gaze) * np.linalg.norm(camera.up):
             raise SceneError(f"{path}: camera {number} looks along its up vector, or nowhere; move target or turn up")
-    heat = heat_of(asked, scene.names, looks.means, str(path))
+    own = {name: e for one in scenes if one.heat for name, e in zip(one.names, one.heat.emissivity, strict=True)}
+    heat = heat_of(asked, scene.names, looks.means, str(path), own)
     return looks.with_powers(replace(scene, cameras=cameras + scene.cameras, heat=heat), str(path))
 
 

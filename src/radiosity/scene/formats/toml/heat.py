@@ -27,7 +27,7 @@ def check_bands(asked, source: str) -> None:
             )
 
 
-def heat_of(asked, names: tuple[str, ...], means: Callable[[object, str], bool], source: str) -> Heat | None:
+def heat_of(asked, names: tuple[str, ...], means: Callable[[object, str], bool], source: str, own=None) -> Heat | None:
     """Return the conditions of surfaces, or None where the file says nothing about heat.
 
     For each surface the last entry that gives a temperature, flux or adiabatic counts, and the last that gives an emissivity.
@@ -37,12 +37,14 @@ def heat_of(asked, names: tuple[str, ...], means: Callable[[object, str], bool],
         names: of all surfaces.
         means: whether an entry holds for a surface of this name.
         source: the file's name, for messages.
+        own: emissivities that the geometry files give, by name.
 
     Raises:
         SceneError: a flux for several surfaces.
     """
     heat, bands = Heat.none(len(names)), len(asked.wavelengths) + 1
-    emissivity, said = list(heat.emissivity), asked.surroundings is not None or bands > 1
+    emissivity = [(own or {}).get(name) for name in names]
+    said = asked.surroundings is not None or bands > 1 or any(emissivity)
     for number, entry in enumerate(asked.surface, 1):
         here = [i for i, name in enumerate(names) if means(entry, name)]
         what = f"{source}: surface {number} ('{entry.name}')"
