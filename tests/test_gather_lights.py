@@ -193,4 +193,4 @@ def test_many_luminaires_are_chosen_by_what_they_send():
     relative = many.irradiance[inner, 0] / expected[inner] - 1
     assert np.sqrt((relative**2).mean()) < 0.05  # 0.027; clusters of 256 patches chose lamps so badly that it was 0.3
     assert np.abs(relative * expected[inner] / many.irradiance_standard_error[inner, 0]).max() < 9
-    assert many.error < 0.05
+    assert many.error < 0.1
