@@ -91,7 +91,7 @@ class Receivers(Packets):
 
     @cached_property
     def _records(self):
-        """As `Geometry.face_records`, of each replicate's planes, (replicates * receivers * 16,) Float."""
+        """Records as `Geometry.face_records`, of each replicate's planes, (replicates * receivers * 16,) Float."""
         normals = self.normals.reshape(-1, 3)
         first = np.cross(normals, np.where(np.abs(normals[:, :1]) < 0.5, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]))
         first /= np.linalg.norm(first, axis=1, keepdims=True)

@@ -70,12 +70,12 @@ class Measurement:
 
     @property
     def irradiance(self) -> np.ndarray:
-        """The same as ``illuminance``."""
+        """``illuminance`` by its other name."""
         return self.illuminance
 
     @cached_property
     def standard_error(self) -> np.ndarray:
-        """Of ``illuminance``, (n_sensors, n_bands); NaN (unknown) with one replicate."""
+        """The standard error of ``illuminance``, (n_sensors, n_bands); NaN (unknown) with one replicate."""
         count = len(self.values)
         if count < 2:
             return np.full(self.values.shape[1:], np.nan)

@@ -73,7 +73,7 @@ class Lamps:
 
     @cached_property
     def emission(self) -> np.ndarray:
-        """Of each lamp's first patch, or of the sky in the mean, (n_lamps, n_groups) float64, in shares of the unit."""
+        """Emission of each lamp's first patch, or of the sky in the mean, (n_lamps, n_groups) float64, in shares of the unit."""
         groups, unit = self.problem.groups, np.maximum(self.problem.unit, 1e-300)
         emission = (groups.emission / unit)[self.first]
         if self.openings is None:

@@ -52,7 +52,7 @@ class Openings:
 
     @cached_property
     def area(self) -> np.ndarray:
-        """In the BVH's units, (n,)."""
+        """The area of each in the BVH's units, (n,)."""
         return np.linalg.norm(np.cross(*self.edges), axis=1) * np.where(self.is_triangle, 0.5, 1.0)
 
     # ---- on the device ---------------------------------------------------------------------------------------------
@@ -67,7 +67,7 @@ class Openings:
 
     @cached_property
     def records(self):
-        """(n * WORDS,) Float: a point p lies at (s, t) = ((p - origin) . dual_1, (p - origin) . dual_2)."""
+        """Words of each, (n * WORDS,) Float: a point p lies at (s, t) = ((p - origin) . dual_1, (p - origin) . dual_2)."""
         first, second = self.edges
         cross = np.cross(first, second)
         square = (cross**2).sum(axis=1, keepdims=True)
@@ -76,12 +76,12 @@ class Openings:
 
     @cached_property
     def points(self):
-        """(n * 9,) Float: origin and edges."""
+        """Origin and edges of each, (n * 9,) Float."""
         return upload(self.types.Float, np.concatenate([self.placed[:, 0], *self.edges], axis=1).astype(np.float32))
 
     @cached_property
     def triangles(self):
-        """(n + 1,) UInt32, 1 for triangles; the last one stands for none."""
+        """Return 1 for triangles and 0 for others, (n + 1,) UInt32; the last one stands for none."""
         return upload(self.types.UInt32, np.append(self.is_triangle, False).astype(np.uint32))
 
     @cached_property
