@@ -21,12 +21,14 @@ class Sky:
             ``axes[0]``.
         axes: (3, 3) float64, rows of unit length: the directions of azimuth 0, of azimuth 90 (both at the horizon), and up.
         kind: what the table was made of, for reports.
+        photometric: its radiance is in cd/m², not W/(m² sr).
     """
 
     name: str
     radiance: np.ndarray
     axes: np.ndarray
     kind: str = ""
+    photometric: bool = True
 
     @cached_property
     def sines(self) -> np.ndarray:

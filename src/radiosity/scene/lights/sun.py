@@ -16,9 +16,11 @@ class Sun:
         direction: (3,) float64, of unit length, towards the sun.
         irradiance: (n_bands,) float64, W/m² or lm/m², on a plane that is perpendicular to the direction.
         diameter: degrees, of the disc; 0: parallel light.
+        photometric: its irradiance is in lm/m², not W/m².
     """
 
     name: str
     direction: np.ndarray
     irradiance: np.ndarray
     diameter: float = DIAMETER
+    photometric: bool = True
