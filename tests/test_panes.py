@@ -7,7 +7,8 @@ import pytest
 
 import radiosity as rd
 from radiosity.factors.polygons import exchange
-from radiosity.image import picture, quantity
+from radiosity.image import gltf, mesh, picture, quantity
+from radiosity.image.look import Look
 from radiosity.scene.back import Back
 
 T, RHO = 0.4, 0.25
@@ -198,3 +199,26 @@ def test_pictures_see_through_panes():
     assert shot.own_light.all()
     behind = picture.take(solution, quantity.choose(solution, "irradiance"), camera)
     assert behind.values == pytest.approx(np.full((3, 4, 1), solution.irradiance[1, 0]))
+
+
+def test_sensors_see_lamps_and_what_panes_reflect_and_emit():
+    """In a furnace with a pane 1 W/m² comes to every point, through the pane and from it."""
+    patches = rd.subdivide(two_rooms(0.5 - 0.15 * (np.arange(11) == 10)), cells=1)
+    solution = rd.solve(patches, "random-walk", rays=2e5, seed=3)
+    found = rd.measure(solution, rd.Sensors.of([[0.5, 0.4, 0.3], [1.2, 0.5, 0.5]], [0, 0, 1]), rays=2e5, seed=1)
+    assert found.illuminance == pytest.approx(np.ones((2, 1)), abs=0.01)
+
+
+def test_meshes_and_checks_show_panes(tmp_path):
+    """Panes of a GLB file are blended by 1 - transmittance; the table of `check` says how clear they are."""
+    scene = glazed(0.5, transmittance=np.array([0, 0, 0.4]))
+    solution = rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=1e4, seed=1)
+    contents, blocks = gltf.document(mesh.coloured(solution, Look()))
+    assert [material.get("alphaMode") for material in contents["materials"]] == [None, "BLEND"]
+    primitives = {one["name"]: one["primitives"][0] for one in contents["meshes"]}
+    assert {name: one["material"] for name, one in primitives.items()} == {"lamp": 0, "target": 0, "pane 0": 1}
+    colours = (
+        blocks[contents["accessors"][primitives["pane 0"]["attributes"]["COLOR_0"]]["bufferView"]].view("<u2").reshape(-1, 4)
+    )
+    assert (colours[:, 3] == round(0.6 * 65535)).all()
+    assert [surface.sides for surface in rd.check(scene).surfaces] == ["one", "one", "two; a pane, 0.4 clear"]

@@ -59,6 +59,7 @@ class Report:
 def surface_rows(patches) -> tuple[Surface, ...]:
     """Return the rows of the table, from one patch for each face and radiating side; surfaces without faces are left out."""
     scene, area = patches.scene, patches.area[:, None]
+    through = scene.transmittance
     n = len(scene.names)
 
     def summed(values):
@@ -70,6 +71,8 @@ def surface_rows(patches) -> tuple[Surface, ...]:
     rows = []
     for i in np.flatnonzero(faces):
         sides = " or ".join(SIDES[back] for back in Back if kinds[back][i])
+        if through is not None and through[scene.surface == i].any():
+            sides += f"; a pane, {through[scene.surface == i].max():.3g} clear"
         means = tuple(reflected[i] / total[i]), tuple(power[i] / total[i])
         rows.append(Surface(scene.names[i], int(faces[i]), float(total[i]), *means, tuple(power[i]), sides))
     return tuple(rows)

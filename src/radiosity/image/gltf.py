@@ -1,10 +1,11 @@
 """GLB: unlit meshes with linear vertex colours, one for each surface, and the scale of the colours in ``extras``.
 
 The format is Khronos glTF 2.0 with KHR_materials_unlit. COLOR_0 holds radiosity x scale, linear as the standard asks, as 16-bit
-fractions that end at 1. ``_RADIOSITY_0`` and so on hold the bands themselves, as 32-bit floats. Each radiating side is
-single-sided geometry, so that one can look into closed rooms from outside. glTF is y-up: the root node turns scenes that are
-z-up, and vertices keep the scene's coordinates (metres). Vertices are in single precision. Those of a surface far from the
-origin, for its size, are relative to a point near it, to which its node moves them (JSON holds doubles).
+fractions that end at 1. ``_RADIOSITY_0`` and so on hold the bands themselves, as 32-bit floats. Each radiating side is single-
+sided geometry, so that one can look into closed rooms from outside. Panes are blended, with an alpha of 1 - transmittance. glTF
+is y-up: the root node turns scenes that are z-up, and vertices keep the scene's coordinates (metres). Vertices are in single
+precision. Those of a surface far from the origin, for its size, are relative to a point near it, to which its node moves them
+(JSON holds doubles).
 """
 
 import json
@@ -60,6 +61,7 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
     for part in mesh.by_surface():
         points = (part.vertices - part.origin).astype("<f4")
         tint = np.full((len(points), 4), 65535, "<u2")
+        tint[:, 3] = round((1 - part.transmittance) * 65535)
         tint[:, :3] = np.clip(np.nan_to_num(part.linear), 0, 1) * 65535 + 0.5
         limits = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
         attributes = {"POSITION": add(points, "VEC3", FLOAT, ARRAY, **limits)}
@@ -75,11 +77,17 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         meshes.append(
             {
                 "name": part.name,
-                "primitives": [{"attributes": attributes, "indices": indices, "material": 0}],
+                "primitives": [{"attributes": attributes, "indices": indices, "material": int(part.transmittance > 0)}],
                 "extras": {"scale": mesh.scale, "unit": mesh.unit},
             }
         )
     root = {"name": "scene", "children": list(range(1, len(meshes) + 1)), **({"rotation": TURN} if mesh.up == "z" else {})}
+    material = {
+        "name": mesh.key,
+        "doubleSided": False,
+        "extensions": {"KHR_materials_unlit": {}},
+        "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": 1},
+    }
     contents = {
         "asset": {"version": "2.0", "generator": "radiosity", "extras": mesh.facts()},
         "extensionsUsed": ["KHR_materials_unlit"],
@@ -87,14 +95,7 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         "scenes": [{"nodes": [0]}],
         "nodes": [root, *nodes],
         "meshes": meshes,
-        "materials": [
-            {
-                "name": mesh.key,
-                "doubleSided": False,
-                "extensions": {"KHR_materials_unlit": {}},
-                "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": 1},
-            }
-        ],
+        "materials": [material, {**material, "name": f"{mesh.key}, panes", "alphaMode": "BLEND"}][: 1 + mesh.transmittance.any()],
         "accessors": accessors,
         "bufferViews": views,
         "buffers": [{"byteLength": length}],

@@ -15,13 +15,14 @@ FAR = 16  # times its extent: a surface whose coordinates are larger would lose 
 
 @dataclass(frozen=True, eq=False)
 class SurfacePart:
-    """A surface of a coloured mesh, with vertex numbers of its own; arrays as in `ColouredMesh`."""
+    """A surface of a coloured mesh, with vertex numbers of its own; arrays as in `ColouredMesh`, transmittance of its own."""
 
     name: str
     vertices: np.ndarray
     triangles: np.ndarray
     values: np.ndarray
     linear: np.ndarray
+    transmittance: float = 0.0
 
     @property
     def origin(self) -> np.ndarray:
@@ -53,6 +54,7 @@ class ColouredMesh:
         scale: colour for one unit.
         up: ``y`` or ``z``.
         smooth: values are smoothed to shared vertices; otherwise each patch has vertices of its own.
+        transmittance: (n_surfaces,) area means; 0 for surfaces that are no panes.
     """
 
     vertices: np.ndarray
@@ -67,6 +69,7 @@ class ColouredMesh:
     scale: float
     up: str
     smooth: bool
+    transmittance: np.ndarray
 
     def facts(self) -> dict:
         """Return what a reader needs to turn colours back into physical values."""
@@ -91,7 +94,8 @@ class ColouredMesh:
             corners = self.triangles[order[begin:end]]
             used = np.unique(corners)
             local[used] = np.arange(len(used))
-            yield SurfacePart(self.names[index], self.vertices[used], local[corners], self.values[used], self.linear[used])
+            values = self.vertices[used], local[corners], self.values[used], self.linear[used]
+            yield SurfacePart(self.names[index], *values, float(self.transmittance[index]))
 
 
 def coloured(solution, look: Look) -> ColouredMesh:
@@ -123,4 +127,14 @@ def coloured(solution, look: Look) -> ColouredMesh:
         scale,
         up_axis(patches.scene),
         look.smooth,
+        _transmittances(patches.scene),
     )
+
+
+def _transmittances(scene) -> np.ndarray:
+    """Return the area mean of each surface, (n_surfaces,)."""
+    n = len(scene.names)
+    if scene.transmittance is None:
+        return np.zeros(n)
+    area = np.bincount(scene.surface, scene.area, n)
+    return np.bincount(scene.surface, scene.area * scene.transmittance, n) / np.maximum(area, np.finfo(float).tiny)

@@ -102,7 +102,7 @@ def measure(
             raise MethodError(
                 f"the solution has {solution.replicates} replicates, and sensors are to have {count}: leave replicates out"
             )
-        geometry = Geometry(solution.patches, choose(device))
+        geometry = Geometry(solution.patches.solid, choose(device))
         if geometry.some_backs_pass:
             raise MethodError(
                 f"{solution.patches.scene.source}: some backs let lines pass, so what a sensor sees is not what sees the sensor; "

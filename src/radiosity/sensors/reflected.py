@@ -26,5 +26,5 @@ def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.nd
     found = []
     for group in range(problem.groups.n_groups):
         power, scale = algorithm.tally.irradiance(problem, state, group)
-        found.append(np.asarray(power, np.float64) * (scale / unit[group]) / solution.patches.area)
+        found.append(np.asarray(power, np.float64) * (scale / unit[group]) / problem.patches.area)
     return rho * np.stack(found, axis=-1)
