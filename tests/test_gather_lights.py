@@ -7,7 +7,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.algorithms.gather import lines
-from radiosity.algorithms.gather.openings import Openings
+from radiosity.problem.lights.openings import Openings
 from radiosity.scene.lights.luminaire import Luminaire
 from radiosity.scene.lights.model import Lights
 from radiosity.scene.lights.sky import Sky

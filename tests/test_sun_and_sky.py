@@ -115,7 +115,7 @@ def test_lines_leave_in_proportion_to_the_radiance_that_lines_see(geometry_of, r
 
     def directions(types, geometry):
         first, second = (x.ravel() for x in np.meshgrid(*2 * [(np.arange(n) + 0.5) / n], indexing="ij"))
-        towards = rows.towards(types.UInt32(0), upload(types.Float, first.astype("f4")), upload(types.Float, second.astype("f4")))
+        towards, _ = rows.fired.draw(types.UInt32(0), *(upload(types.Float, x.astype("f4")) for x in (first, second)))
         seen = rows.radiance(towards)[0]
         return np.array(towards).T, np.array(seen)
 

@@ -158,7 +158,7 @@ class LineTracer:
         def line(numbers):
             return tuple(
                 dr.select(is_light, there, here)
-                for there, here in zip(lights.leave(light, numbers), of_patch(numbers), strict=True)
+                for there, here in zip(lights.leave_where(light, numbers, is_light), of_patch(numbers), strict=True)
             )
 
         return line

@@ -6,11 +6,11 @@ from functools import cached_property
 import numpy as np
 
 from ...device.backend import upload
+from ...problem.lights.openings import Openings
 from ...problem.model import Problem
 from ...tally.unmet import sides as side_of
 from ...tracing.faces import COLUMN_BITS, QUAD
 from ...tracing.geometry import Geometry
-from .openings import Openings
 
 NONE = 0xFFFFFFFF  # in place of a lamp's number
 

@@ -50,11 +50,14 @@ class AllLights(AbstractLights):
             kind.prepare(geometry)
 
     def leave(self, light: Any, numbers: Any) -> tuple[Any, Any]:
-        return self._of_kind(light, lambda kind, number: kind.leave(number, numbers))
+        return self.leave_where(light, numbers, True)
+
+    def leave_where(self, light: Any, numbers: Any, active: Any) -> tuple[Any, Any]:
+        return self._of_kind(light, lambda kind, number, here: kind.leave_where(number, numbers, active & here))
 
     def arrive(self, light: Any, point: Any, numbers: Any) -> tuple[Any, Any, Any]:
         """See `AbstractPointLights.arrive`; all kinds must be such."""
-        return self._of_kind(light, lambda kind, number: kind.arrive(number, point, numbers))
+        return self._of_kind(light, lambda kind, number, here: kind.arrive(number, point, numbers))
 
     def _of_kind(self, light: Any, result: Any) -> tuple:
         """Return what each light's kind says of it, from its number among all and among its kind."""
@@ -63,7 +66,7 @@ class AllLights(AbstractLights):
             last = len(kind.power) - 1
             here = light >= int(start)
             number = dr.minimum(dr.select(here, light - int(start), 0), last)
-            new = result(kind, number)
+            new = result(kind, number, here & (light <= int(start) + last))
             found = new if found is None else tuple(dr.select(here, one, old) for one, old in zip(new, found, strict=True))
         assert found is not None
         return found

@@ -1,7 +1,8 @@
-"""Openings, such as windows: shadow rays go to points of them, and on into the sky."""
+"""Openings, such as windows: more lines of the sky and of suns go through them."""
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -9,7 +10,6 @@ import numpy as np
 from ...device.backend import upload
 from ...device.recorded import loop
 from ...sampling.hemisphere import triangle
-from ...tracing.geometry import Geometry
 
 NONE = 0xFFFFFFFF  # in place of an opening's number
 WORDS = 12  # of an opening: origin, two edges that are dual to those of the polygon, and the normal
@@ -20,11 +20,11 @@ class Openings:
     """Parallelograms and triangles that stop no line.
 
     Attributes:
-        geometry: the scene on a device.
+        geometry: the scene on a device, a `tracing.geometry.Geometry`.
         corners: (n, 4, 3) float64, m, around each; a triangle repeats its last corner.
     """
 
-    geometry: Geometry
+    geometry: Any
     corners: np.ndarray
 
     def __len__(self) -> int:
@@ -67,7 +67,7 @@ class Openings:
 
     @cached_property
     def records(self):
-        """Words of each, (n * WORDS,) Float: a point p lies at (s, t) = ((p - origin) . dual_1, (p - origin) . dual_2)."""
+        """Records, (n * WORDS,) Float: a point p lies at (s, t) = ((p - origin) . dual_1, (p - origin) . dual_2)."""
         first, second = self.edges
         cross = np.cross(first, second)
         square = (cross**2).sum(axis=1, keepdims=True)
@@ -76,12 +76,12 @@ class Openings:
 
     @cached_property
     def points(self):
-        """Origin and edges of each, (n * 9,) Float."""
+        """Origins and edges, (n * 9,) Float."""
         return upload(self.types.Float, np.concatenate([self.placed[:, 0], *self.edges], axis=1).astype(np.float32))
 
     @cached_property
     def triangles(self):
-        """Return 1 for triangles and 0 for others, (n + 1,) UInt32; the last one stands for none."""
+        """Flags of triangles, (n + 1,) UInt32; the last one stands for none."""
         return upload(self.types.UInt32, np.append(self.is_triangle, False).astype(np.uint32))
 
     @cached_property
