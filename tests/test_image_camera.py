@@ -7,6 +7,7 @@ from image_samples import plain_hits, quad_scene
 import radiosity as rd
 from radiosity.image import fit, view
 from radiosity.scene.shapes import box, join
+from radiosity.scene.up import up_axis
 
 FRONT = rd.Camera((0, -5, 0), (0, 0, 0), (0, 0, 1), 90.0, 200, 100)
 
@@ -60,11 +61,11 @@ def test_impossible_cameras_are_refused(camera, message):
 
 
 def test_up_is_that_of_the_camera_then_of_the_floors_then_of_the_format():
-    assert view.up_axis(rd.load_scene("cornell-box")) == "y"
-    assert view.up_axis(rd.load_scene("room")) == "z"
-    assert view.up_axis(quad_scene(source="x.glb")) == "z"
+    assert up_axis(rd.load_scene("cornell-box")) == "y"
+    assert up_axis(rd.load_scene("room")) == "z"
+    assert up_axis(quad_scene(source="x.glb")) == "z"
     cube = box((0, 0, 0), (1, 1, 1))
-    assert [view.up_axis(join([("a", 0.5, 0.0, cube)], source=source)) for source in ("x.glb", "x.mgf")] == ["y", "z"]
+    assert [up_axis(join([("a", 0.5, 0.0, cube)], source=source)) for source in ("x.glb", "x.mgf")] == ["y", "z"]
 
 
 @pytest.mark.parametrize(
@@ -89,7 +90,7 @@ def test_up_is_where_clearly_more_floors_are(floors, source, up):
             quads.append([10 * np.eye(3)[axis] + p for p in (0 * one, one, one + other, other)])
     scene = rd.Scene.from_arrays(np.concatenate(quads), np.arange(4 * len(quads)).reshape(-1, 4), 0.5, 0.0, source=source)
     assert set(np.abs(scene.normal).argmax(axis=1)) == {axis for axis, area in enumerate(floors) if area}
-    assert view.up_axis(scene) == up
+    assert up_axis(scene) == up
 
 
 def light(patches):

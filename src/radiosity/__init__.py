@@ -35,6 +35,9 @@ if TYPE_CHECKING:
     from .run.refine import refine_check
     from .run.solve import solve
     from .scene import Back, Camera, Scene, load_scene
+    from .scene.lights.build import load_photometry, point_light, read_luminaire
+    from .scene.lights.luminaire import Luminaire
+    from .scene.lights.photometry import Photometry
     from .scene.lights.skies import cie_sky, uniform_sky
     from .scene.lights.sky import Sky
     from .scene.lights.sun import Sun, sun
@@ -75,6 +78,9 @@ _HOMES = {
     "run.refine": ("refine_check",),
     "run.solve": ("solve",),
     "scene": ("Back", "Camera", "Scene", "load_scene"),
+    "scene.lights.build": ("load_photometry", "point_light", "read_luminaire"),
+    "scene.lights.luminaire": ("Luminaire",),
+    "scene.lights.photometry": ("Photometry",),
     "scene.lights.skies": ("cie_sky", "uniform_sky"),
     "scene.lights.sky": ("Sky",),
     "scene.lights.sun": ("Sun", "sun"),
@@ -96,11 +102,13 @@ __all__ = [
     "DeviceError",
     "GebhartFactors",
     "LineSet",
+    "Luminaire",
     "Measurement",
     "Method",
     "MethodError",
     "OutputError",
     "Patches",
+    "Photometry",
     "RadiativeExchange",
     "RadiosityError",
     "RadiosityWarning",
@@ -118,13 +126,16 @@ __all__ = [
     "gebhart_factors",
     "load_exchange",
     "load_lines",
+    "load_photometry",
     "load_scene",
     "load_solution",
     "load_view_factors",
     "measure",
     "merge",
     "perez_sky",
+    "point_light",
     "radiative_exchange",
+    "read_luminaire",
     "refine_check",
     "solve",
     "subdivide",

@@ -840,7 +840,7 @@ MISTAKES = (
         "the darkest surfaces come first",
     ),
     Mistake(
-        "image/view.py",
+        "scene/up.py",
         "level[2] > CLEARLY * level[1]",
         "level[2] > CLEARLY * level[0]",
         ("test_image_camera.py",),

@@ -50,6 +50,11 @@ def _print(report) -> None:
         Console(highlight=False, width=1000).print(_table(report))  # never cut off a name
         if len(report.surfaces) > MOST_ROWS:
             console.print(Text(f"and {len(report.surfaces) - MOST_ROWS} smaller surfaces"))
+        luminaires = report.scene.lights.luminaires
+        if luminaires:
+            Console(highlight=False, width=1000).print(_luminaires(luminaires[:MOST_ROWS], report.scene.power_unit))
+        if len(luminaires) > MOST_ROWS:
+            console.print(Text(f"and {len(luminaires) - MOST_ROWS} more luminaires"))
     for finding in report.findings:
         console.print(Text(finding.severity, COLORS[finding.severity]), Text(printable(f"{finding.kind}: {finding.message}")))
     if not report.findings:
@@ -73,6 +78,11 @@ def _facts(report):
     lights = [surface for surface in report.surfaces if any(surface.power)]
     power = " / ".join(f"{sum(s.power[b] for s in lights):.4g}" for b in range(scene.n_bands)) if lights else "0"
     yield f"emitters  {len(lights)}, {power} {scene.power_unit} in all"
+    luminaires = scene.lights.luminaires
+    if luminaires:
+        totals = [f"{sum(one.power[b] for one in luminaires):.4g}" for b in range(scene.n_bands)]
+        sent = totals[0] if len(set(totals)) == 1 else " / ".join(totals)
+        yield f"luminaires  {len(luminaires)}, {sent} {scene.power_unit} in all"
 
 
 def _point(values) -> str:
@@ -101,6 +111,27 @@ def _table(report):
             _bands(s.power) if lit else "-",
             s.sides,
         )
+    return table
+
+
+def _luminaires(luminaires, power_unit: str):
+    """Return a table of luminaires: what they send, where they stand, and where they are aimed."""
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for name in ("luminaire", "group"):
+        table.add_column(name, no_wrap=True)
+    table.add_column(f"sends {power_unit}", justify="right", no_wrap=True)
+    for name in ("position m", "direction", "luminous area m", "file"):
+        table.add_column(name, no_wrap=True)
+    for one in luminaires:
+        length, width = one.size[:2]
+        area = "-" if not length and not width else f"{length:.3g} x {width:.3g}{', round' if one.disc else ''}"
+        area += ", soft" if one.soft else ""
+        named = (Text(printable(text or "-")) for text in (one.name, one.group))
+        facts = (_bands(one.power), _point(one.position), _point(one.axes[2].round(3) + 0.0), area)
+        table.add_row(*named, *facts, Text(printable(one.source or "-")))
     return table
 
 

@@ -145,8 +145,8 @@ def _view(scene, viewpoint: Viewpoint):
     """The camera asked for: a `Camera`, the number of one of the scene's, or None for what the renderer chooses."""
     from dataclasses import replace
 
-    from ..image.view import up_axis
     from ..scene import Camera
+    from ..scene.up import up_axis
 
     number, origin, target, up, fov = (getattr(viewpoint, field.name) for field in fields(viewpoint))
     if (origin is None) != (target is None):

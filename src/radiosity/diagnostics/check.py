@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import RadiosityWarning, SceneError, shown
 from ..scene import topology
 from ..scene.model import Scene
-from . import contact_findings, dark_sides, leaks
+from . import contact_findings, dark_sides, leaks, luminaire_findings
 from .report import NOTE, SERIOUS, WARNING, Finding, Report, surface_rows
 
 LITTLE = 0.01  # of the lines: in many correct scenes, backs of lamps absorb that much
@@ -61,7 +61,9 @@ def check(scene: Scene, *, walks: int = leaks.WALKS, seed: int = 0, device: str 
     patches = subdivide(scene, cells=1)
     power = np.zeros((2, scene.n_faces))  # emitted by fronts and backs, all bands together
     np.add.at(power, (patches.is_back.astype(int), patches.face), (patches.emission * patches.area[:, None]).sum(axis=1))
-    findings = [*_values(patches), *_light(power), *_topology(scene), *_lines(scene, power, walks, seed, device)]
+    from_lights, of_luminaires = luminaire_findings.first_light(scene, seed, device)
+    findings = [*_values(patches), *_light(scene, power), *_topology(scene), *of_luminaires]
+    findings += _lines(scene, power + from_lights, walks, seed, device)
     for surface, front, back in leaks.flipped_emitters(scene, (power[0] > 0) & (power[1] == 0), seed=seed, device=device):
         text = f"{_percent(front)} of the lines from its emitting side see the scene, {_percent(back)} from behind"
         name = scene.names[surface]
@@ -87,9 +89,10 @@ def _values(patches):
         yield Finding(WARNING, "empty surface", f"no face with an area in {shown(empty)}; a light among them emits nothing")
 
 
-def _light(power: np.ndarray):
-    if not power.any():
-        text = "no surface emits; give one an emission: Ke, an area emitter, ed, or power in a .toml (docs/scene-toml.md)"
+def _light(scene: Scene, power: np.ndarray):
+    if not power.any() and not scene.lights:
+        text = "no surface emits; give one an emission: Ke, an area emitter, ed, or power or [[luminaire]] in a .toml"
+        text += " (docs/scene-toml.md)"
         yield Finding(SERIOUS, "no light", text)
 
 

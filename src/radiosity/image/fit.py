@@ -6,9 +6,10 @@ import numpy as np
 
 from ..patches import Patches
 from ..scene import Camera, Scene
+from ..scene.up import up_axis
 from . import tone
 from .lookup import Lookup
-from .view import directions, up_axis
+from .view import directions
 
 SMALL = (40, 30)  # pixels of the picture by which a candidate is judged
 INSIDE_FOV, OUTSIDE_FOV = 65.0, 40.0  # degrees, vertical

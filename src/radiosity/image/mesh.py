@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..scene.up import up_axis
 from . import density_mesh, display_mesh, tone
 from .look import Look
 from .quantity import choose
-from .view import up_axis
 
 FAR = 16  # times its extent: a surface whose coordinates are larger would lose 1e-6 of its size in single precision
 

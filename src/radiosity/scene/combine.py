@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from .lights.add import all_lights
 from .model import Scene
 from .paint import Paint
 from .panes import panes_or_none
 
 
 def combine(scenes: list[Scene], *, source: str, photometric: bool, scale: float) -> Scene:
-    """The faces of all scenes. Surfaces of equal name become one; grey scenes take the bands of coloured ones."""
+    """The faces and lights of all scenes. Surfaces of equal name become one; grey scenes take the bands of coloured ones."""
     names = tuple(dict.fromkeys(name for scene in scenes for name in scene.names))
     index = {name: i for i, name in enumerate(names)}
     bands = max((scene.bands for scene in scenes), key=len)
@@ -44,6 +45,7 @@ def combine(scenes: list[Scene], *, source: str, photometric: bool, scale: float
         cameras=tuple(camera for scene in scenes for camera in scene.cameras),
         scale=scale,
         source=source,
+        lights=all_lights(scenes, len(bands), source),
         assumed=tuple(dict.fromkeys(name for scene in scenes for name in scene.assumed)),
     )
 

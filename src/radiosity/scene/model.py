@@ -1,6 +1,7 @@
 """A scene: flat diffuse faces with reflectance and self-emitted radiosity, in metres and W/m² (or lm/m²)."""
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -10,7 +11,10 @@ from numpy.typing import ArrayLike
 from .back import Back
 from .camera import Camera
 from .heat import Heat
+from .lights.luminaire import Luminaire
 from .lights.model import Lights
+from .lights.sky import Sky
+from .lights.sun import Sun
 from .paint import Paint
 from .panes import panes_or_none
 from .precision import median_centre, plane_reach
@@ -263,6 +267,31 @@ class Scene:
             reflectance_paint=self.reflectance_paint and self.reflectance_paint.take(rows),
             emission_paint=self.emission_paint and self.emission_paint.take(rows),
         )
+
+    def with_lights(
+        self, luminaires: Iterable[Luminaire] = (), *, suns: Iterable[Sun] = (), sky: Sky | None = None, openings=None
+    ) -> "Scene":
+        """The scene with more lights that are no surfaces.
+
+        Args:
+            luminaires: from `radiosity.read_luminaire` and `radiosity.point_light`.
+            suns, sky: lights from far away.
+            openings: (n, 4, 3) m, polygons through which the sky and the suns light most of what matters, such as windows.
+
+        Raises:
+            SceneError: some light of the scene is in W and other light in lm, or there are two skies.
+
+        Example:
+            >>> floor = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]
+            >>> scene = rd.Scene.from_arrays(floor, [[0, 1, 2, 3]], reflectance=0.5, emission=0)
+            >>> lit = scene.with_lights([rd.point_light(position=(2, 2, 2.5), lumens=800)])
+            >>> lit.unit, len(lit.lights.luminaires)
+            ('lm/m²', 1)
+        """
+        from .lights.add import with_lights
+
+        corners = None if openings is None else np.asarray(openings, np.float64)
+        return with_lights(self, Lights(tuple(luminaires), tuple(suns), sky, corners))
 
     def without_degenerate_faces(self) -> "Scene":
         """Leave out, with one warning, faces that single precision cannot tell from a line or a point where they lie.

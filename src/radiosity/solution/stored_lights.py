@@ -10,7 +10,7 @@ from ..scene.lights.sky import Sky
 from ..scene.lights.sun import Sun
 from ..scene.lights.web import Web
 
-NAMED = ("name", "group", "source", "soft", "disc")
+NAMED = ("name", "group", "source", "soft", "disc", "photometric")
 PLACED = ("position", "axes", "power", "size")  # arrays of a luminaire
 WEB = ("planes", "gamma", "intensity")
 
@@ -22,11 +22,11 @@ def stored(lights: Lights) -> tuple[dict[str, Any], dict[str, Any]]:
     facts: dict[str, Any] = {
         "webs": len(webs),
         "luminaires": [_facts(one, NAMED, PLACED) | {"web": webs.index(one.web)} for one in lights.luminaires],
-        "suns": [_facts(one, ("name", "diameter"), ("direction", "irradiance")) for one in lights.suns],
+        "suns": [_facts(one, ("name", "diameter", "photometric"), ("direction", "irradiance")) for one in lights.suns],
     }
     if lights.sky is not None:
         arrays["lights_sky_radiance"] = lights.sky.radiance
-        facts["sky"] = _facts(lights.sky, ("name", "kind"), ("axes",))
+        facts["sky"] = _facts(lights.sky, ("name", "kind", "photometric"), ("axes",))
     if lights.openings is not None:
         arrays["lights_openings"] = lights.openings
     return arrays, facts

@@ -9,7 +9,7 @@ from .web import Web
 
 @dataclass(frozen=True, eq=False)
 class Luminaire:
-    """A lamp whose light leaves from a point, as a web of intensities says.
+    """A lamp whose light leaves from a point, as a web of intensities says. `read_luminaire` and `point_light` make one.
 
     Attributes:
         name: of the luminaire.
@@ -23,6 +23,12 @@ class Luminaire:
         soft: light leaves from all of the luminous area (length by width, perpendicular to gamma = 0), so that shadows are soft;
             False: from its middle.
         disc: the luminous area is an ellipse in that rectangle.
+        photometric: its power is in lm, not W.
+
+    Example:
+        >>> lamp = rd.point_light(position=(1, 1, 2), lumens=800, name="globe")
+        >>> lamp.name, lamp.position.tolist(), lamp.power.tolist()
+        ('globe', [1.0, 1.0, 2.0], [800.0])
     """
 
     name: str
@@ -35,3 +41,4 @@ class Luminaire:
     source: str = ""
     soft: bool = False
     disc: bool = False
+    photometric: bool = True

@@ -26,12 +26,22 @@ class Web:
     @cached_property
     def flux(self) -> float:
         """The integral of the intensity over all directions, lm or W."""
-        low, high = np.radians(self.gamma[:-1]), np.radians(self.gamma[1:])
-        of_gamma = self._mean_over_planes()
-        slope = (of_gamma[1:] - of_gamma[:-1]) / (high - low)
+        return self.flux_below(180.0)
+
+    def flux_below(self, gamma: float) -> float:
+        """Return the integral of the intensity over the directions up to an angle, degrees; lm or W."""
+        whole, degrees = self._mean_over_planes(), self.gamma
+        if gamma < degrees[-1]:
+            inside = degrees < gamma
+            whole = np.append(whole[inside], np.interp(gamma, degrees, whole, left=0))
+            degrees = np.append(degrees[inside], gamma)
+        if len(degrees) < 2:
+            return 0.0
+        low, high = np.radians(degrees[:-1]), np.radians(degrees[1:])
+        slope = np.diff(whole) / (high - low)
         # the integral of (a + s (g - low)) sin g from low to high
-        whole = of_gamma[:-1] * np.cos(low) - of_gamma[1:] * np.cos(high) + slope * (np.sin(high) - np.sin(low))
-        return float(2 * np.pi * whole.sum())
+        parts = whole[:-1] * np.cos(low) - whole[1:] * np.cos(high) + slope * (np.sin(high) - np.sin(low))
+        return float(2 * np.pi * parts.sum())
 
     def _mean_over_planes(self) -> np.ndarray:
         if len(self.planes) == 1:

@@ -12,10 +12,12 @@ from ....errors import SceneError, shown
 from ...arguments import LARGEST
 from ...assemble import Part, ReadOptions, warn
 from ...combine import combine
+from ...lights.add import scaled
 from ...model import Back, Camera, Scene
-from ..beside import in_any_case, warn_of_case
+from ..beside import named_file
 from ..units import UNITS
 from .heat import check_bands, heat_of, reflecting
+from .luminaires import luminaires_of, warn_of_y_up
 from .panes import check_pane
 
 BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
@@ -69,7 +71,17 @@ def read(path: Path, options: ReadOptions) -> Scene:
             raise SceneError(f"{path}: camera {number} looks along its up vector, or nowhere; move target or turn up")
     own = {name: e for one in scenes if one.heat for name, e in zip(one.names, one.heat.emissivity, strict=True)}
     heat = heat_of(asked, scene.names, looks.means, str(path), own)
-    return looks.with_powers(replace(scene, cameras=cameras + scene.cameras, heat=heat), str(path))
+    scene = looks.with_powers(replace(scene, cameras=cameras + scene.cameras, heat=heat), str(path))
+    if not asked.luminaire:
+        return scene
+    warn_of_y_up(asked.luminaire, scene, path)
+    lit = scene.with_lights(luminaires_of(asked.luminaire, UNITS[asked.unit] * asked.scale, options, path))
+    if lit.photometric and asked.photometric is False:
+        text = (
+            f"photometric is false, and luminaire '{lit.lights.luminaires[-1].name}' in lm; give it power in W, or leave it out"
+        )
+        raise SceneError(f"{path}: {text}")
+    return lit
 
 
 class Looks:
@@ -142,14 +154,7 @@ class Looks:
 
 
 def _geometry(file: str, factor: float, name: str | None, looks: Looks, options: ReadOptions, source: Path) -> Scene:
-    path = source.parent / file
-    options.admit(path, source)
-    if not path.exists() and (other := in_any_case(source.parent, file)):
-        warn_of_case(source, [(file, other)])
-        path = options.admit(other, source)
-    if not path.exists():
-        hint = "; write / in place of the backslash" if "\\" in file else ""
-        raise SceneError(f"{source}: geometry '{file}' does not exist; paths are relative to the folder of the .toml{hint}")
+    path = named_file(source, file, options, "geometry")
     if path.suffix.lower() == ".toml":
         raise SceneError(f"{source}: geometry '{path.name}' is a .toml file; name its geometry files instead")
 
@@ -164,7 +169,7 @@ def _geometry(file: str, factor: float, name: str | None, looks: Looks, options:
         raise SceneError(f"{source}: read it by `scene.formats.read`, which reads its geometry files too")
     scene = options.read(path, replace(options, edit=edit, unit=factor))
     cameras = [replace(c, origin=_times(c.origin, factor), target=_times(c.target, factor)) for c in scene.cameras]
-    return replace(scene, cameras=tuple(cameras))
+    return replace(scene, cameras=tuple(cameras), lights=scaled(scene.lights, factor))
 
 
 def _turned(faces: np.ndarray) -> np.ndarray:

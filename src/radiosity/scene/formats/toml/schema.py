@@ -98,6 +98,47 @@ class View(_Table):
     height: Annotated[int, Field(gt=0, le=2**15)] = 600
 
 
+class LuminaireEntry(_Table):
+    """A lamp without area: of a file, or of a type."""
+
+    file: Annotated[str, Field(min_length=1)] | None = None
+    type: Literal["point", "spot"] | None = None
+    position: Point
+    aim: Point | None = None
+    direction: Point | None = None
+    rotate: float = 0.0
+    along: Point | None = None
+    lumens: Positive | None = None
+    power: Positive | None = None
+    intensity: Positive | None = None
+    beam: Positive | None = None
+    field: Positive | None = None
+    maintenance: Annotated[float, Field(gt=0, le=1)] = 1.0
+    color: Annotated[list[NotNegative], Field(min_length=3, max_length=3)] | None = None
+    group: str = ""
+    name: str | None = None
+    soft: bool = False
+    lamp_set: Annotated[int, Field(ge=1)] | None = None
+
+    @model_validator(mode="after")
+    def _of_one_kind(self) -> "LuminaireEntry":
+        if (self.file is None) == (self.type is None):
+            raise ValueError('give file = "NAME.ies" or "NAME.ldt", or else type = "point" or "spot"')
+        others = OF_TYPES if self.type is None else OF_FILES if self.type == "spot" else (*OF_FILES, "beam", "field")
+        found = [key for key in others if getattr(self, key) not in (None, False, 0.0)]
+        if found:
+            raise ValueError(f"{' and '.join(found)} do not go with {'a file' if self.type is None else f'type {self.type}'}")
+        if self.type == "spot" and self.beam is None:
+            raise ValueError("a spot needs beam, the full angle of half its intensity in degrees")
+        if self.aim is not None and self.direction is not None:
+            raise ValueError("aim and direction exclude each other; give one")
+        return self
+
+
+OF_TYPES = ("power", "intensity", "beam", "field")  # keys that a file leaves no room for
+OF_FILES = ("rotate", "along", "soft", "lamp_set")  # keys that only a file has use for
+
+
 class SceneFile(_Table):
     """The whole file."""
 
@@ -111,14 +152,16 @@ class SceneFile(_Table):
     ] = []
     surface: list[Surface] = []
     camera: list[View] = []
+    luminaire: list[LuminaireEntry] = []
 
 
-TABLES = {"surface": Surface, "camera": View, "geometry": Geometry}
+TABLES = {"surface": Surface, "camera": View, "geometry": Geometry, "luminaire": LuminaireEntry}
 
 ARRAYS = {
     "geometry": 'write a list of files, such as geometry = ["room.obj"], or [[geometry]] with two brackets for each',
     "surface": "write [[surface]] with two brackets, one for each entry",
     "camera": "write [[camera]] with two brackets, one for each entry",
+    "luminaire": "write [[luminaire]] with two brackets, one for each entry",
 }  # what to write where something else than a list is given
 
 
@@ -152,7 +195,7 @@ def _sentence(fault, values: dict) -> str:
     if fault["type"] == "list_type" and str(path[-1]) in ARRAYS:
         return f"{where}: {ARRAYS[str(path[-1])]} (it is {_kind(fault['input'])})"
     if fault["type"] in ("dict_type", "model_type"):
-        key = "file" if path[0] == "geometry" else "name"
+        key = "file" if path[0] in ("geometry", "luminaire") else "name"
         return f'{where}: write a table, such as {{ {key} = "..." }} (it is {fault["input"]!r})'
     text = fault["msg"].removeprefix("Value error, ").removesuffix(" or instance of Geometry")
     return f"{where}: {text}" + (f" (it is {fault['input']!r})" if not isinstance(fault["input"], dict) else "")

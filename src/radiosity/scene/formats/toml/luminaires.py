@@ -1,0 +1,66 @@
+"""The [[luminaire]] entries of a .toml scene as luminaires (docs/luminaires.md)."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ....errors import SceneError
+from ...assemble import warn
+from ...lights.build import Placing, load_photometry, placed, point_light, tell
+from ...lights.luminaire import Luminaire
+from ...lights.photometry import Photometry
+from ...model import Scene
+from ...parts import ReadOptions
+from ...up import up_axis
+from ..beside import named_file
+from ..names import numbered
+
+
+def luminaires_of(entries, factor: float, options: ReadOptions, source: Path) -> list[Luminaire]:
+    """Return the luminaires of a file. Each luminaire file is read once.
+
+    Args:
+        entries: of the schema.
+        factor: metres of a unit of length of the file.
+        options: of reading.
+        source: the .toml file.
+
+    Raises:
+        SceneError: a luminaire file is missing or damaged, or a value makes no sense; the message names the entry.
+    """
+    read: dict[tuple[Path, int | None], Photometry] = {}
+    result = []
+    for number, entry in enumerate(entries, 1):
+        try:
+            result.append(_luminaire(entry, factor, options, source, read))
+        except SceneError as error:
+            said = str(error)
+            raise SceneError(said if said.startswith(f"{source}: ") else f"{source}: luminaire {number}: {said}") from None
+    taken = {entry.name: 1 for entry in entries if entry.name}
+    pairs = zip(entries, result, strict=True)
+    return [one if entry.name else replace(one, name=numbered(one.name, taken)) for entry, one in pairs]
+
+
+def warn_of_y_up(entries, scene: Scene, source: Path) -> None:
+    """Tell once that luminaires look along -z by default, where the scene seems to have y upwards."""
+    unaimed = [entry for entry in entries if entry.aim is None and entry.direction is None and entry.type != "point"]
+    if unaimed and up_axis(scene) == "y":
+        text = f"{len(unaimed)} luminaires have neither aim nor direction, and point along -z; the scene seems to have y upwards"
+        warn(f"{source}: {text}: give direction = [0, -1, 0], or [0, 0, -1] where z is up")
+
+
+def _luminaire(entry, factor: float, options: ReadOptions, source: Path, read: dict) -> Luminaire:
+    position, aim = (None if value is None else np.asarray(value) * factor for value in (entry.position, entry.aim))
+    common = {"position": position, "aim": aim, "direction": entry.direction, "maintenance": entry.maintenance}
+    common |= {"color": entry.color, "group": entry.group, "name": entry.name}
+    if entry.type is not None:
+        light = {"lumens": entry.lumens, "watts": entry.power, "intensity": entry.intensity}
+        return point_light(**common, **light, beam=entry.beam, field=entry.field)
+    path = named_file(source, entry.file, options, "luminaire file")
+    key = (path, entry.lamp_set)
+    if key not in read:
+        read[key] = load_photometry(path, lamp_set=entry.lamp_set)
+        tell(read[key])
+    turned = {"rotate": entry.rotate, "along": entry.along, "lumens": entry.lumens, "soft": entry.soft}
+    return placed(read[key], Placing(**common, **turned))

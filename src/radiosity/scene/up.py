@@ -1,0 +1,25 @@
+"""The direction that is up in a scene."""
+
+from pathlib import PurePath
+
+import numpy as np
+
+from .model import Scene
+
+Y_UP = (".glb", ".gltf", ".obj", ".xml")  # formats whose scenes are mostly modelled with y upwards
+CLEARLY = 1.3  # times as much level area along the other axis speaks against a format's habit
+
+
+def up_axis(scene: Scene) -> str:
+    """Return ``y`` or ``z``, the axis that is up.
+
+    It is the main direction of the first camera's up, or else what is usual in the scene's file format, unless there is clearly
+    more area of floors, ceilings and table tops along the other axis.
+    """
+    if scene.cameras:
+        up = np.abs(np.asarray(scene.cameras[0].up, np.float64))
+        return "y" if up[1] > up[2] else "z"
+    level = (scene.area[:, None] * (np.abs(scene.normal) > 0.999)).sum(axis=0)
+    if PurePath(scene.source).suffix.lower() in Y_UP:
+        return "z" if level[2] > CLEARLY * level[1] else "y"
+    return "y" if level[1] > CLEARLY * level[2] else "z"
