@@ -214,9 +214,6 @@ def test_habits_are_named_once(tmp_path):
     (text,) = warnings_of({"name": "white"})  # glTF's default: white metal
     assert "without a base colour" in text
     assert "reflectance 0.5 taken for 'white'" in text
-    (text,) = warnings_of(GREY, node={"extensions": {"KHR_lights_punctual": {"light": 0}}})
-    assert "point lights" in text
-    assert "'square'" in text
 
 
 @pytest.mark.parametrize(

@@ -225,15 +225,6 @@ def test_unlit_materials_variants_animations_and_unknown_extensions_are_told_onc
     ]
 
 
-def test_only_nodes_with_a_light_are_named_as_lights(tmp_path):
-    gltf = Gltf()
-    mesh = gltf.mesh(material=GREY)
-    gltf.node(mesh=mesh, name="wall", extensions={"KHR_node_selectability": {"selectable": False}})
-    gltf.node(name="spot", extensions={"KHR_lights_punctual": {"light": 0}})
-    with pytest.warns(RadiosityWarning, match=r"point lights .* are left out: 'spot'$"):
-        rd.load_scene(gltf.write(tmp_path / "l.glb"))
-
-
 @pytest.mark.parametrize("how", ["required", "draco", "meshopt"])
 def test_compressed_files_say_what_to_do(tmp_path, how):
     gltf = Gltf(**({"extensionsRequired": ["KHR_draco_mesh_compression"]} if how == "required" else {}))

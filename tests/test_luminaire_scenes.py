@@ -146,7 +146,10 @@ def test_bands_of_lights_become_those_of_the_scene():
     colored = floor(reflectance=[[0.5, 0.4, 0.3]]).with_lights([white, red])
     assert colored.lights.luminaires[0].power.tolist() == [10, 10, 10]
     assert colored.lights.luminaires[1].power == pytest.approx([10 / 0.2126, 0, 0])
-    assert floor().with_lights([red]).lights.luminaires[0].power == pytest.approx([10])
+    widened = floor(reflectance=0.5).with_lights([white]).with_lights([red])
+    assert widened.bands == ("red", "green", "blue")
+    assert widened.reflectance.tolist() == [[0.5] * 3]
+    assert [lamp.power.tolist() for lamp in widened.lights.luminaires] == [[10, 10, 10], pytest.approx([10 / 0.2126, 0, 0])]
     three = floor().with_lights([white]).with_lights([red])
     assert [lamp.name for lamp in three.lights.luminaires] == ["point", "point"]
 

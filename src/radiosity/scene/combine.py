@@ -60,11 +60,12 @@ def _paints(scenes: list[Scene], key: str, n_bands: int) -> Paint | None:
         n = scene.n_faces
         if paint is None:
             paint = Paint((), np.full(n, -1, np.int32), np.zeros((n, 4, 2), np.float32), np.ones((n, 4, 1), np.float32))
+        paint = paint.in_bands(n_bands)
         image.append(np.where(paint.image >= 0, paint.image + len(images), -1).astype(np.int32))
         samplers += [paint.sampler(index) for index in range(len(paint.images))]
-        images += [np.broadcast_to(one, (*one.shape[:2], n_bands)) for one in paint.images]
+        images += paint.images
         uv.append(paint.uv)
-        color.append(np.broadcast_to(paint.color, (n, 4, n_bands)))
+        color.append(paint.color)
         limit = min(limit, paint.limit)
     return Paint(tuple(images), np.concatenate(image), np.concatenate(uv), np.concatenate(color), limit, tuple(samplers))
 

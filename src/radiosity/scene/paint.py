@@ -54,6 +54,11 @@ class Paint:
             result[rows] *= look_up(image, self.sampler(index), at[rows])
         return result
 
+    def in_bands(self, n_bands: int) -> "Paint":
+        """The paint of so many bands: those of a grey one are equal."""
+        images = tuple(np.broadcast_to(one, (*one.shape[:2], n_bands)) for one in self.images)
+        return replace(self, images=images, color=np.broadcast_to(self.color, (*self.color.shape[:2], n_bands)))
+
     def take(self, faces: np.ndarray) -> "Paint":
         """The paint of a choice of faces."""
         return replace(self, image=self.image[faces], uv=self.uv[faces], color=self.color[faces])

@@ -14,15 +14,19 @@ from .model import Lights
 from .sky import Sky
 from .sun import Sun
 
+VALUES = ("reflectance", "emission", "back_reflectance", "back_emission")  # of a scene, (n_faces, n_bands)
+PAINTS = ("reflectance_paint", "emission_paint")
+
 
 def with_lights(scene: Any, lights: Lights) -> Any:
-    """Return a scene with more lights.
+    """Return a scene with more lights. A grey one becomes coloured where a light has a colour.
 
     Raises:
         SceneError: some light is in W and other light in lm, there are two skies, or bands that the scene has not.
     """
-    luminaires = tuple(in_bands(one, scene.n_bands) for one in lights.luminaires)
-    both = merged(scene.lights, replace(lights, luminaires=luminaires), scene.source)
+    if scene.n_bands == 1 and any(len(np.unique(values, axis=-1).T) > 1 for values in map(_values, lights.all)):
+        scene = _in_color(scene)
+    both = merged(scene.lights, in_bands(lights, scene.n_bands), scene.source)
     lit = ((scene.emission > 0).any(axis=1)) | ((scene.back == Back.RADIATES) & (scene.back_emission > 0).any(axis=1))
     emitting = [scene.names[i] for i in np.unique(scene.surface[lit])]
     photometric = photometric_with(both, emitting, scene.photometric if emitting or scene.photometric else None, scene.source)
@@ -32,7 +36,7 @@ def with_lights(scene: Any, lights: Lights) -> Any:
 def all_lights(scenes: list, n_bands: int, source: str) -> Lights:
     """Return the lights of several scenes, for a scene of so many bands."""
     lights = reduce(lambda one, other: merged(one, other, source), (scene.lights for scene in scenes))
-    return replace(lights, luminaires=tuple(in_bands(one, n_bands) for one in lights.luminaires))
+    return in_bands(lights, n_bands)
 
 
 def scaled(lights: Lights, factor: float) -> Lights:
@@ -41,20 +45,42 @@ def scaled(lights: Lights, factor: float) -> Lights:
     return replace(lights, luminaires=moved, openings=None if lights.openings is None else lights.openings * factor)
 
 
-def in_bands(luminaire: Luminaire, n_bands: int) -> Luminaire:
-    """Return a luminaire with a power for each band of a scene: a grey one takes the photopic mean of a colour.
+def in_bands(lights: Lights, n_bands: int) -> Lights:
+    """Return lights with values for each band of a scene: those of one number are the same in all bands, and a grey scene takes
+    the photopic mean of a colour.
 
     Raises:
-        SceneError: its bands are others.
+        SceneError: a light has other bands.
     """
-    power = np.atleast_1d(np.asarray(luminaire.power, np.float64))
-    if len(power) == 1:
-        power = power.repeat(n_bands)
-    elif len(power) == 3 and n_bands == 1:
-        power = np.array([LUMINANCE @ power])
-    if len(power) != n_bands:
-        raise SceneError(f"luminaire '{luminaire.name}' has {len(power)} bands, and the scene {n_bands}; give power one number")
-    return replace(luminaire, power=power)
+    luminaires = (replace(one, power=_wide(one, n_bands)) for one in lights.luminaires)
+    suns = (replace(one, irradiance=_wide(one, n_bands)) for one in lights.suns)
+    sky = None if lights.sky is None else replace(lights.sky, radiance=_wide(lights.sky, n_bands))
+    return replace(lights, luminaires=tuple(luminaires), suns=tuple(suns), sky=sky)
+
+
+def _values(light: Luminaire | Sun | Sky) -> np.ndarray:
+    """Return what a light sends, (..., n_bands)."""
+    key = {Luminaire: "power", Sun: "irradiance", Sky: "radiance"}[type(light)]
+    return np.atleast_1d(np.asarray(getattr(light, key), np.float64))
+
+
+def _wide(light: Luminaire | Sun | Sky, n_bands: int) -> np.ndarray:
+    values = _values(light)
+    found = values.shape[-1]
+    if found == 1:
+        return np.repeat(values, n_bands, axis=-1)
+    if found == 3 and n_bands == 1:
+        return (values @ LUMINANCE)[..., None]
+    if found != n_bands:
+        raise SceneError(f"{_called(light)} has {found} bands, and the scene {n_bands}; give it one number, or {n_bands}")
+    return values
+
+
+def _in_color(scene: Any) -> Any:
+    """Return a grey scene whose bands are red, green and blue, alike."""
+    wide = {key: np.repeat(getattr(scene, key), 3, axis=1) for key in VALUES}
+    paints = {key: paint and paint.in_bands(3) for key in PAINTS for paint in (getattr(scene, key),)}
+    return replace(scene, **wide, **paints, bands=("red", "green", "blue"), lights=in_bands(scene.lights, 3))
 
 
 def photometric_with(lights: Lights, emitting: list[str], photometric: bool | None, source: str) -> bool:

@@ -1,5 +1,7 @@
 """Webs in closed form: of lamps that shine alike in all directions, and of spots."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ...errors import SceneError
@@ -41,9 +43,15 @@ def spot(beam: float, field: float | None, what: str) -> Web:
     return Web(np.zeros(1), gamma, HALF ** ((gamma / (beam / 2)) ** p)[None])
 
 
-def cone(inner: float, outer: float, shape) -> Web:
-    """Return the web of a lamp of 1 cd up to ``inner`` degrees, nothing beyond ``outer``, and ``shape(rad)`` between them."""
-    between = np.linspace(inner, outer, ENTRIES) if outer > inner else np.array([outer])
-    values = np.clip(shape(np.radians(between)), 0, 1) if outer > inner else np.ones(1)
-    gamma = between if inner <= 0 else np.append(0.0, between)
-    return Web(np.zeros(1), gamma, (values if inner <= 0 else np.append(1.0, values))[None])
+def cone(inner: float, outer: float, shape: Callable[[np.ndarray], np.ndarray], entries: int = ENTRIES) -> Web:
+    """Return the web of a cone: ``shape`` of the angle, rad, up to an angle, degrees, and nothing beyond it.
+
+    Args:
+        inner: the shape is constant up to here, degrees.
+        outer: the end, degrees.
+        shape: of angles, rad.
+        entries: between the two angles; 2 where the shape is linear there.
+    """
+    gamma = np.linspace(inner, outer, entries) if outer > inner else np.array([outer])
+    gamma = gamma if inner <= 0 else np.append(0.0, gamma)
+    return Web(np.zeros(1), gamma, np.maximum(shape(np.radians(gamma)), 0.0)[None])

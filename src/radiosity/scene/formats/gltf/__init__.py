@@ -4,7 +4,7 @@ Reflectance is base colour factor x texture x vertex colour; metallic and alpha 
 without any of the three is unknown. Emission is factor x texture x emissive strength, a radiance L, so the exitance is pi L. A
 double-sided material radiates to both sides, another one absorbs from behind. Coordinates stay as they are: metres, y up. Units
 of light are taken as W/m² (``photometric`` is False): files rarely mean the cd/m² that the specification says, and the factor
-is one of names only.
+is one of names only. Where a file has lights (KHR_lights_punctual), in cd and lux, all is photometric as the specification says.
 """
 
 from pathlib import Path
@@ -13,6 +13,7 @@ import numpy as np
 
 from ....errors import shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
+from ...lights.add import with_lights
 from ...model import Scene
 from ...sampler import DEFAULT_SAMPLER
 from ..beside import warn_of_case
@@ -22,6 +23,7 @@ from .accessor import accessor
 from .deform import Skins, morphed
 from .extensions import check_required, instances, warn_of_unread
 from .file import UNPACK, GltfFile, load
+from .lights import PUNCTUAL, PunctualLights
 from .material import Finish, Materials, Texture
 from .nodes import Node, cameras, walk
 
@@ -37,15 +39,14 @@ def read(path: Path, options: ReadOptions) -> Scene:
     file = load(path, options)
     check_required(file)
     nodes = walk(file)
-    materials, skins = Materials(file), Skins(file)
+    materials, skins, lights = Materials(file), Skins(file), PunctualLights(file)
     left_out: dict[str, list[str]] = {}
     parts = []
     for node in nodes:
-        if node.hidden and {"mesh", "camera"} & set(node.info):
+        if node.hidden and ({"mesh", "camera"} & set(node.info) or node.extension(file, PUNCTUAL) is not None):
             left_out.setdefault("hidden objects (KHR_node_visibility)", []).append(node.name)
             continue
-        if node.extension(file, "KHR_lights_punctual") is not None:
-            left_out.setdefault("point lights (only surfaces emit: give one an emissive colour)", []).append(node.name)
+        lights.add(node)
         if "mesh" not in node.info:
             continue
         mesh = file.item("meshes", node.info["mesh"])
@@ -61,11 +62,14 @@ def read(path: Path, options: ReadOptions) -> Scene:
     for what, names in left_out.items():
         warn(f"{path}: {what} are left out: {shown(dict.fromkeys(names))}")
     materials.report()
+    lights.report([part.name for part in parts if any(part.material.emission)])
     warn_of_unread(file)
     warn_of_case(path, file.renamed)
     placed = [with_means(part, part.uv is None, part.emission_uv is None) for part in parts]
     warn_of_means(parts, placed, str(path))
-    return assemble(placed, str(path), options, cameras=cameras(file, [node for node in nodes if not node.hidden]))
+    seen = cameras(file, [node for node in nodes if not node.hidden])
+    scene = assemble(placed, str(path), options, photometric=bool(lights.found), cameras=seen)
+    return with_lights(scene, lights.found)
 
 
 def _part(file: GltfFile, node: Node, mesh: dict, primitive: dict, materials: Materials, skins: Skins) -> Part:

@@ -12,7 +12,8 @@ from ....errors import SceneError, shown
 from ...arguments import LARGEST
 from ...assemble import Part, ReadOptions, warn
 from ...combine import combine
-from ...lights.add import scaled
+from ...lights.add import scaled, with_lights
+from ...lights.model import Lights
 from ...model import Back, Camera, Scene
 from ..beside import named_file
 from ..units import UNITS
@@ -72,15 +73,25 @@ def read(path: Path, options: ReadOptions) -> Scene:
     own = {name: e for one in scenes if one.heat for name, e in zip(one.names, one.heat.emissivity, strict=True)}
     heat = heat_of(asked, scene.names, looks.means, str(path), own)
     scene = looks.with_powers(replace(scene, cameras=cameras + scene.cameras, heat=heat), str(path))
-    if not asked.luminaire:
-        return scene
+    luminaires = luminaires_of(asked.luminaire, UNITS[asked.unit] * asked.scale, options, path)
     warn_of_y_up(asked.luminaire, scene, path)
-    lit = scene.with_lights(luminaires_of(asked.luminaire, UNITS[asked.unit] * asked.scale, options, path))
-    if lit.photometric and asked.photometric is False:
-        text = (
-            f"photometric is false, and luminaire '{lit.lights.luminaires[-1].name}' in lm; give it power in W, or leave it out"
+    return _lit(scene, Lights(tuple(luminaires)), asked.photometric, path)
+
+
+def _lit(scene: Scene, lights: Lights, photometric: bool | None, path: Path) -> Scene:
+    """Return the scene with the lights of the file itself.
+
+    Raises:
+        SceneError: some light of the scene is in W and other light in lm, or not in the unit that the file says.
+    """
+    if not lights and not scene.lights:
+        return scene
+    lit = with_lights(scene, lights)
+    if photometric is not None and lit.photometric != photometric:
+        what = f"photometric is {str(photometric).lower()}, and light '{lit.lights.all[-1].name}' is in"
+        raise SceneError(
+            f"{path}: {what} {'lm' if lit.photometric else 'W'}; leave the key out"
         )
-        raise SceneError(f"{path}: {text}")
     return lit
 
 
@@ -208,7 +219,8 @@ def _exitance(entry) -> tuple[float, ...] | None:
 def _photometric(asked: bool | None, scenes: list[Scene], path: Path) -> bool:
     if asked is not None:
         return asked
-    found = {scene.photometric for scene in scenes if (scene.emission > 0).any() or (scene.back_emission > 0).any()}
+    lit = [scene for scene in scenes if scene.lights or (scene.emission > 0).any() or (scene.back_emission > 0).any()]
+    found = {scene.photometric for scene in lit}
     if len(found) > 1:
         raise SceneError(f"{path}: some geometry files emit in lm/m², others in W/m²; set photometric = true or false")
     return any(found) if found else any(scene.photometric for scene in scenes)
