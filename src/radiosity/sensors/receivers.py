@@ -12,7 +12,9 @@ from ..sampling.streams import Purpose, Seed, stream
 from ..tracing.ray_generation import Frame
 from .model import Sensors
 
-PLANES = 8  # upright planes of a cylindrical sensor in each replicate
+# Upright planes of a cylindrical sensor in each replicate. The clamped cosine has no odd harmonics above the first, so that an
+# odd number of planes errs as twice as many would: by 0.2 % of the light of a point lamp, at most, in one replicate.
+PLANES = 15
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

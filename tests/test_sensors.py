@@ -1,0 +1,169 @@
+"""What sensors measure: closed forms, coverage of intervals, bits, targets. Wrong values must be refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from light_samples import bulb, lit, overcast, uniform
+
+import radiosity as rd
+from radiosity.factors.polygons import from_points
+from radiosity.scene.shapes import box, join, quad
+from radiosity.sensors.target import half_width
+
+ALPHA = 1e-4  # of a test, all its sensors together
+
+
+def measured(scene: rd.Scene, sensors: rd.Sensors, each: int = 2048, seed: int = 0, cells: int = 1, replicates: int = 8):
+    """Solve, then measure with about ``each`` of both kinds together a sensor and replicate."""
+    patches = rd.subdivide(scene, cells=cells)
+    few = len(patches) * replicates * 1024
+    solution = rd.solve(patches, method="gather", rays=few, replicates=replicates, seed=seed)
+    return rd.measure(solution, sensors, rays=each * replicates * len(sensors), seed=seed)
+
+
+def agrees(found: rd.Measurement, wanted, within: float) -> bool:
+    """True where all sensors' means lie within Student's intervals of ``wanted``, at `ALPHA` in all; their errors must be small
+    enough for that to mean something: ``within`` of what is wanted, for the largest half width."""
+    wanted = np.broadcast_to(np.asarray(wanted, float).reshape(-1, 1), found.illuminance.shape)
+    width = half_width(found.values, 1 - ALPHA / found.illuminance.size)
+    assert (width <= within * wanted.max()).all(), (width, wanted)
+    return bool((np.abs(found.illuminance - wanted) <= width + 2e-6 * np.abs(wanted)).all())
+
+
+LAMP = quad((-0.5, -0.5, 1), (0, 1, 0), (1, 0, 0))  # looks down
+
+
+def test_points_about_a_square_lamp():
+    """Near, far, beside, turned, and partly below the sensor's horizon: the exact factor of a point and a polygon."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [0.3, -0.2, 0.9], [-3, 2, -1], [0.2, 0.1, 0.5], [1, 0, 0.6]])
+    normals = np.array([[0, 0, 1], [0, 0, 1], [0, 0, 1], [1, 1, 3], [1, 0, 0], [-1, 0, 0.2]], float)
+    exact = 100 * from_points(points, normals / np.linalg.norm(normals, axis=1)[:, None], LAMP[None])
+    found = measured(join([("lamp", 0.0, 100.0, [LAMP])], source="lamp"), rd.Sensors.of(points, normals))
+    assert agrees(found, exact, 0.03)
+    assert not agrees(found, exact / np.maximum(normals[:, 2], 0.3), 0.05)  # no formula would do
+
+
+def test_a_point_lamp_by_distance_and_angle():
+    """The inverse square and the cosine law: without lines that scatter, exactly."""
+    points = np.array([[0, 0, 0], [0, 0, 1.5], [2, 0, 0], [1, 1, 1], [0, 0, 3]])
+    normals = np.array([[0, 0, 1], [0, 0, 1], [0, 0, 1], [0.6, 0, 0.8], [0, 0, 1]])
+    way = np.array([0, 0, 2]) - points
+    distance = np.linalg.norm(way, axis=1)
+    cosine = np.maximum((way * normals).sum(axis=1) / distance, 0)
+    found = measured(lit(luminaires=(bulb((0, 0, 2), power=400 * np.pi),)), rd.Sensors.of(points, normals))
+    np.testing.assert_allclose(
+        found.illuminance[:, 0], 100 * cosine / distance**2, rtol=1e-4
+    )  # single precision: a lamp stands 8 ulps in front
+    assert found.unit == "lx"
+    assert not np.allclose(found.illuminance[:4, 0], 100 / distance[:4] ** 2, rtol=0.02)  # a cosine left out
+
+
+def test_cylindrical_light_of_a_point_lamp():
+    """I sin theta / (pi d^2), theta from the axis; the axis may lean."""
+    points, axes = np.array([[1, 0, 0], [2, 1, 1], [0, 0.5, 1.0]]), np.array([[0, 0, 1], [0, 0, 1], [1.0, 0, 1]])
+    way = np.array([0, 0, 2]) - points
+    distance = np.linalg.norm(way, axis=1)
+    sine = np.linalg.norm(np.cross(way, axes), axis=1) / distance / np.linalg.norm(axes, axis=1)
+    scene = lit(luminaires=(bulb((0, 0, 2), power=400 * np.pi),))
+    found = measured(scene, rd.Sensors.of(points, axes, kind="cylindrical"))
+    assert agrees(found, 100 * sine / (np.pi * distance**2), 0.03)
+    assert not agrees(found, 100 * sine / (4 * distance**2), 0.03)
+
+
+def test_skies_without_obstacles():
+    """Uniform: pi L from above, half of it on a wall; CIE's overcast sky: 7/9 pi of the zenith's radiance."""
+    sensors = rd.Sensors.of([[0, 0, 0]] * 3, [[0, 0, 1], [1, 0, 0], [0, 0, -1]])
+    assert agrees(measured(lit(sky=uniform(100.0)), sensors), [100 * np.pi, 50 * np.pi, 0], 0.03)
+    assert agrees(measured(lit(sky=overcast(100.0)), sensors), [700 / 9 * np.pi, 100 * (np.pi / 6 + 4 / 9), 0], 0.03)
+
+
+@pytest.mark.parametrize("angle", [15, 40, 70])
+def test_a_round_hole_in_a_roof(angle):
+    """3/7 (sin^2 t + 4/3 (1 - cos^3 t)) of the unobstructed horizontal, under an overcast sky."""
+    n, t = 96, np.radians(angle)
+    around = 2 * np.pi * np.arange(n + 1) / n
+    inner = np.tan(t) * np.sqrt(np.sin(2 * np.pi / n) ** -1 * 2 * np.pi / n)  # the polygon's area is the circle's
+    ring = np.column_stack([np.cos(around), np.sin(around)])
+    rings = [np.column_stack([radius * ring, np.ones(n + 1)]) for radius in (inner, 1e3)]
+    roof = [np.stack([rings[0][i], rings[0][i + 1], rings[1][i + 1], rings[1][i]]) for i in range(n)]
+    corners = np.concatenate(roof)
+    scene = rd.Scene.from_arrays(corners, np.arange(4 * n).reshape(n, 4), 0.0, 0.0, names=["roof"], two_sided=True)
+    scene = replace(scene, lights=lit(sky=overcast(9000 / (7 * np.pi))).lights)
+    found = measured(scene, rd.Sensors.of([[0, 0, 0]]), each=1 << 14)
+    share = 3 / 7 * (np.sin(t) ** 2 + 4 / 3 * (1 - np.cos(t) ** 3))
+    assert agrees(found, 1000 * share, 0.03)
+    assert not agrees(found, 1000 * np.sin(t) ** 2, 0.03)  # a uniform sky
+
+
+def test_a_furnace_is_the_same_everywhere():
+    """All walls emit 1 and reflect rho: 1 / (1 - rho) on any plane, upright cylinders too."""
+    room = join([("walls", 0.6, 1.0, box((0, 0, 0), (2, 1, 3), inward=True))], source="furnace")
+    sensors = rd.Sensors.of([[1, 0.5, 1], [0.1, 0.9, 2.9], [1, 0.5, 0]], [[0, 0, 1], [1, -2, 0.3], [0, 0, 1]])
+    found = measured(room, sensors + rd.Sensors.of([[1.5, 0.5, 2]], name="round", kind="cylindrical"), 1 << 15, cells=2)
+    assert agrees(found, np.full(4, 2.5), 0.02)
+    assert not agrees(found, np.full(4, 2.4), 0.02)
+
+
+def test_intervals_hold_the_truth_in_95_percent_of_runs():
+    """Sensors far from each other, many seeds: 95 % of intervals, within the bounds of a binomial number at alpha 1e-4."""
+    points = np.array([[0, 0, 0], [1, 0, 0.5], [0.4, 0.4, 0.8], [2, 2, 0]])
+    exact = 100 * from_points(points, np.tile([0, 0, 1.0], (4, 1)), LAMP[None])
+    patches = rd.subdivide(join([("lamp", 0.0, 100.0, [LAMP])], source="lamp"), cells=1)
+    solution = rd.solve(patches, method="gather", rays=8192, replicates=8)
+    held = []
+    for seed in range(60):
+        low, high = rd.measure(solution, rd.Sensors.of(points), rays=64 * 8 * 4, seed=seed).interval(0.95)
+        held.append((low[:, 0] <= exact) & (exact <= high[:, 0]))
+    from scipy.stats import binom
+
+    assert binom.cdf(np.sum(held), 240, 0.95) > ALPHA / 2
+    assert binom.sf(np.sum(held) - 1, 240, 0.95) > ALPHA / 2
+
+
+def test_equal_seeds_give_equal_bits(shaded):
+    scene, _ = shaded
+    above = rd.Sensors.grid(scene, "floor", 1.2, 1.0) + rd.Sensors.of([[0, 0, 1.5]], kind="cylindrical")
+    one, other, third = (measured(scene, above, 256, seed) for seed in (3, 3, 4))
+    assert np.array_equal(one.values, other.values)
+    assert not np.array_equal(one.values, third.values)
+
+
+@pytest.fixture(scope="module")
+def shaded() -> tuple[rd.Scene, rd.Sensors]:
+    """A lamp over a grey floor with a box on it; the grid lies at the height of the box's middle."""
+    floor = quad((-2, -2, 0), (4, 0, 0), (0, 4, 0))
+    lamp = quad((-0.5, -0.5, 2), (0, 1, 0), (1, 0, 0))
+    scene = join(
+        [("floor", 0.5, 0.0, [floor]), ("lamp", 0.0, 10.0, [lamp]), ("box", 0.3, 0, box((1, 1, 0), (1.6, 1.6, 1)))], source="x"
+    )
+    return scene, rd.Sensors.grid(scene, "floor", 0.5, 0.5)
+
+
+def test_sensors_inside_of_a_box_are_told_and_left_out(shaded):
+    scene, sensors = shaded
+    with pytest.warns(rd.RadiosityWarning, match=r"1 of 64 sensors see mostly backs.*floor at \[1.25, 1.25, 0.5\]"):
+        found = measured(scene, sensors, 64)
+    row = found.table()[0]
+    assert found.inside.sum() == 1 and row["sensors"] == 63 and row["min"] > 0
+
+
+def test_error_targets(shaded):
+    """Both are reached, and mean what they say: the half width of the mean, or of every sensor, which takes more lines."""
+    scene, _ = shaded
+    sensors, patches = rd.Sensors.grid(scene, "floor", 1.2, 1.0), rd.subdivide(scene, cells=4)
+    solution = rd.solve(patches, method="gather", rays=500_000, replicates=8)
+    mean, worst = (rd.measure(solution, sensors, error=0.01, error_of=of) for of in ("mean", "worst"))
+    assert (mean.status, worst.status) == ("complete", "complete")
+    assert half_width(mean.values.mean(axis=(1, 2))) <= 0.01 * mean.values.mean()
+    assert (half_width(worst.values) <= 0.01 * worst.illuminance).all()
+    assert (half_width(mean.values) > 0.01 * mean.illuminance).any() and mean.rays < worst.rays
+
+
+def test_what_cannot_be_reached_is_told(shaded):
+    """The error of the solution stays, whatever the lines of sensors."""
+    scene, sensors = shaded
+    solution = rd.solve(rd.subdivide(scene, cells=2), rays=20_000, replicates=8)
+    with pytest.warns(rd.RadiosityWarning, match="solve longer"):
+        found = rd.measure(solution, rd.Sensors.of([[0, 0, 1.9]], [[0, 0, -1]]), error=1e-4)
+    assert found.status == "not reached"
