@@ -12,6 +12,7 @@ from .limits import LARGEST
 FLAT = 1e-3  # cosine less than one: faces whose normals differ by more lie in another plane
 MOST = 1_000_000  # sensors of a grid
 LONG = 2.0  # ratio of sides from which on the shorter one counts (EN 12464-1, 4.4)
+ALIKE = 0.99  # of the largest plane's area: planes that are as large
 INSIDE = 1e-9
 BINS = 900  # of a right angle, in which edges are sorted
 
@@ -80,21 +81,24 @@ def grid(scene: Scene, surface: str, height: float, spacing: float | None, margi
 
 
 def _largest_plane(scene: Scene, faces: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the faces in the plane with the largest area, and its normal."""
+    """Return the faces in the plane with the largest area, and its normal. Of planes that are as large, such as the two of a
+    slab, it is the one that looks up most, then the highest."""
     origin = scene.vertices[scene.faces[faces, 0]]
     height = (origin * normals).sum(axis=1)
-    left, best = np.arange(len(faces)), (0.0, np.zeros(0, int), normals[0])
+    left, planes, largest = np.arange(len(faces)), [], 0.0
     near = 1e-6 * max(float(np.abs(height).max()), float(np.sqrt(scene.area[faces].max())))
     while len(left):
         one = left[np.argmax(scene.area[faces[left]])]
         same = (normals[left] @ normals[one] > 1 - FLAT) & (np.abs(origin[left] @ normals[one] - height[one]) <= near)
-        area = float(scene.area[faces[left[same]]].sum())
-        if area > best[0]:
-            best = area, faces[left[same]], normals[one]
-        if area >= scene.area[faces[left]].sum() / 2:
+        rows, left = left[same], left[~same]
+        area = float(scene.area[faces[rows]].sum())
+        planes.append((area, normals[one], origin[one], faces[rows]))
+        largest = max(largest, area)
+        if scene.area[faces[left]].sum() < largest * ALIKE:
             break
-        left = left[~same]
-    return best[1], best[2]
+    alike = [plane for plane in planes if plane[0] >= largest * ALIKE]
+    _, normal, _, chosen = max(alike, key=lambda plane: (plane[1][2], plane[2][2]))
+    return chosen, normal
 
 
 def _polygons(scene: Scene, faces: np.ndarray) -> np.ndarray:

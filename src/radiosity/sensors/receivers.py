@@ -10,6 +10,7 @@ from ..algorithms.gather.packets import ESCAPED, LOST, Packets, curve
 from ..device.backend import upload
 from ..sampling.streams import Purpose, Seed, stream
 from ..tracing.ray_generation import Frame
+from .clearance import clearance
 from .model import Sensors
 
 # Upright planes of a cylindrical sensor in each replicate. The clamped cosine has no odd harmonics above the first, so that an
@@ -98,7 +99,8 @@ class Receivers(Packets):
         first = np.cross(normals, np.where(np.abs(normals[:, :1]) < 0.5, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]))
         first /= np.linalg.norm(first, axis=1, keepdims=True)
         points, nothing = np.tile(self.placed, (self.replicates, 1)), np.zeros((len(normals), 6))
-        rows = np.concatenate([points, nothing, normals, first, np.zeros((len(normals), 1))], axis=1)
+        least = clearance(self.geometry.faces, points, normals)[:, None]
+        rows = np.concatenate([points, nothing, normals, first, least], axis=1)
         return upload(self.types.Float, rows.astype(np.float32))
 
     def record(self, patch):

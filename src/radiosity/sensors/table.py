@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import SceneError
+from ..errors import SceneError, shown
+from ..scene.habits import warn
 
 POINT, NORMAL = ("x", "y", "z"), ("nx", "ny", "nz")
 COLUMNS = (*POINT, *NORMAL, "name")
@@ -32,7 +33,15 @@ def read(path, name: str | None = None) -> list[tuple[str, np.ndarray, np.ndarra
         rows = rows[1:]
     if missing := [one for one in POINT if one not in head]:
         raise SceneError(f"{path}: has no column {', '.join(missing)}; it has {', '.join(head)}")
-    has_normals = set(NORMAL) <= set(head)
+    given = [one for one in NORMAL if one in head]
+    if 0 < len(given) < len(NORMAL):
+        lacks = ", ".join(one for one in NORMAL if one not in head)
+        raise SceneError(f"{path}: has the columns {', '.join(given)}, and not {lacks}; give all of a normal, or none")
+    if twice := sorted({one for one in head if head.count(one) > 1}):
+        raise SceneError(f"{path}: has two columns {', '.join(twice)}; give each its own name")
+    if others := [one for one in head if one not in COLUMNS]:
+        warn(f"{path}: the columns {shown(others)} are not read; sensors have {', '.join(COLUMNS)}")
+    has_normals = bool(given)
     points, normals, names = [], [], []
     for number, cells in rows:
         if len(cells) != len(head):
