@@ -16,6 +16,7 @@ from .exchange import exchange
 from .experiment import experiment
 from .factors import factors
 from .lines import lines
+from .measure import measure
 from .methods import methods
 from .relight import relight
 from .render import render
@@ -40,7 +41,7 @@ app = App(
     suppress_keyboard_interrupt=False,
 )
 for place, command in enumerate(
-    (solve, methods, lines, relight, factors, conductors, exchange, render, check, experiment, doctor)
+    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, check, experiment, doctor)
 ):
     app.command(command, sort_key=place)
 

@@ -19,6 +19,7 @@ from .paint import Paint
 from .panes import panes_or_none
 from .precision import median_centre, plane_reach
 from .sampler import DEFAULT_SAMPLER
+from .sensor_request import SensorRequest
 
 __all__ = ["Back", "Scene", "unit_normals"]
 
@@ -49,6 +50,7 @@ class Scene:
         lights: luminaires, suns and the sky, which are no surfaces.
         transmittance: (n_faces,) float64 in [0, 1), the share of lines that goes straight on through each face from either side
             (panes), equal in all bands; None where no face is a pane.
+        sensors: what the file asks `measure` for; light does not depend on it.
 
     Example:
         >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -78,6 +80,7 @@ class Scene:
     assumed: tuple[str, ...] = ()
     lights: Lights = field(default_factory=Lights)
     transmittance: np.ndarray | None = None
+    sensors: tuple[SensorRequest, ...] = ()
 
     @staticmethod
     def from_arrays(

@@ -10,6 +10,11 @@ Y_UP = (".glb", ".gltf", ".obj", ".xml")  # formats whose scenes are mostly mode
 CLEARLY = 1.3  # times as much level area along the other axis speaks against a format's habit
 
 
+def up_vector(scene: Scene) -> tuple[float, float, float]:
+    """Return the unit vector along the axis that is up."""
+    return (0.0, 1.0, 0.0) if up_axis(scene) == "y" else (0.0, 0.0, 1.0)
+
+
 def up_axis(scene: Scene) -> str:
     """Return ``y`` or ``z``, the axis that is up.
 

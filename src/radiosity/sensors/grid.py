@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import SceneError, shown
 from ..scene.model import Back, Scene
+from ..scene.up import up_vector
 from .limits import LARGEST
 
 FLAT = 1e-3  # cosine less than one: faces whose normals differ by more lie in another plane
@@ -50,8 +51,9 @@ def grid(scene: Scene, surface: str, height: float, spacing: float | None, margi
         raise SceneError(f"grid of '{surface}': spacing is {spacing:g} m; it must be positive")
     normals = scene.normal[faces].copy()
     both = scene.back[faces] == Back.RADIATES
-    normals[both & (normals[:, 2] < -INSIDE)] *= -1
-    faces, normal = _largest_plane(scene, faces, normals)
+    up = np.array(up_vector(scene))
+    normals[both & (normals @ up < -INSIDE)] *= -1
+    faces, normal = _largest_plane(scene, faces, normals, up)
     polygons = _polygons(scene, faces)
     first, second = _axes(polygons, normal)
     flat = np.stack([polygons @ first, polygons @ second], axis=-1)
@@ -80,7 +82,7 @@ def grid(scene: Scene, surface: str, height: float, spacing: float | None, margi
     return Grid(points, normal, cells, steps)
 
 
-def _largest_plane(scene: Scene, faces: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _largest_plane(scene: Scene, faces: np.ndarray, normals: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the faces in the plane with the largest area, and its normal. Of planes that are as large, such as the two of a
     slab, it is the one that looks up most, then the highest."""
     origin = scene.vertices[scene.faces[faces, 0]]
@@ -97,7 +99,7 @@ def _largest_plane(scene: Scene, faces: np.ndarray, normals: np.ndarray) -> tupl
         if scene.area[faces[left]].sum() < largest * ALIKE:
             break
     alike = [plane for plane in planes if plane[0] >= largest * ALIKE]
-    _, normal, _, chosen = max(alike, key=lambda plane: (plane[1][2], plane[2][2]))
+    _, normal, _, chosen = max(alike, key=lambda plane: (plane[1] @ up, plane[2] @ up))
     return chosen, normal
 
 

@@ -35,7 +35,7 @@ BEHIND = 0.5  # share of lines that meet backs: a sensor is likely inside of som
 
 def measure(
     scene: Scene | Patches | Solution,
-    sensors: Sensors,
+    sensors: Sensors | None = None,
     *,
     rays: float | None = None,
     error: float | None = None,
@@ -54,7 +54,7 @@ def measure(
 
     Args:
         scene: a `Solution`, or a scene or patches to solve first, which takes half of the lines or of the error.
-        sensors: where to measure.
+        sensors: where to measure; by default what the scene's file asks for (`Sensors.of_scene`).
         rays, error: one at most: lines in all, replicates together; or the relative error that the true one is below in 95 % of
             runs. The default is an error of 1 %.
         error_of: "mean": of the mean of each set of sensors; "worst": of each sensor.
@@ -77,6 +77,8 @@ def measure(
     """
     if error_of not in OF:
         raise MethodError(f"error_of is '{error_of}'; sensors take {', '.join(OF)}")
+    if sensors is None:
+        sensors = Sensors.of_scene(_scene_of(scene))
     if not isinstance(sensors, Sensors):
         raise MethodError(f"measure takes Sensors, not {type(sensors).__name__}; make them with Sensors.of or Sensors.grid")
     if rays is None and error is None:
@@ -128,6 +130,21 @@ def measure(
                 "solution: solve longer"
             )
         return measured
+
+
+def _scene_of(given: Scene | Patches | Solution) -> Scene:
+    """Return the scene of what `measure` takes.
+
+    Raises:
+        MethodError: it is something else.
+    """
+    if isinstance(given, Scene):
+        return given
+    if isinstance(given, Patches):
+        return given.scene
+    if isinstance(given, Solution):
+        return given.patches.scene
+    raise MethodError(f"measure takes a Scene, Patches or a Solution, not {type(given).__name__}; load a file with load_scene")
 
 
 def _staged(tracing: Tracing, budget: Budget, problem: Problem, sensors: Sensors, teller: Teller, stop: Stop, error_of: str):

@@ -7,9 +7,9 @@ from numpy.typing import ArrayLike
 
 from ..errors import SceneError, shown
 from ..scene.model import Scene
+from ..scene.sensor_table import UP, read
 from .grid import grid
 from .limits import LARGEST
-from .table import read
 
 KINDS = ("plane", "cylindrical")
 
@@ -40,7 +40,7 @@ class Sensors:
         return len(self.points)
 
     @staticmethod
-    def of(points: ArrayLike, normals: ArrayLike = (0.0, 0.0, 1.0), *, name: str = "sensors", kind: str = "plane") -> "Sensors":
+    def of(points: ArrayLike, normals: ArrayLike = UP, *, name: str = "sensors", kind: str = "plane") -> "Sensors":
         """Make sensors from points.
 
         Args:
@@ -108,7 +108,7 @@ class Sensors:
         return replace(made, cells=found.cells, spacings=found.steps[None])
 
     @staticmethod
-    def from_csv(path, *, name: str | None = None) -> "Sensors":
+    def from_csv(path, *, name: str | None = None, kind: str = "plane", normal: ArrayLike = UP) -> "Sensors":
         """Read sensors from a table with the columns x, y, z in m, and nx, ny, nz and name where it has them.
 
         A table without a head has x, y, z, or x, y, z, nx, ny, nz (as Radiance's points). Sensors of one name are one set.
@@ -116,11 +116,34 @@ class Sensors:
         Args:
             path: the file; its values are separated by commas, semicolons, tabs or spaces.
             name: of sensors that have none; the file's name by default.
+            kind: "plane" or "cylindrical", see `Sensors.of`.
+            normal: (3,) of sensors whose table has none.
 
         Raises:
             SceneError: a file that cannot be read, a column that is missing, or a value that is no number; it names the line.
         """
-        sets = [Sensors.of(points, normals, name=one) for one, points, normals in read(path, name)]
+        sets = [
+            Sensors.of(points, normals, name=one, kind=kind)
+            for one, points, normals in read(path, name, np.asarray(normal, float))
+        ]
+        return sum(sets[1:], sets[0])
+
+    @staticmethod
+    def of_scene(scene: Scene) -> "Sensors":
+        """Make the sensors that the scene's file asks for: the `[[sensors]]` of a .toml.
+
+        Raises:
+            SceneError: it asks for none, or for a grid that makes no sense.
+        """
+        sets = []
+        for one in scene.sensors:
+            if one.surface is None:
+                sets.append(Sensors.of(one.points, one.normals, name=one.name, kind=one.kind))
+                continue
+            sizes = {"height": one.height, "spacing": one.spacing, "margin": one.margin}
+            sets.append(Sensors.grid(scene, one.surface, **sizes, name=one.name, direction=one.direction, kind=one.kind))
+        if not sets:
+            raise SceneError(f"{scene.source}: asks for no sensors; give a grid or points, or write [[sensors]] in a .toml scene")
         return sum(sets[1:], sets[0])
 
     def __add__(self, other: "Sensors") -> "Sensors":

@@ -12,6 +12,7 @@ from ..scene.lights.model import Lights
 from ..scene.model import Scene
 from ..scene.paint import Paint
 from ..scene.sampler import Sampler
+from ..scene.sensor_request import SensorRequest
 from . import stored_lights
 from .npz import FORMAT_OF_PANES, OWN_ARRAYS, PAINT_ARRAYS, PANES, SCENE_ARRAYS
 
@@ -45,6 +46,8 @@ def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
         facts["heat"] = scene.heat.facts()
     if scene.assumed:
         facts["assumed"] = scene.assumed
+    if scene.sensors:
+        facts["sensors"] = [request.facts() for request in scene.sensors]
     if scene.lights:
         of_lights, facts["lights"] = stored_lights.stored(scene.lights)
         arrays |= of_lights
@@ -76,6 +79,7 @@ def restored(arrays: dict[str, Any], meta: dict[str, Any]) -> Patches:
         assumed=tuple(described.get("assumed", ())),
         lights=stored_lights.restored(arrays, described["lights"]) if "lights" in described else Lights(),
         transmittance=arrays.get(PANES),
+        sensors=tuple(SensorRequest.of(facts) for facts in described.get("sensors", ())),
     )
     own = {name: arrays.get(f"patches_{name}") for name in OWN_ARRAYS}
     return Patches(scene, arrays["patches_columns"], arrays["patches_rows"], **own)

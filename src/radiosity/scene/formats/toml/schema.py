@@ -36,9 +36,16 @@ def _clear(value: float) -> float:
     return value
 
 
+def _pointing(value: list[float]) -> list[float]:
+    if not any(value):
+        raise ValueError("expected a direction, not three zeros")
+    return value
+
+
 Bands = Annotated[list[NotNegative], BeforeValidator(_listed), AfterValidator(_one_or_three)]
 Emissivities = Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1), BeforeValidator(_listed)]
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+Direction = Annotated[Point, AfterValidator(_pointing)]
 
 
 class _Table(BaseModel):
@@ -135,6 +142,38 @@ class LuminaireEntry(_Table):
         return self
 
 
+class SensorsEntry(_Table):
+    """Sensors: a grid in front of a surface, points, or points of a file."""
+
+    name: Annotated[str, Field(min_length=1)] | None = None
+    kind: Literal["plane", "cylindrical"] = "plane"
+    surface: Annotated[str, Field(min_length=1)] | None = None
+    height: float = 0.0
+    spacing: Positive | None = None
+    margin: NotNegative = 0.0
+    direction: Direction | None = None
+    points: Annotated[list[Point], Field(min_length=1)] | None = None
+    normals: list[Direction] | None = None
+    file: Annotated[str, Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _of_one_kind(self) -> "SensorsEntry":
+        ways = {
+            "surface": ("height", "spacing", "margin", "direction"),
+            "points": ("normals", "direction"),
+            "file": (),
+        }
+        given = [way for way in ways if getattr(self, way) is not None]
+        if len(given) != 1:
+            raise ValueError(f"give one of {', '.join(ways)}" + (f", not {' and '.join(given)}" if given else ""))
+        idle = {key for keys in ways.values() for key in keys} - set(ways[given[0]])
+        if found := sorted(key for key in idle if getattr(self, key) not in (None, 0.0)):
+            raise ValueError(f"{' and '.join(found)} do not go with {given[0]}")
+        if self.normals is not None and (self.direction is not None or len(self.normals) != len(self.points or ())):
+            raise ValueError(f"normals has {len(self.normals)} entries; give one for each of the points, or direction for all")
+        return self
+
+
 OF_TYPES = ("power", "intensity", "beam", "field")  # keys that a file leaves no room for
 OF_FILES = ("rotate", "along", "soft", "lamp_set")  # keys that only a file has use for
 
@@ -153,15 +192,17 @@ class SceneFile(_Table):
     surface: list[Surface] = []
     camera: list[View] = []
     luminaire: list[LuminaireEntry] = []
+    sensors: list[SensorsEntry] = []
 
 
-TABLES = {"surface": Surface, "camera": View, "geometry": Geometry, "luminaire": LuminaireEntry}
+TABLES = {"surface": Surface, "camera": View, "geometry": Geometry, "luminaire": LuminaireEntry, "sensors": SensorsEntry}
 
 ARRAYS = {
     "geometry": 'write a list of files, such as geometry = ["room.obj"], or [[geometry]] with two brackets for each',
     "surface": "write [[surface]] with two brackets, one for each entry",
     "camera": "write [[camera]] with two brackets, one for each entry",
     "luminaire": "write [[luminaire]] with two brackets, one for each entry",
+    "sensors": "write [[sensors]] with two brackets, one for each entry",
 }  # what to write where something else than a list is given
 
 
@@ -195,7 +236,7 @@ def _sentence(fault, values: dict) -> str:
     if fault["type"] == "list_type" and str(path[-1]) in ARRAYS:
         return f"{where}: {ARRAYS[str(path[-1])]} (it is {_kind(fault['input'])})"
     if fault["type"] in ("dict_type", "model_type"):
-        key = "file" if path[0] in ("geometry", "luminaire") else "name"
+        key = {"geometry": "file", "luminaire": "file", "sensors": "surface"}.get(str(path[0]), "name")
         return f'{where}: write a table, such as {{ {key} = "..." }} (it is {fault["input"]!r})'
     text = fault["msg"].removeprefix("Value error, ").removesuffix(" or instance of Geometry")
     return f"{where}: {text}" + (f" (it is {fault['input']!r})" if not isinstance(fault["input"], dict) else "")

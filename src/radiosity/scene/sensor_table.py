@@ -6,14 +6,15 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import SceneError, shown
-from ..scene.habits import warn
+from .habits import warn
 
 POINT, NORMAL = ("x", "y", "z"), ("nx", "ny", "nz")
 COLUMNS = (*POINT, *NORMAL, "name")
+UP = (0.0, 0.0, 1.0)
 
 
-def read(path, name: str | None = None) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    """Return the sets of sensors of a table, see `Sensors.from_csv`: name, points and normals, (n, 3) each."""
+def read(path, name: str | None = None, normal=UP) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Return the sets of sensors of a table, see `sensors.model.Sensors.from_csv`: name, points and normals, (n, 3) each."""
     path = Path(path)
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -48,7 +49,7 @@ def read(path, name: str | None = None) -> list[tuple[str, np.ndarray, np.ndarra
             raise SceneError(f"{path}, line {number}: has {len(cells)} values, and the head has {len(head)}")
         row = dict(zip(head, cells, strict=True))
         points.append([_number(row, key, path, number) for key in POINT])
-        normals.append([_number(row, key, path, number) for key in NORMAL] if has_normals else [0.0, 0.0, 1.0])
+        normals.append([_number(row, key, path, number) for key in NORMAL] if has_normals else list(normal))
         names.append(row.get("name") or name or path.stem)
     if not points:
         raise SceneError(f"{path}: has a head and no sensors")

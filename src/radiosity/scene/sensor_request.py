@@ -1,0 +1,38 @@
+"""Sensors that a scene's file asks for; light does not depend on them."""
+
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class SensorRequest:
+    """One set of sensors: a grid in front of a surface, or points.
+
+    Attributes:
+        name: of the set.
+        kind: "plane" or "cylindrical".
+        surface: name or pattern of the grid's surface; None where there are points.
+        height, spacing, margin: of a grid, m; spacing None: by EN 12464-1.
+        direction: in which the sensors of a grid look, or their axis; None: along the surface's normal.
+        points, normals: m, and the direction of each, one to one; empty for a grid.
+    """
+
+    name: str
+    kind: str = "plane"
+    surface: str | None = None
+    height: float = 0.0
+    spacing: float | None = None
+    margin: float = 0.0
+    direction: tuple[float, float, float] | None = None
+    points: tuple[tuple[float, float, float], ...] = ()
+    normals: tuple[tuple[float, float, float], ...] = ()
+
+    def facts(self) -> dict:
+        """Return the request as text of files can hold it."""
+        return asdict(self)
+
+    @staticmethod
+    def of(facts: dict) -> "SensorRequest":
+        """Make the request that `facts` gave."""
+        lists = {key: tuple(tuple(row) for row in facts[key]) for key in ("points", "normals")}
+        direction = None if facts["direction"] is None else tuple(facts["direction"])
+        return SensorRequest(**facts | lists | {"direction": direction})
