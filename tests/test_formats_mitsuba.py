@@ -132,12 +132,12 @@ def test_names_are_ids_files_or_types_and_unique(load, tmp_path):
     assert scene.names == ("floor", "chair", "chair 2", "rectangle", "rectangle 2", "lid")
 
 
-def test_emitters_without_a_surface_are_left_out_with_one_warning(load):
-    others = '<emitter type="constant"/><emitter type="point"/>'
-    with pytest.warns(rd.RadiosityWarning, match="left out: 'constant emitter', 'point emitter'") as caught:
+def test_emitters_that_are_not_read_are_left_out_with_one_warning(load):
+    others = '<emitter type="sunsky"/><emitter type="projector"/>'
+    with pytest.warns(rd.RadiosityWarning, match="left out: 'sunsky emitter', 'projector emitter'") as caught:
         load(QUAD.format(WHITE) + others)
     assert len(caught) == 1
-    with pytest.raises(rd.SceneError, match="'constant emitter'"):
+    with pytest.raises(rd.SceneError, match="'sunsky emitter'"):
         load(QUAD.format(WHITE) + others, strict=True)
 
 

@@ -1,4 +1,4 @@
-"""Read Mitsuba 3 XML scenes: shapes, BSDFs by their diffuse albedo, area emitters and perspective cameras, in metres.
+"""Read Mitsuba 3 XML scenes: shapes, BSDFs by their diffuse albedo, emitters and perspective cameras, in metres.
 
 A one-sided BSDF absorbs on the back, ``twosided`` radiates on either side, and an area emitter emits from the front only: without
 a BSDF it is black, and with a ``null`` one lines pass through it. A partial ``mask`` is taken as opaque. A
@@ -12,6 +12,7 @@ import numpy as np
 
 from ....errors import SceneError, shown
 from ...assemble import assemble, warn
+from ...lights.add import with_lights
 from ...model import Scene
 from ...parts import Part, ReadOptions
 from ..names import repeated
@@ -19,6 +20,7 @@ from ..textures import warn_of_means, with_means
 from .bsdf import of_shape
 from .camera import read_camera
 from .color import Colors
+from .emitters import Emitters
 from .image import find_file
 from .mesh import read_mesh
 from .node import Node
@@ -45,10 +47,13 @@ def read(path: Path, options: ReadOptions) -> Scene:
     for shape in root.of("Shape"):
         if shape.plugin != "shapegroup":  # it is seen through its instances
             reader.add(shape, np.eye(4), "")
+    emitters = Emitters(reader.colors, str(path))
     for emitter in root.of("Emitter"):
-        reader.left_out[f"{emitter.plugin} emitter"] = None
+        if not emitters.add(emitter):
+            reader.left_out[f"{emitter.plugin} emitter"] = None
     cameras = tuple(camera for sensor in root.of("Sensor") if (camera := read_camera(sensor)))
-    return assemble(reader.finished(options), str(path), options, cameras=cameras)
+    scene = assemble(reader.finished(options), str(path), options, cameras=cameras)
+    return with_lights(scene, emitters.finished(scene.n_bands))
 
 
 class Reader:
@@ -56,12 +61,13 @@ class Reader:
 
     Attributes:
         left_out: what does not take part, by name.
+        colors: reads colours and images.
     """
 
     def __init__(self, path: Path, folders: list[Path], options: ReadOptions):
         self.left_out: dict[str, None] = {}
         self._path, self._folders, self._options = path, folders, options
-        self._colors = Colors(folders, options)
+        self.colors = Colors(folders, options)
         self._parts: list[Part] = []
         self._names: dict[str, int] = {}
         self._geometries: dict[int, Geometry] = {}
@@ -94,7 +100,7 @@ class Reader:
         area = [emitter for emitter in node.of("Emitter") if emitter.plugin == "area"]
         if len(area) > 1:
             raise SceneError(f"{node.place}: '{label}' has {len(area)} area emitters; Mitsuba takes one: leave out the others")
-        sides = of_shape(node, bool(area), self._colors)
+        sides = of_shape(node, bool(area), self.colors)
         if node.plugin in OTHERS or (sides.opacity == 0 and not area):
             self.left_out[f"{label} ({node.plugin if node.plugin in OTHERS else 'null'})"] = None
             return
@@ -103,7 +109,7 @@ class Reader:
         self.left_out |= {f"{emitter.plugin} emitter": None for emitter in node.of("Emitter") if emitter not in area}
         if area and is_equal_energy(area[0]):
             self._equal_energy.append(len(self._parts))
-        part, averaged = make_part(self._unique(label), geometry, sides, area[0] if area else None, self._colors)
+        part, averaged = make_part(self._unique(label), geometry, sides, area[0] if area else None, self.colors)
         self._parts.append(part)
         self._given += [label] if given else []
         if 0 < sides.opacity < 1:
@@ -123,7 +129,7 @@ class Reader:
         if text and options.strict:
             raise SceneError(f"{self._path}: cannot be used as it is{text}; remove that, or read the file without strict")
         if text:
-            warn(f"{self._path}: only diffuse surfaces and area emitters take part{text}")
+            warn(f"{self._path}: only diffuse surfaces and emitters that are read take part{text}")
         if several := repeated(self._given):
             warn(f"{self._path}: shapes of the same name get numbers ('name 2', ...) in the order of the file: {shown(several)}")
         if self._masked:

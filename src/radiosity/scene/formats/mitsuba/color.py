@@ -80,7 +80,7 @@ class Colors:
             raise SceneError(f"{node.place}: 'to_uv' of this '{node.plugin}' is {to_uv!r}; expected a transformation")
         to_uv = to_uv[np.ix_((0, 1, 3), (0, 1, 3))]
         if node.plugin == "bitmap":
-            return Image(self._bitmap(node), to_uv, _sampler(node))
+            return Image(self.bitmap(node), to_uv, _sampler(node))
         if node.plugin == "checkerboard":
             return Image(self._checkerboard(node), to_uv, Sampler(filter="nearest"))
         if node.plugin == "mesh_attribute":
@@ -97,10 +97,15 @@ class Colors:
             return collapse(_srgb(*_samples(node), emission, node.place))
         raise SceneError(f"{node.place}: a '{node.plugin}' as a colour is not read; give an rgb, a spectrum or a bitmap")
 
-    def _bitmap(self, node: Node) -> np.ndarray:
+    def bitmap(self, node: Node) -> np.ndarray:
+        """The image of a plugin that names a file, (height, width, 1 or 3) float32, linear; it is read once.
+
+        Raises:
+            SceneError: there is none, or it cannot be decoded.
+        """
         name = node.values.get("filename")
         if not isinstance(name, str):
-            raise SceneError(f"{node.place}: a bitmap without a filename")
+            raise SceneError(f"{node.place}: this '{node.plugin}' has no filename")
         file = find_file(self._folders, name, node, self._options)
         raw = bool(node.values.get("raw", False))
         if (file, raw) not in self._images:
