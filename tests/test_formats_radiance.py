@@ -307,3 +307,12 @@ def test_faults_are_left_out_with_their_line(told, load, line, message):
 def test_text_that_is_no_scene_is_an_error(load, text, message):
     with pytest.raises(rd.SceneError, match=message):
         load(GREY + text)
+
+
+def test_a_toml_takes_a_radiance_scene_with_its_lights(load, tmp_path):
+    load(GREY + TILE.format("grey", "a") + "void light l 0 0 3 1e6 1e6 1e6\nl source sun 0 0 4 0 0 1 .5\n")
+    (tmp_path / "x.toml").write_text('geometry = "scene.rad"\nunit = "cm"\n[[surface]]\nname = "*/grey"\nreflectance = 0.3\n')
+    scene = rd.load_scene(tmp_path / "x.toml")
+    assert scene.area == pytest.approx([2e-4])
+    assert scene.reflectance == pytest.approx(0.3)
+    assert scene.lights.suns[0].irradiance == pytest.approx(np.pi * np.sin(np.radians(0.25)) ** 2 * 1e6)

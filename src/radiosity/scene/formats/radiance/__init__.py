@@ -12,11 +12,11 @@ import numpy as np
 
 from ....errors import SceneError
 from ...assemble import assemble
+from ...lights.add import with_lights
 from ...model import Scene
 from ...parts import Material, Part, ReadOptions
 from ..encoding import read_text
 from ..faces import cut, warn_of_crossing
-from ..lit import with_distant_lights
 from ..mgf.faults import Faults
 from . import told
 from .materials import KINDS, Finisher
@@ -43,7 +43,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
     parts = reader.parts()
     reader.faults.warn()
     reader.told.warn(str(path), options.strict)
-    return with_distant_lights(assemble(parts, str(path), options), reader.sources.lights())
+    return with_lights(assemble(parts, str(path), options), reader.sources.lights())
 
 
 class Reader:

@@ -66,6 +66,8 @@ class Sources:
         if patterns and shape is None:
             return telling.add(told.SKIES, f"{source.name} ({patterns[0].kind} {patterns[0].name})")
         radiance = np.array(material.numbers[:3])
+        if not (np.isfinite(radiance).all() and (radiance >= 0).all()):
+            raise ValueError(f"its radiance is {radiance.tolist()}; it must be finite and not negative")
         radiance = radiance[:1] if np.ptp(radiance) == 0 else radiance
         if abs(angle - 360) < NEAR or abs(angle - 180) < NEAR:
             half = Half(source.name, None if angle > 270 else towards, radiance, shape)
