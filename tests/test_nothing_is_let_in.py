@@ -144,11 +144,13 @@ def test_no_line_of_an_mgf_file_runs_a_command(tmp_path, line):
     assert not canary.exists()
 
 
-def test_radiance_scenes_reach_no_program(tmp_path):
-    (tmp_path / "s.rad").write_text(f"!touch {tmp_path / 'canary'}\n")
-    with pytest.raises(rd.SceneError, match="not read"):
+@pytest.mark.parametrize("line", ["!touch {canary}", "  ! touch {canary}", "void plastic a 0 0 0\n!touch {canary}"])
+def test_no_line_of_a_radiance_scene_runs_a_command(tmp_path, line):
+    canary = tmp_path / "canary"
+    (tmp_path / "s.rad").write_text(line.format(canary=canary) + "\n")
+    with pytest.raises(rd.SceneError, match=r"s\.rad:[12]: .*would run a command"):
         rd.load_scene(tmp_path / "s.rad")
-    assert not (tmp_path / "canary").exists()
+    assert not canary.exists()
 
 
 LAUGHS = "".join(f'<!ENTITY l{i} "{f"&l{i - 1};" * 10}">' for i in range(1, 12))

@@ -40,30 +40,36 @@ def irradiance(patches: rd.Patches, paths: int, batches: int = SEEDS, seed: int 
     points = np.concatenate([on_patches(patches, paths, generator) + lift for _ in range(batches)])
     normals = np.broadcast_to(np.tile(patches.normal[:, None], (batches, 1, 1)), points.shape)
     rays = np.concatenate([points, normals], axis=2).reshape(-1, 6)
-    found = _traced(text(patches.scene), rays).reshape(batches, len(patches), paths, 3).mean(axis=2, dtype=float)
+    found = traced(text(patches.scene), rays).reshape(batches, len(patches), paths, 3).mean(axis=2, dtype=float)
     return found[:, :, : patches.scene.n_bands]
 
 
-def _traced(scene: str, rays: np.ndarray) -> np.ndarray:
-    """(m, 3) irradiance of rays (m, 6), point and direction."""
+def program(name: str, *arguments: str, given: bytes = b"") -> bytes:
+    """The output of one of Radiance's programs.
+
+    Raises:
+        ModuleNotFoundError: pyradiance is not installed.
+        RuntimeError: the program fails.
+    """
     spec = find_spec("pyradiance")
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError("No module named 'pyradiance'", name="pyradiance")
     home = Path(spec.origin).parent
     environment = {**os.environ, "RAYPATH": str(home / "lib")}
+    command = [str(home / "bin" / name), *arguments]
+    done = subprocess.run(command, input=given, capture_output=True, env=environment, timeout=SECONDS, check=False)
+    if done.returncode:
+        raise RuntimeError(f"{name} failed: {done.stderr.decode(errors='replace')[:300]}")
+    return done.stdout
 
-    def run(program: str, *arguments: str, given: bytes = b"") -> bytes:
-        command = [str(home / "bin" / program), *arguments]
-        done = subprocess.run(command, input=given, capture_output=True, env=environment, timeout=SECONDS, check=False)
-        if done.returncode:
-            raise RuntimeError(f"{program} failed: {done.stderr.decode(errors='replace')[:300]}")
-        return done.stdout
 
+def traced(scene: str, rays: np.ndarray) -> np.ndarray:
+    """(m, 3) irradiance of rays (m, 6), point and direction, in a scene, the text of a .rad file."""
     with tempfile.TemporaryDirectory() as folder:
         (rad, octree) = (Path(folder) / name for name in ("scene.rad", "scene.oct"))
         rad.write_text(scene)
-        octree.write_bytes(run("oconv", str(rad)))
-        output = run("rtrace", *OPTIONS.split(), str(octree), given=np.ascontiguousarray(rays, float).tobytes())
+        octree.write_bytes(program("oconv", str(rad)))
+        output = program("rtrace", *OPTIONS.split(), str(octree), given=np.ascontiguousarray(rays, float).tobytes())
     return np.frombuffer(output, np.float32).reshape(-1, 3)
 
 

@@ -18,6 +18,7 @@ FORMATS = {
     ".ply": "mesh",
     ".stl": "mesh",
     ".mgf": "mgf",
+    ".rad": "radiance",
     ".vs3": "vs3",
     ".toml": "toml",
 }
@@ -35,10 +36,6 @@ def read(path: Path, options: ReadOptions) -> Scene:
             raise SceneError(f"{path}: no such file; built-in scenes are {_builtin_names()}")
         if path.is_dir():
             raise SceneError(f"{path}: is a folder; name a file")
-        if suffix == ".rad":
-            raise SceneError(
-                f"{path}: Radiance scenes are not read yet (they come with daylight); convert it to MGF with rad2mgf"
-            )
         if suffix not in FORMATS:
             raise SceneError(f"{path}: unknown format '{suffix}'; known are {', '.join(FORMATS)}")
         if path.stat().st_size == 0:

@@ -54,6 +54,13 @@ def warn_of_crossing(source, crossed: dict[str, list[int]]) -> None:
         warn(f"{source}: {text}: {shown(found)}")
 
 
+def turned(faces: np.ndarray) -> np.ndarray:
+    """Faces, (m, 3 or 4), with their corners in the opposite order: their fronts look to where their backs did."""
+    if faces.shape[1] == 3:
+        return faces[:, ::-1]
+    return np.where(faces[:, [3]] < 0, faces[:, [2, 1, 0, 3]], faces[:, ::-1])
+
+
 def _spread(ring: np.ndarray) -> float:
     """Area of the triangles about a polygon's first corner, whichever way they turn, over the square of its size."""
     spokes = ring[1:] - ring[0]

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ....errors import SceneError
+from ..faces import turned as turned_round
 from .node import Node
 from .shapes import Geometry, cylinder_axes
 
@@ -55,12 +56,5 @@ def placed(geometry: Geometry, inner: np.ndarray, outer: np.ndarray, *, flip: bo
     vertices = geometry.vertices @ matrix[:3, :3].T + matrix[:3, 3]
     turned = geometry.own_normals and np.linalg.det(inner[:3, :3]) < 0
     turned ^= bool(np.linalg.det(outer[:3, :3]) < 0)
-    faces = geometry.faces if turned == flip else _turned(geometry.faces)
+    faces = geometry.faces if turned == flip else turned_round(geometry.faces)
     return replace(geometry, vertices=vertices, faces=faces)
-
-
-def _turned(faces: np.ndarray) -> np.ndarray:
-    """Faces with their corners in the opposite order."""
-    if faces.shape[1] == 3:
-        return faces[:, ::-1]
-    return np.where(faces[:, [3]] < 0, faces[:, [2, 1, 0, 3]], faces[:, ::-1])

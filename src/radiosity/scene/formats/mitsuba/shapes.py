@@ -8,10 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..curved import AROUND
+from ..curved import sphere as unit_sphere
 from .node import Node
-
-AROUND = 32  # faces around a disk, a cylinder or a sphere's equator
-ROWS = 16  # of a sphere
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,22 +83,8 @@ def cylinder(node: Node) -> Geometry:
 
 
 def sphere(node: Node) -> Geometry:
-    u, v = np.meshgrid(np.linspace(0, 1, AROUND + 1), np.linspace(0, 1, ROWS + 1))
-    uv = np.column_stack([u.ravel(), v.ravel()])
-    phi, theta = 2 * np.pi * uv[:, 0], np.pi * uv[:, 1]
-    unit = np.column_stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
-    row, i = (index.ravel() for index in np.meshgrid(np.arange(ROWS), np.arange(AROUND), indexing="ij"))
-    above, below = row * (AROUND + 1) + i, (row + 1) * (AROUND + 1) + i
-    faces = np.column_stack([above, below, below + 1, above + 1])
-    top, bottom = row == 0, row == ROWS - 1
-    faces[top] = np.column_stack([above, below, below + 1, np.full(len(row), -1)])[top]
-    faces[bottom] = np.column_stack([above, below, above + 1, np.full(len(row), -1)])[bottom]
-    p = unit[np.where(faces >= 0, faces, faces[:, [0]])]
-    halves = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), np.cross(p[:, 2] - p[:, 0], p[:, 3] - p[:, 0])
-    area = sum(np.linalg.norm(half, axis=1).sum() / 2 for half in halves)
-    radius = node.number("radius", 1.0) * np.sqrt(4 * np.pi / area)
-    centre = node.vector("center", (0, 0, 0))
-    return Geometry(centre + radius * unit, faces, uv, own_normals=False)
+    unit, faces, uv = unit_sphere()
+    return Geometry(node.vector("center", (0, 0, 0)) + node.number("radius", 1.0) * unit, faces, uv, own_normals=False)
 
 
 ANALYTIC = {"rectangle": rectangle, "cube": cube, "disk": disk, "cylinder": cylinder, "sphere": sphere}
