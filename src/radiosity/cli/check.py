@@ -62,6 +62,8 @@ def _print(report) -> None:
 
 
 def _facts(report):
+    from ..scene.lights.told import daylight
+
     scene = report.scene
     low, high = scene.bounds
     size = " x ".join(f"{d:.4g}" for d in high - low)
@@ -83,6 +85,7 @@ def _facts(report):
         totals = [f"{sum(one.power[b] for one in luminaires):.4g}" for b in range(scene.n_bands)]
         sent = totals[0] if len(set(totals)) == 1 else " / ".join(totals)
         yield f"luminaires  {len(luminaires)}, {sent} {scene.power_unit} in all"
+    yield from (printable(line) for line in daylight(scene))
 
 
 def _point(values) -> str:

@@ -47,24 +47,25 @@ class Problem:
         rows, n = self.rows, self.rows.n_patches
         emission, reflectance = (x.max(axis=1, keepdims=True) for x in (rows.emission, rows.reflectance))
         groups = BandGroups(np.zeros(1, np.int64), np.ones(1), emission[:n], reflectance[:n], np.zeros(1, np.int64))
-        return replace(self, groups=groups, rows=SourceRows(n, emission, reflectance, rows.area))
+        return replace(self, groups=groups, rows=SourceRows(n, emission, reflectance, rows.area, rows.lines))
 
     @staticmethod
-    def of(patches: Patches, lights: AbstractLights | None = None) -> "Problem":
+    def of(patches: Patches, lights: AbstractLights | None = None, through: bool = False) -> "Problem":
         """Make the problem of patches: compare their bands and sum the emission.
 
         Args:
             lights: lights without area; by default those of the scene.
+            through: lines of the sky and of suns through the scene's openings are rows of their own, which fire more lines.
 
         Raises:
             SceneError: nothing emits.
         """
         if lights is None:
-            lights = lights_of(patches.scene, patches.emission.shape[1])
+            lights = lights_of(patches.scene, patches.emission.shape[1], through)
         elif not isinstance(lights, AllLights):
             lights = AllLights((lights,))
         patches = patches.solid
         power = np.zeros((0, patches.emission.shape[1])) if lights is None else lights.power
         groups = BandGroups.of(patches, power)
-        rows = SourceRows.of(patches, groups, power[:, groups.leaders])
+        rows = SourceRows.of(patches, groups, power[:, groups.leaders], None if lights is None else lights.is_through)
         return Problem(patches, groups, rows.scalar(patches), rows, lights)

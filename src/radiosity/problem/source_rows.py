@@ -8,6 +8,8 @@ from ..patches.model import Patches
 from .bands import BandGroups
 from .quanta import Source
 
+THROUGH = 0.5  # of all first lines go through openings, where there are any
+
 
 @dataclass(frozen=True, eq=False)
 class SourceRows:
@@ -18,24 +20,33 @@ class SourceRows:
         emission: (n_rows, n_groups) float64, W/m² or lm/m² of each group of bands.
         reflectance: (n_rows, n_groups) float64; lights have 0.
         area: (n_rows,) float64, m². A light without area counts as one of 1 m², which emits its power.
+        lines: (n_rows,) float64, 1 or more: how many times as many lines a row fires as its power asks for, each of which carries
+            less; None: 1 for all.
     """
 
     n_patches: int
     emission: np.ndarray
     reflectance: np.ndarray
     area: np.ndarray
+    lines: np.ndarray | None = None
 
     @staticmethod
-    def of(patches: Patches, groups: BandGroups, light_power: np.ndarray) -> "SourceRows":
-        """Make the rows of patches, and of lights from their power, (n_lights, n_groups)."""
+    def of(patches: Patches, groups: BandGroups, light_power: np.ndarray, through: np.ndarray | None = None) -> "SourceRows":
+        """Make the rows of patches, and of lights from their power, (n_lights, n_groups).
+
+        Args:
+            through: (n_lights,) bool, lines through openings. They are at least `THROUGH` of all first lines.
+        """
         if not len(light_power):  # the patches' own arrays, which need no copy
             return SourceRows(len(patches), groups.emission, groups.reflectance, patches.area)
-        return SourceRows(
-            len(patches),
-            np.concatenate([groups.emission, light_power]),
-            np.concatenate([groups.reflectance, np.zeros_like(light_power)]),
-            np.append(patches.area, np.ones(len(light_power))),
-        )
+        emission, area = np.concatenate([groups.emission, light_power]), np.append(patches.area, np.ones(len(light_power)))
+        lines = None
+        if through is not None and through.any():
+            power, more = emission.max(axis=1) * area, np.append(np.zeros(len(patches), bool), through)
+            of_others, own = power[~more].sum(), power[more].sum()
+            if 0 < own < THROUGH * (own + of_others):
+                lines = np.where(more, THROUGH / (1 - THROUGH) * of_others / own, 1.0)
+        return SourceRows(len(patches), emission, np.concatenate([groups.reflectance, np.zeros_like(light_power)]), area, lines)
 
     @property
     def n_lights(self) -> int:
@@ -47,4 +58,10 @@ class SourceRows:
         Raises:
             SceneError: nothing emits.
         """
-        return Source.of(patches, self.emission.max(axis=1), self.reflectance.max(axis=1), self.area)
+        emission = self.emission.max(axis=1) * (1.0 if self.lines is None else self.lines)
+        return Source.of(patches, emission, self.reflectance.max(axis=1), self.area)
+
+    @property
+    def weighed(self) -> bool:
+        """True where lines carry power of their own, and do not count as whole energy packets."""
+        return self.lines is not None or self.emission.shape[1] > 1

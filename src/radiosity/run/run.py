@@ -69,8 +69,13 @@ class Run(Generic[R]):
         self.snapshot: Snapshot | None = None  # of the last complete stage
         self.also: Callable[[Snapshot], Any] | None = None  # what else is read of a stage
         self.seconds_before = 0.0 if resume is None else resume.seconds
-        self.problem = Problem.of(patches) if problem is None else problem
+        self.problem = Problem.of(patches, through=method.machine == "firing") if problem is None else problem
         bands = self.problem.groups.n_groups
+        if self.problem.rows.lines is not None and method.order == "depth-first":
+            raise MethodError(
+                "order 'depth-first' cannot send more lines through openings, each with less power: take breadth-first, or leave "
+                "out the openings"
+            )
         if bands > 1 and method.machine == "firing" and method.order == "depth-first":
             raise MethodError(
                 f"order '{method.order}' cannot carry {bands} different bands: "
@@ -114,8 +119,11 @@ class Run(Generic[R]):
             target = algorithm.quanta
             last = not algorithm.stage_independent and not resumed.unfinished and not on_ladder(target, self.rung)
             if last and (self.budget.seconds is not None or self.record.budget != self.resume.provenance.get("budget")):
+                kind = f"in {self.problem.groups.n_groups} groups of bands"
+                if self.problem.rows.lines is not None:
+                    kind += ", with lines through openings,"
                 raise MethodError(
-                    f"a run by {self.method} in {self.problem.groups.n_groups} groups of bands cannot go on from {target} quanta "
+                    f"a run by {self.method} {kind} cannot go on from {target} quanta "
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )

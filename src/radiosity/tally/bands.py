@@ -31,6 +31,7 @@ class BandTally:
         self.n = rows.emission.shape[1]
         types = tracer.types
         self.shares = [upload(types.Float64, rows.emission[:, g] * rows.area / source.power) for g in range(self.n)]
+        self.lines = None if rows.lines is None else upload(types.Float64, source.share)
         self.rhos = [upload(types.UInt32, Source.fixed(rows.reflectance[:, g])) for g in range(self.n)]
         self.received = dr.opaque(types.UInt64, 0, tracer.slots * self.n)
         self.sent = dr.opaque(types.UInt64, 0, tracer.total * self.n)
@@ -69,9 +70,8 @@ class BandTally:
         patch = numbers - counters.tracer.replicate(numbers) * counters.tracer.n_opaque
         quanta, fired = dr.opaque(wide, float(counters.quanta)), dr.gather(types.UInt32, counters.fired, numbers)
         emitted = [dr.gather(wide, share, patch) for share in self.shares]
-        target_counts = dr.fma(functools.reduce(dr.maximum, emitted), quanta, fraction(counters.rho) * wide(arrivals)) - wide(
-            fired
-        )
+        first = functools.reduce(dr.maximum, emitted) if self.lines is None else dr.gather(wide, self.lines, patch)
+        target_counts = dr.fma(first, quanta, fraction(counters.rho) * wide(arrivals)) - wide(fired)
         for g, (share, rho) in enumerate(zip(emitted, self.rhos, strict=True)):
             received, sent = (dr.gather(types.UInt64, column, numbers * self.n + g) for column in (self.received, self.sent))
             power = dr.fma(share, quanta * QUANTUM, fraction(rho) * wide(received)) - wide(sent)

@@ -46,7 +46,7 @@ class Firing(AbstractAlgorithm[FiringState]):
         return firing_state.capture(self.counters)
 
     def read(self, arrays: Arrays, sizes: Sizes) -> FiringState:
-        return firing_state.read(arrays, sizes)
+        return firing_state.read(arrays, sizes, self.problem.rows.weighed)
 
     def restore(self, state: FiringState) -> None:
         firing_state.restore(self.counters, state)

@@ -51,7 +51,7 @@ class FiringCounters:
         self.phase = upload(u32, phases(seed, replicates, self.tracer.n))
         self.fired = dr.opaque(u32, 0, self.total)
         rows = problem.rows
-        self.bands = BandTally(self.tracer, rows, self.source) if rows.emission.shape[1] > 1 else None
+        self.bands = BandTally(self.tracer, rows, self.source) if rows.weighed else None
         self.hits = HitCounts(self.tracer, self.bands)
         self.hits.forget_touched()
         self.landed = None

@@ -125,7 +125,8 @@ def _reflected(counters: FiringCounters, powers: list, patch, here, left, after)
 
 
 def _numbers(types, words, line, turn, replicate):
-    """Return four numbers of the ``turn``-th line of a walk, and a word that decides whether it goes on; in a kernel."""
+    """Return five numbers of the ``turn``-th line of a walk, and a word that decides whether it goes on; in a kernel."""
     first, second = (list(dr.gather(types.Array4u, words, replicate * 2 + half)) for half in (0, 1))
-    points = [types.Float(word >> 8) * 2.0**-24 for word in philox([line, turn, *first[2:]], first[:2])]
-    return points, philox([line, turn, *second[2:]], second[:2])[0]
+    drawn = philox([line, turn, *first[2:]], first[:2])
+    choice, fifth, *_ = philox([line, turn, *second[2:]], second[:2])
+    return [types.Float(word >> 8) * 2.0**-24 for word in (*drawn, fifth)], choice

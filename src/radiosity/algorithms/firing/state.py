@@ -68,9 +68,9 @@ def capture(counters: FiringCounters) -> FiringState:
     return FiringState(sizes=sizes, quanta=counters.quanta, arrivals=arrivals, fired=fired, missed=missed, bands=powers)
 
 
-def read(arrays: Arrays, sizes: Sizes) -> FiringState:
-    """Return the state from arrays; see `AbstractAlgorithm.read`."""
-    wanted = ("bands",) if sizes.groups > 1 else ()
+def read(arrays: Arrays, sizes: Sizes, weighed: bool) -> FiringState:
+    """Return the state from arrays; see `AbstractAlgorithm.read`. ``weighed`` as of `SourceRows`."""
+    wanted = ("bands",) if weighed else ()
     lacking = FiringState.lacking(arrays, sizes, wanted)
     if lacking:
         raise MethodError(f"the solution to go on from lacks the integers of its run ({lacking}); start anew")

@@ -26,11 +26,12 @@ class Ball:
     radius: float
 
     @staticmethod
-    def about(scene: Scene) -> "Ball":
-        """Make the ball that holds all faces of a scene."""
-        middle = scene.bounds.mean(axis=0)
+    def about(scene: Scene, also: np.ndarray | None = None) -> "Ball":
+        """Make the ball that holds all faces of a scene, and other points, (n, 3) m."""
         used = scene.vertices[np.unique(scene.faces[scene.faces >= 0])]
-        radius = float(np.linalg.norm(used - middle, axis=1).max())
+        middle = scene.bounds.mean(axis=0)
+        points = used if also is None else np.concatenate([used, also])
+        radius = float(np.linalg.norm(points - middle, axis=1).max())
         return Ball(middle, radius + MARGIN * (radius + float(np.linalg.norm(middle - scene.centre))))
 
     @property
@@ -38,16 +39,39 @@ class Ball:
         """The area of the disc across a direction through which all lines go that can meet the scene, m²."""
         return np.pi * self.radius**2
 
-    def enter(self, geometry: Any, direction: Any, first: Any, second: Any) -> Any:
-        """Return where lines of a direction begin, in the BVH's coordinates; called in a kernel.
+    def placed(self, geometry: Any) -> "PlacedBall":
+        """Return it in the BVH's coordinates, on the device."""
+        Float = geometry.device.types.Float
+        centre = [dr.opaque(Float, float(value)) for value in geometry.bvh.place(self.centre)]
+        return PlacedBall(geometry.device.types.Array3f(*centre), dr.opaque(Float, float(self.radius * geometry.bvh.scale)))
+
+
+@dataclass(frozen=True)
+class PlacedBall:
+    """A ball on the device; its numbers are arrays, so that other scenes need no other kernels."""
+
+    centre: Any
+    radius: Any
+
+    def enter(self, direction: Any, first: Any, second: Any) -> Any:
+        """Return where lines of a direction begin; called in a kernel.
 
         That is a uniform point of the disc across the direction that touches the ball, before anything of the scene.
 
         Args:
             first, second: two numbers in [0, 1).
         """
-        x, y, z = (float(value) for value in geometry.bvh.place(self.centre))
-        radius = float(self.radius * geometry.bvh.scale)
         cosine, sine = turn(first)
-        away = dr.sqrt(second) * radius
-        return across(direction, cosine * away, sine * away) - direction * radius + type(direction)(x, y, z)
+        away = dr.sqrt(second) * self.radius
+        return across(direction, cosine * away, sine * away) - direction * self.radius + self.centre
+
+    def back(self, point: Any, direction: Any) -> Any:
+        """Return where lines of a direction through points enter the ball; called in a kernel."""
+        way = point - self.centre
+        along = dr.dot(way, direction)
+        rest = along * along - dr.squared_norm(way) + self.radius * self.radius
+        return point - direction * (along + dr.sqrt(dr.maximum(rest, 0)))
+
+    def away(self, direction: Any) -> tuple[Any, Any]:
+        """Return lines that leave the scene at once; called in a kernel."""
+        return self.centre - direction * self.radius, -direction

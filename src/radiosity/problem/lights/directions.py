@@ -5,6 +5,7 @@ So the marginal density of z is linear within a row of cells, and that of azimut
 proportion to a table come from two numbers by two searches and the roots of two quadratic equations: exactly.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -38,6 +39,22 @@ class Directions:
         """The integral of each table over all directions, (n_tables,)."""
         row = self.values.mean(axis=2)
         return np.pi * (np.diff(row_sines(self.values.shape[1])) * (row[:, 1:] + row[:, :-1])).sum(axis=1)
+
+    def refined(self, rows: int, columns: int) -> np.ndarray:
+        """Return the tables at entries between: so many cells in place of one along elevation, and along azimuth."""
+        share = np.arange(columns) / columns
+        right = np.roll(self.values, -1, axis=2)
+        wide = (self.values[..., None] * (1 - share) + right[..., None] * share).reshape(*self.values.shape[:2], -1)
+        half, sines = self.values.shape[1] // 2, row_sines(self.values.shape[1])
+        finer = row_sines(2 * (rows * (half - 1) + 1))
+        upper = finer[len(finer) // 2 :]
+        low = np.minimum(np.arange(len(upper)) // rows, half - 2)
+        parts = []
+        for begin, z in ((0, -upper[::-1]), (half, upper)):
+            at = begin + low
+            t = ((z - sines[at]) / (sines[at + 1] - sines[at]))[:, None]
+            parts.append(wide[:, at] * (1 - t) + wide[:, at + 1] * t)
+        return np.concatenate(parts, axis=1)
 
     def prepare(self, types: Any) -> None:
         """Put the tables on a device."""
@@ -88,7 +105,7 @@ class Directions:
         def marginal(name: str, row: Any) -> Any:
             return self._read(name, start + row, active)
 
-        row = self._last(rows - 1, lambda row: marginal("begin", row), first)
+        row = last_at_most(self._types, rows - 1, lambda row: marginal("begin", row), first)
         begin, end = marginal("begin", row), marginal("begin", row + 1)
         low, high = marginal("row", row), marginal("row", row + 1)
         t = _linear((first - begin) / dr.maximum(end - begin, TINY), low, high)
@@ -99,7 +116,7 @@ class Directions:
             return dr.lerp(self._read(name, here + column, active), self._read(name, here + columns + column, active), t)
 
         wanted = second * dr.lerp(low, high, t) * columns
-        column = self._last(columns, lambda column: between("along", column), wanted)
+        column = last_at_most(self._types, columns, lambda column: between("along", column), wanted)
         p, q = between("value", column), between("value", self._next(column))
         s = _linear((wanted - between("along", column)) / dr.maximum((p + q) / 2, TINY), p, q)
         cosine, sine = turn((s + Float(column)) * (1 / columns))  # of the azimuth less pi
@@ -114,11 +131,11 @@ class Directions:
         columns = self.values.shape[2]
         return dr.select(column + 1 < columns, column + 1, 0)
 
-    def _last(self, count: int, read: Any, limit: Any) -> Any:
-        """Return the last of ``count`` places whose value is at most a limit; values ascend, and the first is 0."""
-        UInt32 = self._types.UInt32
-        after = dr.binary_search(0, count, lambda place: read(dr.minimum(UInt32(place), count - 1)) <= limit)
-        return dr.minimum(dr.maximum(UInt32(after), 1), count) - 1
+
+def last_at_most(types: Any, count: int, read: Callable[[Any], Any], limit: Any) -> Any:
+    """Return the last of ``count`` places whose value is at most a limit, a UInt32; values ascend, and the first is 0."""
+    after = dr.binary_search(0, count, lambda place: read(dr.minimum(types.UInt32(place), count - 1)) <= limit)
+    return dr.minimum(dr.maximum(types.UInt32(after), 1), count) - 1
 
 
 def _linear(number: Any, low: Any, high: Any) -> Any:

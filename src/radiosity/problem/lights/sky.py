@@ -32,7 +32,7 @@ class SkyRows(AbstractSky):
     sky: Sky
     n_bands: int
     ball: Ball
-    _geometry: Any = field(default=None, init=False)
+    _ball: Any = field(default=None, init=False)
 
     @cached_property
     def seen(self) -> Directions:
@@ -79,7 +79,7 @@ class SkyRows(AbstractSky):
         return self.of_bands(self.sky.flux[self.leaders] * self.ball.disc)
 
     def prepare(self, geometry: Any) -> None:
-        self._geometry = geometry
+        self._ball = self.ball.placed(geometry)
         self.seen.prepare(geometry.device.types)
         self.fired.prepare(geometry.device.types)
 
@@ -93,4 +93,4 @@ class SkyRows(AbstractSky):
 
     def leave_where(self, light: Any, numbers: Any, active: Any) -> tuple[Any, Any]:
         towards, _ = self.fired.draw(light, numbers[0], numbers[1], active)
-        return self.ball.enter(self._geometry, -towards, numbers[2], numbers[3]), -towards
+        return self._ball.enter(-towards, numbers[2], numbers[3]), -towards

@@ -34,7 +34,8 @@ class Suns(AbstractPointLights):
     cap: np.ndarray
     power: np.ndarray
     ball: Ball
-    _geometry: Any = field(default=None, init=False)
+    _types: Any = field(default=None, init=False)
+    _ball: Any = field(default=None, init=False)
     _records: Any = field(default=None, init=False)
 
     @staticmethod
@@ -46,21 +47,20 @@ class Suns(AbstractPointLights):
         return Suns(towards, cap, irradiance * (ball.disc * 2 / (2 - cap))[:, None], ball)
 
     def prepare(self, geometry: Any) -> None:
-        self._geometry = geometry
-        self._records = small(geometry.device.types.Float, np.column_stack([self.towards, self.cap]))
+        self._types, self._ball = geometry.device.types, self.ball.placed(geometry)
+        self._records = small(self._types.Float, np.column_stack([self.towards, self.cap]))
 
     def leave(self, light: Any, numbers: Any) -> tuple[Any, Any]:
-        direction = -self._towards(light, numbers[2], numbers[3])
-        return self.ball.enter(self._geometry, direction, numbers[0], numbers[1]), direction
+        direction = -self.towards_of(light, numbers[2], numbers[3])
+        return self._ball.enter(direction, numbers[0], numbers[1]), direction
 
     def arrive(self, light: Any, point: Any, numbers: Any) -> tuple[Any, Any, Any]:
-        Float = self._geometry.device.types.Float
-        area = np.pi * (self.ball.radius * self._geometry.bvh.scale) ** 2
-        return self._towards(light, numbers[0], numbers[1]), Float(dr.inf), Float(1 / area)
+        area = np.pi * self._ball.radius * self._ball.radius
+        return self.towards_of(light, numbers[0], numbers[1]), self._types.Float(dr.inf), 1 / area
 
-    def _towards(self, light: Any, first: Any, second: Any) -> Any:
+    def towards_of(self, light: Any, first: Any, second: Any) -> Any:
         """Return a direction to each sun, uniform in the solid angle of its disc."""
-        types = self._geometry.device.types
+        types = self._types
         x, y, z, cap = (dr.gather(types.Float, self._records, light * 4 + i) for i in range(4))
         middle, less = types.Array3f(x, y, z), second * cap  # less = 1 - cos of the angle to the middle
         sine = dr.sqrt(less * (2 - less))

@@ -11,8 +11,10 @@ from ...scene.model import Scene
 from .ball import Ball
 from .base import AbstractLights, AbstractPointLights, AbstractSky
 from .luminaires import Luminaires
+from .opening_lines import OpeningLines
 from .sky import SkyRows
 from .suns import Suns
+from .through import Beside, SkyThrough, SunsThrough
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +35,11 @@ class AllLights(AbstractLights):
     def starts(self) -> np.ndarray:
         """The first row of each kind, and the number of rows, (n_kinds + 1,) int64."""
         return np.cumsum([0, *(len(kind.power) for kind in self.kinds)])
+
+    @property
+    def is_through(self) -> np.ndarray:
+        """True for rows of lines through openings, (n_lights,) bool."""
+        return np.repeat([isinstance(kind, (SunsThrough, SkyThrough)) for kind in self.kinds], np.diff(self.starts))
 
     @cached_property
     def points(self) -> "AllLights | None":
@@ -72,17 +79,25 @@ class AllLights(AbstractLights):
         return found
 
 
-def lights_of(scene: Scene, n_bands: int) -> AllLights | None:
+def lights_of(scene: Scene, n_bands: int, through: bool = False) -> AllLights | None:
     """Return the lights of a scene as rows; None where it has none.
 
     Args:
         n_bands: of what is solved for.
+        through: lines of the sky and of suns through the scene's openings are rows of their own, the last ones.
     """
-    lights, kinds = scene.lights, []
-    if lights.luminaires:
-        kinds.append(Luminaires(lights.luminaires, n_bands))
-    if lights.suns:
-        kinds.append(Suns.of(lights.suns, n_bands, Ball.about(scene)))
-    if lights.sky is not None and lights.sky.flux.any():
-        kinds.append(SkyRows(lights.sky, n_bands, Ball.about(scene)))
-    return AllLights(tuple(kinds)) if kinds else None
+    lights, sky = scene.lights, scene.lights.sky
+    kinds: list[AbstractLights] = [Luminaires(lights.luminaires, n_bands)] if lights.luminaires else []
+    if sky is not None and not sky.flux.any():
+        sky = None
+    if sky is None and not lights.suns:
+        return AllLights(tuple(kinds)) if kinds else None
+    corners = lights.openings if through and lights.openings is not None and len(lights.openings) else None
+    ball = Ball.about(scene, None if corners is None else corners.reshape(-1, 3))
+    suns = [Suns.of(lights.suns, n_bands, ball)] if lights.suns else []
+    skies = [] if sky is None else [SkyRows(sky, n_bands, ball)]
+    if corners is None:
+        return AllLights((*kinds, *suns, *skies))
+    openings = OpeningLines(corners, ball)
+    beside = [Beside(kind, openings) for kind in (*suns, *skies)]
+    return AllLights((*kinds, *beside, *(SunsThrough(s, openings) for s in suns), *(SkyThrough(s, openings) for s in skies)))

@@ -17,6 +17,7 @@ from ...lights.model import Lights
 from ...model import Back, Camera, Scene
 from ..beside import named_file
 from ..units import UNITS
+from .daylight import daylight_of
 from .heat import check_bands, heat_of, reflecting
 from .luminaires import luminaires_of, warn_of_y_up
 from .panes import check_pane
@@ -77,7 +78,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
     scene = replace(scene, sensors=sensors_of(asked.sensors, UNITS[asked.unit] * asked.scale, scene, options, path))
     luminaires = luminaires_of(asked.luminaire, UNITS[asked.unit] * asked.scale, options, path)
     warn_of_y_up(asked.luminaire, scene, path)
-    return _lit(scene, Lights(tuple(luminaires)), asked.photometric, path)
+    lights = daylight_of(asked, scene, UNITS[asked.unit] * asked.scale, options, path)
+    return _lit(scene, replace(lights, luminaires=tuple(luminaires)), asked.photometric, path)
 
 
 def _lit(scene: Scene, lights: Lights, photometric: bool | None, path: Path) -> Scene:
@@ -86,7 +88,7 @@ def _lit(scene: Scene, lights: Lights, photometric: bool | None, path: Path) -> 
     Raises:
         SceneError: some light of the scene is in W and other light in lm, or not in the unit that the file says.
     """
-    if not lights and not scene.lights:
+    if not lights and not scene.lights:  # openings alone light nothing
         return scene
     lit = with_lights(scene, lights)
     if photometric is not None and lit.photometric != photometric:

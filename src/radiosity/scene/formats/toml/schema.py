@@ -178,6 +178,98 @@ OF_TYPES = ("power", "intensity", "beam", "field")  # keys that a file leaves no
 OF_FILES = ("rotate", "along", "soft", "lamp_set")  # keys that only a file has use for
 
 
+Up = Literal["y", "z"] | Point
+PLACE = ("altitude", "azimuth", "latitude", "longitude", "timezone", "year")
+DATE = ("month", "day", "hour")
+OF_SKIES = {  # the keys that a sky of each type needs, and those that it may have
+    "uniform": (("horizontal",), ()),
+    "cie-overcast": (("horizontal",), ()),
+    "cie-clear": (("horizontal",), (*PLACE, *DATE)),
+    "cie-intermediate": (("horizontal",), (*PLACE, *DATE)),
+    "cie-general": (("horizontal", "cie_type"), (*PLACE, *DATE)),
+    "perez": (("direct", "diffuse"), ("dew_point", "diameter", *PLACE, *DATE)),
+    "epw": (("file", *DATE), ("diameter",)),
+}
+
+
+class _Far(_Table):
+    """Keys that the sky and the sun share."""
+
+    altitude: Annotated[float, Field(ge=-90, le=90)] | None = None
+    azimuth: Annotated[float, Field(ge=-360, le=360)] | None = None
+    latitude: Annotated[float, Field(ge=-90, le=90)] | None = None
+    longitude: Annotated[float, Field(ge=-180, le=180)] | None = None
+    timezone: Annotated[float, Field(ge=-14, le=14)] | None = None
+    month: Annotated[int, Field(ge=1, le=12)] | None = None
+    day: Annotated[int, Field(ge=1, le=31)] | None = None
+    hour: Annotated[float, Field(ge=0, le=24)] | None = None
+    year: int | None = None
+    diameter: Annotated[float, Field(ge=0, lt=180)] | None = None
+    up: Up | None = None
+    north: Point | None = None
+
+    @model_validator(mode="after")
+    def _placed_once(self) -> "_Far":
+        angles, whole = ("altitude", "azimuth"), ("latitude", "longitude", "timezone", *DATE)
+        given = [key for key in (*angles, *whole) if getattr(self, key) is not None]
+        weather = getattr(self, "type", None) == "epw"  # which has the place in its file
+        if not weather and given and set(given) not in (set(angles), set(whole)):
+            raise ValueError(f"to place the sun give {' and '.join(angles)}, or {', '.join(whole)} (given: {', '.join(given)})")
+        return self
+
+
+class SkyEntry(_Far):
+    """The sky."""
+
+    type: Literal["uniform", "cie-overcast", "cie-clear", "cie-intermediate", "cie-general", "perez", "epw"]
+    horizontal: NotNegative | None = None
+    cie_type: Annotated[int, Field(ge=1, le=15)] | None = None
+    direct: NotNegative | None = None
+    diffuse: NotNegative | None = None
+    dew_point: float | None = None
+    file: Annotated[str, Field(min_length=1)] | None = None
+    ground: Annotated[float, Field(ge=0, le=1)] = 0.0
+    openings: Annotated[list[str], BeforeValidator(_listed)] = []
+    name: str = "sky"
+
+    @model_validator(mode="after")
+    def _of_its_type(self) -> "SkyEntry":
+        needed, more = OF_SKIES[self.type]
+        lacking = [key for key in needed if getattr(self, key) is None]
+        if lacking:
+            raise ValueError(f"a sky of type {self.type} needs {', '.join(lacking)}")
+        every = {key for pair in OF_SKIES.values() for keys in pair for key in keys}
+        idle = [key for key in sorted(every - {*needed, *more}) if getattr(self, key) is not None]
+        if idle:
+            raise ValueError(f"a sky of type {self.type} has no use for {', '.join(idle)}; leave them out")
+        if self.type == "epw" and (self.hour is None or self.hour not in range(1, 25)):
+            raise ValueError("hour is the number of an hour of the file, 1 to 24, which ends at that number")
+        return self
+
+
+class SunEntry(_Far):
+    """The sun."""
+
+    irradiance: Bands | None = None
+    illuminance: Bands | None = None
+    direction: Point | None = None
+    name: str = "sun"
+
+    @model_validator(mode="after")
+    def _one_light(self) -> "SunEntry":
+        if (self.irradiance is None) == (self.illuminance is None):
+            raise ValueError("give irradiance (W/m²) or illuminance (lm/m²), across the light")
+        if self.direction is not None and any(getattr(self, key) is not None for key in (*PLACE, *DATE)):
+            raise ValueError("direction and the sun's place exclude each other; give one")
+        return self
+
+
+class OpeningEntry(_Table):
+    """An opening, such as a window without a pane."""
+
+    corners: Annotated[list[Point], Field(min_length=3, max_length=4)]
+
+
 class SceneFile(_Table):
     """The whole file."""
 
@@ -193,9 +285,21 @@ class SceneFile(_Table):
     camera: list[View] = []
     luminaire: list[LuminaireEntry] = []
     sensors: list[SensorsEntry] = []
+    sky: SkyEntry | None = None
+    sun: SunEntry | None = None
+    opening: list[OpeningEntry] = []
 
 
-TABLES = {"surface": Surface, "camera": View, "geometry": Geometry, "luminaire": LuminaireEntry, "sensors": SensorsEntry}
+TABLES = {
+    "surface": Surface,
+    "camera": View,
+    "geometry": Geometry,
+    "luminaire": LuminaireEntry,
+    "sensors": SensorsEntry,
+    "sky": SkyEntry,
+    "sun": SunEntry,
+    "opening": OpeningEntry,
+}
 
 ARRAYS = {
     "geometry": 'write a list of files, such as geometry = ["room.obj"], or [[geometry]] with two brackets for each',
@@ -203,6 +307,7 @@ ARRAYS = {
     "camera": "write [[camera]] with two brackets, one for each entry",
     "luminaire": "write [[luminaire]] with two brackets, one for each entry",
     "sensors": "write [[sensors]] with two brackets, one for each entry",
+    "opening": "write [[opening]] with two brackets, one for each entry",
 }  # what to write where something else than a list is given
 
 
@@ -230,12 +335,14 @@ def _sentence(fault, values: dict) -> str:
         where = where.replace(",", f" ('{values['surface'][path[1]].get('name', '')}'),", 1)
     if fault["type"] == "extra_forbidden":
         table = TABLES.get(str(path[0]), SceneFile) if len(path) > 1 else SceneFile
-        return f"{where}: unknown key; known are {shown(table.model_fields, 20)}"
+        return f"{where}: unknown key; known are {shown(table.model_fields, 30)}"
     if fault["type"] == "missing":
         return f"{where} is missing"
     if fault["type"] == "list_type" and str(path[-1]) in ARRAYS:
         return f"{where}: {ARRAYS[str(path[-1])]} (it is {_kind(fault['input'])})"
     if fault["type"] in ("dict_type", "model_type"):
+        if path[0] in ("sky", "sun") and len(path) == 1:
+            return f"{where}: write [{where}] with one bracket, once (it is {fault['input']!r})"
         key = {"geometry": "file", "luminaire": "file", "sensors": "surface"}.get(str(path[0]), "name")
         return f'{where}: write a table, such as {{ {key} = "..." }} (it is {fault["input"]!r})'
     text = fault["msg"].removeprefix("Value error, ").removesuffix(" or instance of Geometry")
