@@ -7,12 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from ..problem.model import Problem
+from ..scene.photopic import PHOTOPIC, RGB
 from ..solution.model import Solution
 from .model import Sensors
 from .target import half_width
-
-PHOTOPIC = np.array([0.2126, 0.7152, 0.0722])  # of linear red, green and blue (ITU-R BT.709)
-RGB = ("red", "green", "blue")
 
 
 @dataclass(frozen=True, eq=False)
