@@ -28,6 +28,14 @@ class Measurement:
         seconds: wall time, that of a solution made for it included.
         status: "complete", "interrupted" or "not reached".
         source: of the scene.
+
+    Example:
+        >>> patches = rd.subdivide(rd.load_scene("room"), cells=4)
+        >>> desk = rd.Sensors.of([[1, 1, 0.8], [5, 1, 0.8]], name="desk")
+        >>> found = rd.measure(patches, desk, rays=500_000)
+        >>> low, high = found.interval()
+        >>> bool((low < found.illuminance).all()), found.unit
+        (True, 'W/m²')
     """
 
     sensors: Sensors
