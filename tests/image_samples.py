@@ -27,6 +27,7 @@ def solution(patches, radiosity=None, *, unit="W/m²"):
         arrivals=np.arange(n),
         bands=bands,
         unit=unit,
+        irradiance_unit=unit,
         surface_table=lambda: table,
         quanta=1,
         few=np.arange(n) < 30,

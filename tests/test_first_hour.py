@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -253,11 +254,11 @@ def test_bounds_that_are_left_out_say_so(room):
         rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 1.0, 1.0)
 
 
-LEGENDS = {"irradiance": "[lux]", "radiosity": "[lm/m² (lux)]", "relative_error": "[%]"}
+LEGENDS = {"irradiance": "[lx]", "radiosity": "[lm/m²]", "luminance": "[cd/m²]", "relative_error": "[%]"}
 
 
 @pytest.mark.parametrize(("quantity", "unit"), LEGENDS.items())
-def test_legends_of_light_are_in_lux(photometric, monkeypatch, quantity, unit):
+def test_legends_of_light_have_its_units(photometric, monkeypatch, quantity, unit):
     labels = []
     legend = false_color._legend
     monkeypatch.setattr(false_color, "_legend", lambda *given: labels.append(given[2]) or legend(*given))
@@ -265,10 +266,54 @@ def test_legends_of_light_are_in_lux(photometric, monkeypatch, quantity, unit):
     assert labels[0].replace("\n", " ").endswith(unit)
 
 
+def test_luminance_is_of_light(room):
+    with pytest.raises(rd.OutputError, match="take radiance"):
+        rd.image.render(room, false_color=True, quantity="luminance", width=30)
+
+
+def test_photometric_results_are_in_lx_and_lm(photometric, tmp_path):
+    """Irradiance in lx, radiosity and emission in lm/m², power in lm: in reports, tables and frames."""
+    photometric.export(tmp_path / "a.csv")
+    patches, surfaces = ((tmp_path / name).read_text("utf-8").splitlines()[0] for name in ("a.csv", "a.surfaces.csv"))
+    for head in (patches, surfaces):
+        assert "irradiance [lx]" in head
+        assert "radiosity [lm/m²]" in head
+        assert "W" not in head
+    assert "irradiance, 95 % from [lx]" in patches
+    assert "received [lm]" in surfaces
+    assert "radiosity B in lm/m² and irradiance H in lx" in photometric.report()
+    assert " lx" in repr(photometric)
+    assert (photometric.unit, photometric.irradiance_unit, photometric.patches.scene.radiance_unit) == ("lm/m²", "lx", "cd/m²")
+
+
+def test_red_green_and_blue_of_light_are_one_column_of_lux(photometric, tmp_path):
+    """By the photopic weights; scenes in W, and other bands, have no such column."""
+    grey = photometric.patches.scene
+    options = {"photometric": True, "surface": grey.surface, "names": list(grey.names)}
+    three = rd.Scene.from_arrays(
+        grey.vertices, grey.faces, np.array([[0.6, 0.5, 0.1], [0, 0, 0]]), np.array([[0, 0, 0], [100, 50, 20]]), **options
+    )
+    solution = rd.solve(rd.subdivide(three, cells=1), rays=20_000)
+    wanted = solution.irradiance @ [0.2126, 0.7152, 0.0722]
+    solution.export(tmp_path / "a.csv")
+    frame = solution.to_dataframe()
+    np.testing.assert_allclose(frame["illuminance [lx]"], wanted, rtol=1e-12)
+    np.testing.assert_allclose(
+        frame["standard error of illuminance [lx]"], solution.irradiance_standard_error @ [0.2126, 0.7152, 0.0722], rtol=1e-12
+    )
+    assert "illuminance [lx]" in (tmp_path / "a.surfaces.csv").read_text("utf-8")
+    floor = next(row for row in solution.surface_table() if row["surface"] == "floor")
+    assert floor["illuminance"] == pytest.approx(wanted[0])
+    assert "illuminance" not in photometric.surface_table()[0]
+    in_watts = rd.solve(rd.subdivide(replace(three, photometric=False), cells=1), rays=20_000)
+    assert "illuminance" not in in_watts.surface_table()[0]
+
+
 # ---- warnings after a run ------------------------------------------------------------------------------------------------
 
 LAST = """
 import warnings
+from dataclasses import replace
 import radiosity as rd
 scene = rd.load_scene("room")
 runs = {"full-matrix": {"factors": "hemicube", "resolution": 8}, "random-walk": {"error": 1e-4, "rays": 20_000}}

@@ -2094,4 +2094,32 @@ MISTAKES = (
         ("test_factor_target.py",),
         "a run of view factors that ends above its target is called complete",
     ),
+    Mistake(
+        "sensors/receivers.py",
+        "least = clearance(self.geometry.faces, points, normals)[:, None]",
+        "least = np.zeros((len(normals), 1))",
+        ("test_sensors.py",),
+        "sensors on a large tilted floor are below it",
+    ),
+    Mistake(
+        "sensors/tracing.py",
+        "self._planes(met) / (cosine * self.lines.unit)",
+        "self._planes(met) / (rays * self.lines.unit)",
+        ("test_sensors.py",),
+        "cosine lines are divided by the number of shadow rays",
+    ),
+    Mistake(
+        "sensors/grid.py",
+        "key=lambda plane: (plane[1] @ up, plane[2] @ up)",
+        "key=lambda plane: plane[0]",
+        ("test_sensor_grids.py",),
+        "the work plane of a slab lies below it",
+    ),
+    Mistake(
+        "sensors/target.py",
+        "return float((width[bright] / mean[bright]).max()) if bright.any() else 0.0",
+        "return float((width[bright] / mean[bright]).mean()) if bright.any() else 0.0",
+        ("test_sensors.py",),
+        "the error of the worst sensor is the mean of all",
+    ),
 )

@@ -41,7 +41,8 @@ class Picture:
         height: Of the picture, in pixels.
         exposure: Stops brighter than the automatic scale; +1 is twice.
         smooth: Interpolate within surfaces, or show each patch as it is.
-        quantity: radiosity, irradiance, standard_error, irradiance_standard_error or relative_error.
+        quantity: radiosity, irradiance, standard_error, irradiance_standard_error, relative_error, radiance, or
+            luminance in cd/m².
         band: One band, by name or number. Default: all.
         false_color: Colours for values, with a legend in physical units.
         limits: Of false colours: lowest and highest value of the legend, such as 0,500.

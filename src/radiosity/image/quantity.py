@@ -13,7 +13,11 @@ NAMES = {
     "standard_error": "standard error of the radiosity",
     "irradiance_standard_error": "standard error of the irradiance",
     "relative_error": "relative standard error of the radiosity",
+    "luminance": "luminance",
+    "radiance": "radiance",
 }
+
+OF_DIRECTIONS = ("luminance", "radiance")  # radiosity over pi: what a diffuse surface sends to every direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +27,7 @@ class Quantity:
     Attributes:
         values: (n_patches, n) float64 in ``unit``; NaN where unknown.
         title: what they are, in words.
-        unit: W/m², lm/m² or %.
+        unit: W/m², lm/m², lx, W/(m² sr), cd/m² or %.
         bands: names of the columns.
         own_light: (n_patches,) bool, patches that emit; they are left out where scales are found.
         adds: values of a pane and of what is behind it add up.
@@ -57,7 +61,9 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         rows = slice(_index(band, names), _index(band, names) + 1)
     names, several = names[rows], len(names) > 1
     own = (solution.patches.emission[:, rows] > 0).any(axis=1)
-    values = np.asarray(getattr(solution, "standard_error" if name == "relative_error" else name), np.float64)[:, rows]
+    if name == "luminance" and not solution.patches.scene.photometric:
+        raise OutputError("luminance is of scenes in lm and lx; this one is in W: take radiance")
+    values = _values(solution, name)[:, rows]
     base = np.asarray(solution.radiosity, np.float64)[:, rows]
     if several and band is not None:
         title += f", {names[0]}"
@@ -66,16 +72,22 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         # errors of the bands come from the same lines, so they are added as if fully correlated: never too small
         values, base, names = tone.luminance(values)[:, None], tone.luminance(base)[:, None], ["all"]
     if name != "relative_error":
-        return Quantity(values, title, solution.unit, tuple(names), own, name == "radiosity")
+        return Quantity(values, title, _unit(solution, name), tuple(names), own, name in ("radiosity", *OF_DIRECTIONS))
     ratio = np.divide(values, base, out=np.full(values.shape, np.nan), where=base > 0)
     return Quantity(100 * ratio, title, "%", tuple(names), own)
 
 
-def legend_unit(name: str, unit: str) -> str:
-    """Return the unit as people who measure light read it: lux for irradiance in lm/m²."""
-    if unit != "lm/m²":
-        return unit
-    return "lux" if name.startswith("irradiance") else "lm/m² (lux)"
+def _values(solution, name: str) -> np.ndarray:
+    """Return a quantity of all bands, (n_patches, n_bands) float64."""
+    if name in OF_DIRECTIONS:
+        return np.asarray(solution.radiosity, np.float64) / np.pi
+    return np.asarray(getattr(solution, "standard_error" if name == "relative_error" else name), np.float64)
+
+
+def _unit(solution, name: str) -> str:
+    if name.startswith("irradiance"):
+        return solution.irradiance_unit
+    return solution.patches.scene.radiance_unit if name in OF_DIRECTIONS else solution.unit
 
 
 def _index(band: str | int, names: list[str]) -> int:

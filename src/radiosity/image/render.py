@@ -12,7 +12,7 @@ from . import false_color as maps
 from .look import Look
 from .output import check_writable, require, require_results
 from .picture import choose_camera, first_hits, take
-from .quantity import choose, legend_unit
+from .quantity import choose
 
 SUFFIXES = (".png", ".exr")
 
@@ -74,8 +74,7 @@ def render(
     picture = take(solution, shown, view, smooth=smooth, samples=samples, hits=hits)
     facts = {"quantity": shown.title, "unit": shown.unit, "bands": ", ".join(shown.bands), "camera": repr(view)}
     if false_color:
-        unit = legend_unit(quantity, shown.unit)
-        pixels = maps.colour(picture, title=shown.title, unit=unit, limits=range, log=log, color_map=color_map)
+        pixels = maps.colour(picture, title=shown.title, unit=shown.unit, limits=range, log=log, color_map=color_map)
     else:
         values = _known(picture.values) * picture.cover[..., None]
         if linear:

@@ -45,7 +45,8 @@ def _patches(solution, path: Path) -> None:
 
 def _surfaces(solution, path: Path) -> None:
     rows, scene = solution.surface_table(), solution.patches.scene
-    units = {"area": "m²", "dark": "m²", "radiosity": solution.unit, "irradiance": solution.unit}
+    units = {"area": "m²", "dark": "m²", "radiosity": solution.unit, "irradiance": solution.irradiance_unit}
+    units["illuminance"] = "lx"
     units |= dict.fromkeys(POWERS, scene.power_unit)
     write_rows(rows, path, [_titled(key, units) for key in rows[0]])
 

@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 
 from ..errors import OutputError
+from ..scene.photopic import PHOTOPIC
 from .look import Look
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear sRGB, ITU-R BT.709
 PERCENTILE, LEVEL = 97.0, 0.85  # the automatic scale takes this percentile of the strongest channel to this linear value
 
 
@@ -31,7 +31,7 @@ def colours(values: np.ndarray) -> np.ndarray:
 
 def luminance(values: np.ndarray) -> np.ndarray:
     """Return the luminance, (...), of (..., n_bands): three bands weighted as linear sRGB, otherwise the mean of the bands."""
-    return values @ LUMINANCE if values.shape[-1] == 3 else values.mean(axis=-1)
+    return values @ PHOTOPIC if values.shape[-1] == 3 else values.mean(axis=-1)
 
 
 def automatic_scale(values: np.ndarray, weight: np.ndarray | None = None) -> float:

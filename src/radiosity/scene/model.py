@@ -160,8 +160,18 @@ class Scene:
 
     @property
     def unit(self) -> str:
-        """Unit of radiosity, irradiance and exitance."""
+        """Unit of radiosity and exitance, W/m² or lm/m²."""
         return "lm/m²" if self.photometric else "W/m²"
+
+    @property
+    def irradiance_unit(self) -> str:
+        """Unit of irradiance: W/m², or lx where it is illuminance."""
+        return "lx" if self.photometric else "W/m²"
+
+    @property
+    def radiance_unit(self) -> str:
+        """Unit of radiance: W/(m² sr), or cd/m² where it is luminance."""
+        return "cd/m²" if self.photometric else "W/(m² sr)"
 
     @property
     def power_unit(self) -> str:

@@ -1,6 +1,7 @@
 """Sensors that a scene's file asks for; light does not depend on them."""
 
 from dataclasses import asdict, dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,6 @@ class SensorRequest:
     @staticmethod
     def of(facts: dict) -> "SensorRequest":
         """Make the request that `facts` gave."""
-        lists = {key: tuple(tuple(row) for row in facts[key]) for key in ("points", "normals")}
-        direction = None if facts["direction"] is None else tuple(facts["direction"])
-        return SensorRequest(**facts | lists | {"direction": direction})
+        known: dict[str, Any] = {key: tuple(tuple(row) for row in facts[key]) for key in ("points", "normals")}
+        known["direction"] = None if facts["direction"] is None else tuple(facts["direction"])
+        return SensorRequest(**facts | known)

@@ -70,8 +70,8 @@ def measure(
 
     Example:
         >>> room = rd.load_scene("room")
-        >>> plane = rd.Sensors.grid(room, "floor", height=0.8, spacing=1.0)
-        >>> found = rd.measure(room, plane, rays=200_000)
+        >>> plane = rd.Sensors.grid(room, "floor", height=2.0, spacing=1.0)
+        >>> found = rd.measure(rd.subdivide(room, cells=4), plane, rays=500_000)
         >>> found.illuminance.shape == (len(plane), 1), bool(found.table()[0]["U0"] <= 1)
         (True, True)
     """

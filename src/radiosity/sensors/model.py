@@ -26,6 +26,13 @@ class Sensors:
         cells: (n, 2) int64, row and column of sensors of grids; -1 for others.
         cylindrical: (n,) bool: the mean over all planes that contain the axis is measured.
         spacings: for each set, how far apart its points are along columns and rows, m; NaN where it is no grid.
+
+    Example:
+        >>> room = rd.load_scene("room")
+        >>> plane = rd.Sensors.grid(room, "floor", height=0.8, spacing=1.0, margin=0.5)
+        >>> eyes = rd.Sensors.of([[3, 2, 1.2], [1, 1, 1.2]], kind="cylindrical", name="eyes")
+        >>> len(plane + eyes), (plane + eyes).names
+        (17, ('floor', 'eyes'))
     """
 
     points: np.ndarray

@@ -54,12 +54,12 @@ def _table(found, path: Path) -> None:
         columns[f"half_width_95{band}_{unit}"] = half_width(found.values[..., number])
     sensors, text = found.sensors, io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(["set", "x_m", "y_m", "z_m", "nx", "ny", "nz", "kind", *columns])
+    rows.writerow(["set", "x_m", "y_m", "z_m", "nx", "ny", "nz", "kind", "inside", *columns])
     kinds = np.where(sensors.cylindrical, "cylindrical", "plane")
     for i in range(len(sensors)):
         place = [f"{value:.{DIGITS}g}" for value in (*sensors.points[i], *sensors.normals[i])]
         values = [f"{column[i]:.{DIGITS}g}" for column in columns.values()]
-        rows.writerow([sensors.names[sensors.set[i]], *place, kinds[i], *values])
+        rows.writerow([sensors.names[sensors.set[i]], *place, kinds[i], int(found.inside[i]), *values])
     with whole_file(path) as file:
         file.write(text.getvalue().encode())
 

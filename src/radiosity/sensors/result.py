@@ -7,12 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from ..problem.model import Problem
+from ..scene.photopic import PHOTOPIC, RGB
 from ..solution.model import Solution
 from .model import Sensors
 from .target import half_width
-
-PHOTOPIC = np.array([0.2126, 0.7152, 0.0722])  # of linear red, green and blue (ITU-R BT.709)
-RGB = ("red", "green", "blue")
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +28,14 @@ class Measurement:
         seconds: wall time, that of a solution made for it included.
         status: "complete", "interrupted" or "not reached".
         source: of the scene.
+
+    Example:
+        >>> patches = rd.subdivide(rd.load_scene("room"), cells=4)
+        >>> desk = rd.Sensors.of([[1, 1, 0.8], [5, 1, 0.8]], name="desk")
+        >>> found = rd.measure(patches, desk, rays=500_000)
+        >>> low, high = found.interval()
+        >>> bool((low < found.illuminance).all()), found.unit
+        (True, 'W/m²')
     """
 
     sensors: Sensors

@@ -3,12 +3,13 @@
 import math
 
 from ..errors import printable
+from ..scene.photopic import photopic
 from .percent import number, percent
 
 
 def brief(solution) -> str:
     """Five lines: what was solved, how, and the results."""
-    scene, unit = solution.patches.scene, solution.unit
+    scene, unit = solution.patches.scene, solution.irradiance_unit
     solved = solution.quanta > 0
     mean = "unknown (no stage is complete yet)"
     if solved:
@@ -17,6 +18,8 @@ def brief(solution) -> str:
             f"{name}{number(value)} {unit}{_within(value, a, b)}"
             for name, value, a, b in zip(_named(scene.bands), middle, low, high, strict=True)
         )
+        one = photopic(scene, middle)
+        mean += "" if one is None else f"; {number(float(one))} lx by photopic weights"
     return "\n".join(
         [
             f"Solution of {printable(scene.source)}: {len(solution.patches):,} patches of {len(scene.names)} surfaces, "

@@ -2,13 +2,14 @@
 
 import numpy as np
 
+from ..scene.photopic import photopic
 from .sides import sides_of
 
 
 def patch_columns(solution) -> dict[str, np.ndarray]:
     """Return the columns by title, with the unit in brackets; each is (n_patches,)."""
     patches = solution.patches
-    bands, unit = [str(band) for band in solution.bands], solution.unit
+    bands, unit, received = [str(band) for band in solution.bands], solution.unit, solution.irradiance_unit
     names = np.array(patches.scene.names, object)
     sides = np.array(["front", "back"], object)
     columns = {"patch": np.arange(len(patches)), "surface": names[patches.surface], "side": sides[patches.is_back.astype(int)]}
@@ -20,8 +21,8 @@ def patch_columns(solution) -> dict[str, np.ndarray]:
         ("emission", patches.emission, unit),
         ("radiosity", solution.radiosity, unit),
         ("standard error of radiosity", solution.standard_error, unit),
-        ("irradiance", solution.irradiance, unit),
-        ("standard error of irradiance", solution.irradiance_standard_error, unit),
+        ("irradiance", solution.irradiance, received),
+        ("standard error of irradiance", solution.irradiance_standard_error, received),
     ):
         for i, band in enumerate(bands):
             label = f"{title} {band}" if len(bands) > 1 else title
@@ -31,5 +32,9 @@ def patch_columns(solution) -> dict[str, np.ndarray]:
     low, high = solution.interval(0.95, "irradiance")
     for title, values in (("irradiance, 95 % from", low), ("irradiance, 95 % to", high)):
         for i, band in enumerate(bands):
-            columns[f"{title}{f' {band}' if len(bands) > 1 else ''} [{unit}]"] = values[:, i]
+            columns[f"{title}{f' {band}' if len(bands) > 1 else ''} [{received}]"] = values[:, i]
+    for title, values in (("", solution.irradiance), ("standard error of ", solution.irradiance_standard_error)):
+        one = photopic(patches.scene, np.asarray(values))
+        if one is not None:  # errors of bands are of the same lines: their sum is never too small
+            columns[f"{title}illuminance [lx]"] = one
     return columns

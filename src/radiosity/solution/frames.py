@@ -20,9 +20,9 @@ def html(solution) -> str:
         return head
     tails = [f" [{band}]" for band in solution.bands] if len(solution.bands) > 1 else [""]
     rows = sorted(solution.surface_table(), key=lambda row: -sum(row[f"left{tail}"] for tail in tails))
-    unit = solution.unit
+    units = {"radiosity": solution.unit, "irradiance": solution.irradiance_unit}
     shown = [(what, tail) for what in ("radiosity", "irradiance") for tail in tails]
-    heads = ["surface", "side", "area m²", *(f"{what}{tail} {unit}" for what, tail in shown), "±"]
+    heads = ["surface", "side", "area m²", *(f"{what}{tail} {units[what]}" for what, tail in shown), "±"]
     lines = ["".join(f"<th>{markup.escape(head)}</th>" for head in heads)]
     for row in rows[:MOST_ROWS]:
         values = [number(row[f"{what}{tail}"]) for what, tail in shown]
@@ -47,7 +47,7 @@ def to_xarray(solution):
     _require("xarray")
     import xarray
 
-    patches, unit, both = solution.patches, solution.unit, ("patch", "band")
+    patches, both = solution.patches, ("patch", "band")
     low, high = solution.interval(0.95, "irradiance")
     low_radiosity, high_radiosity = solution.interval(0.95, "radiosity")
     measured = {
@@ -61,7 +61,7 @@ def to_xarray(solution):
         "irradiance_high": high,
         "emission": patches.emission,
     }
-    variables = {name: (both, values, {"units": unit}) for name, values in measured.items()}
+    variables = {name: (both, values, {"units": _unit(solution, name)}) for name, values in measured.items()}
     variables |= {
         "reflectance": (both, patches.reflectance, {"units": "1"}),
         "area": ("patch", patches.area, {"units": "m2"}),
@@ -85,6 +85,10 @@ def to_xarray(solution):
         "status": solution.status,
     }
     return xarray.Dataset(variables, coords=coordinates, attrs=facts)
+
+
+def _unit(solution, name: str) -> str:
+    return solution.irradiance_unit if name.startswith("irradiance") else solution.unit
 
 
 def _require(module: str) -> None:

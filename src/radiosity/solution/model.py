@@ -85,8 +85,13 @@ class Solution:
 
     @property
     def unit(self) -> str:
-        """Unit of radiosity and irradiance, W/m² or lm/m²."""
+        """Unit of radiosity, W/m² or lm/m²."""
         return self.patches.scene.unit
+
+    @property
+    def irradiance_unit(self) -> str:
+        """Unit of irradiance: W/m², or lx where the scene is photometric."""
+        return self.patches.scene.irradiance_unit
 
     @property
     def escaped(self) -> np.ndarray:

@@ -86,12 +86,21 @@ def _surfaces(solution) -> list[str]:
     width = max(len("surface"), *map(len, names))
     short = [name[0].upper() if len(scene.bands) == 3 else name for name in scene.bands] if len(tails) > 1 else [""]
     heads = [f"B {s}".strip() for s in short] + [f"H {s}".strip() for s in short]
+    one = ["illuminance"] if "illuminance" in rows[0] else []  # of red, green and blue together
+    heads += ["E"] * len(one)
     heads = [f"{head:>9}" for head in heads] + [f"{head:>7}" for head in ("H ±", "error")]
     title = f"{'surface':<{width}} {'patches':>8} {'area m²':>9} " + " ".join(heads)
-    about = f"radiosity B and irradiance H in {scene.unit}, area means; ±: 95 % interval of H; error: RMS over patches, relative"
+    units = (
+        f"radiosity B in {scene.unit} and irradiance H in {scene.irradiance_unit}"
+        if scene.photometric
+        else (f"radiosity B and irradiance H in {scene.unit}")
+    )
+    units += ", E: all bands of H by photopic weights, in lx" if one else ""
+    about = f"{units}; area means; ±: 95 % interval of H; error: RMS over patches, relative"
     result = [about, title]
     for name, row in zip(names, rows, strict=False):
         values = [row[f"radiosity{t}"] for t in tails] + [row[f"irradiance{t}"] for t in tails]
+        values += [row[key] for key in one]
         error, sure = (percent(row[key]) for key in ("error", "interval"))
         result.append(
             f"{name:<{width}} {row['patches']:>8} {row['area']:>9.4g} "

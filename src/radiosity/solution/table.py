@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..scene.photopic import photopic
 from .means import of_rows
 
 
@@ -18,6 +19,7 @@ def surface_table(solution) -> list[dict]:
       received (of a pane: without what goes through), reflected, absorbed, left (emitted + reflected: the power that leaves),
       net (left - received = emitted - absorbed: above zero where the surface sends out more than it receives), net error
       (standard error of net), net low and net high (ends of its 95 % interval)
+    - illuminance: mean, lx; only where a photometric scene has red, green and blue
     - interval: half the 95 % interval of the mean irradiance, relative to it, the largest of the bands
     - error: relative, RMS over the patches
     - arrivals: hits
@@ -53,6 +55,9 @@ def surface_table(solution) -> list[dict]:
     groups = np.split(np.flatnonzero(some)[np.argsort(row, kind="stable")], np.cumsum(count)[:-1])
     ends = of_rows(solution, 0.95, "irradiance")
     middle = np.stack([columns[f"irradiance{f' [{name}]' if len(scene.bands) > 1 else ''}"] for name in scene.bands], axis=1)
+    one = photopic(scene, middle)
+    if one is not None:
+        columns["illuminance"] = one
     with np.errstate(over="ignore"):  # quotients of values near zero
         wide = np.divide((ends.high - ends.low) / 2, middle, out=np.full(middle.shape, np.nan), where=middle > 0)
     columns["interval"] = np.array([row[~np.isnan(row)].max() if (~np.isnan(row)).any() else np.nan for row in wide])

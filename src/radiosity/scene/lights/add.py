@@ -8,7 +8,7 @@ import numpy as np
 
 from ...errors import SceneError
 from ..back import Back
-from .build import LUMINANCE
+from ..photopic import PHOTOPIC
 from .luminaire import Luminaire
 from .model import Lights
 from .sky import Sky
@@ -70,7 +70,7 @@ def _wide(light: Luminaire | Sun | Sky, n_bands: int) -> np.ndarray:
     if found == 1:
         return np.repeat(values, n_bands, axis=-1)
     if found == 3 and n_bands == 1:
-        return (values @ LUMINANCE)[..., None]
+        return (values @ PHOTOPIC)[..., None]
     if found != n_bands:
         raise SceneError(f"{_called(light)} has {found} bands, and the scene {n_bands}; give it one number, or {n_bands}")
     return values

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import RadiosityWarning, SceneError
+from ..photopic import PHOTOPIC
 from . import eulumdat, ies, webs
 from .frames import frame, point
 from .luminaire import Luminaire
@@ -18,7 +19,6 @@ from .web import Web
 
 READERS = {".ies": ies.read, ".ldt": eulumdat.read}
 DOWN = (0.0, 0.0, -1.0)
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear red, green and blue (Rec. 709)
 LARGEST = 1e18
 
 
@@ -226,4 +226,4 @@ def _bands(color: ArrayLike | None, what: str) -> np.ndarray:
     values = point(color, "color", what)
     if values.min() < 0 or not values.any():
         raise SceneError(f"{what}: color is {values.tolist()}; expected three numbers, not negative, and one above zero")
-    return values / (LUMINANCE @ values)
+    return values / (PHOTOPIC @ values)
