@@ -229,7 +229,7 @@ def test_meshes_and_checks_show_panes(tmp_path):
 
 @pytest.mark.parametrize("method", ["random-walk", "gather"])
 def test_the_sun_shines_through_a_pane(method):
-    """800 W/m² at 60° through a pane of 0.5: 200 W/m² on a floor that it covers, within five standard errors, which are 2 % at most."""
+    """800 W/m² at 60° through a pane of 0.5: 200 W/m² on the floor, within five standard errors (2 % at most)."""
     corners = [SQUARE, (SQUARE - np.array([0.5, 0.5, 0])) * 4 + np.array([0.5, 0.5, 0.5])]
     vertices, faces = faces_of(*corners)
     scene = rd.Scene.from_arrays(vertices, faces, 0.0, 0.0, surface=range(2), names=["floor", "pane"], transmittance=[0, 0.5])
