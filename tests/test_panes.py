@@ -11,8 +11,10 @@ from radiosity.factors.polygons import exchange
 from radiosity.image import gltf, mesh, picture, quantity
 from radiosity.image.look import Look
 from radiosity.scene.back import Back
+from radiosity.scene.combine import combine
 from radiosity.scene.lights.model import Lights
 from radiosity.scene.lights.sun import Sun
+from radiosity.scene.quads import merge_triangles
 
 T, RHO = 0.4, 0.25
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
@@ -240,3 +242,21 @@ def test_the_sun_shines_through_a_pane(method):
     found, error = solution.irradiance[0, 0], solution.irradiance_standard_error[0, 0]
     assert found == pytest.approx(200, abs=5 * error)
     assert error < 4
+
+
+def test_faces_keep_their_own_transmittance():
+    """Halves of a square that let unlike shares through stay two faces, and scenes put together keep each face's."""
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+
+    def halves(one, two):
+        return rd.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], 0.1, 1.0, transmittance=[one, two])
+
+    assert merge_triangles(halves(0.5, 0.5)).transmittance.tolist() == [0.5]
+    assert merge_triangles(halves(0.5, 0.2)).transmittance.tolist() == [0.5, 0.2]
+    opaque = rd.Scene.from_arrays(corners, [[0, 1, 2]], 0.1, 1.0)
+    both = combine([opaque, halves(0.5, 0.2)], source="both", photometric=False, scale=1.0)
+    assert both.transmittance.tolist() == [0.0, 0.5, 0.2]
+    assert combine([opaque, opaque], source="both", photometric=False, scale=1.0).transmittance is None
+    # a quadrilateral that is no parallelogram becomes two triangles, each with its transmittance
+    bent = rd.Scene.from_arrays([*corners[:3], [0, 2, 0]], [[0, 1, 2, 3]], 0.1, 1.0, transmittance=[0.3])
+    assert bent.transmittance.tolist() == [0.3, 0.3]

@@ -91,9 +91,7 @@ def _lit(scene: Scene, lights: Lights, photometric: bool | None, path: Path) -> 
     lit = with_lights(scene, lights)
     if photometric is not None and lit.photometric != photometric:
         what = f"photometric is {str(photometric).lower()}, and light '{lit.lights.all[-1].name}' is in"
-        raise SceneError(
-            f"{path}: {what} {'lm' if lit.photometric else 'W'}; leave the key out"
-        )
+        raise SceneError(f"{path}: {what} {'lm' if lit.photometric else 'W'}; leave the key out")
     return lit
 
 
