@@ -65,8 +65,8 @@ MISTAKES = (
     ),
     Mistake(
         "tracing/visibility.py",
-        "part = part * (1 - through[one.face])",
-        "part = part * 1",
+        "means[:, 1] *= 1 - through[one.face]",
+        "means[:, 1] *= 1",
         ("test_panes.py",),
         "a pane that sends counts whole, and one that receives does not",
     ),
