@@ -94,6 +94,8 @@ def test_gltf(tmp_path):
         gltf = Gltf()
         extension = {"KHR_materials_transmission": transmission}
         gltf.node(mesh=gltf.mesh(material={"name": "pane", "pbrMetallicRoughness": color, "extensions": extension}), name="a")
+        if transmission["transmissionFactor"] > 1:
+            return rd.load_scene(gltf.write(tmp_path / "a.glb")), []
         with pytest.warns(rd.RadiosityWarning) as caught:
             scene = rd.load_scene(gltf.write(tmp_path / "a.glb"))
         return scene, [str(w.message) for w in caught]
@@ -107,6 +109,8 @@ def test_gltf(tmp_path):
     assert scene.transmittance is None
     assert scene.reflectance.item() == 0.5
     assert any("transparency is left out" in text for text in texts)
+    with pytest.raises(rd.SceneError, match=r"transmission of 'pane' has the factor 1\.5"):
+        told({"transmissionFactor": 1.5})
 
 
 def mitsuba(tmp_path, bsdf):

@@ -7,6 +7,7 @@ import radiosity as rd
 from radiosity.exchange.planck import SIGMA
 from radiosity.factors.polygons import exchange
 
+GROUPS = {name: [name] for name in ("hot", "cold", "pane")}
 HOT, COLD, AROUND = 400.0, 300.0, 250.0
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
 
@@ -93,14 +94,23 @@ def test_equal_temperatures_exchange_nothing():
 def test_gebhart_factors_of_a_pane():
     """Rows sum to one, conductors are the same both ways as far as lines tell, and a black half-clear pane absorbs half."""
     lines = rd.trace_lines(rd.subdivide(plates(0.5, 0.0, (1.0, 1.0)), cells=1), rays=400_000, seed=2)
-    shares = rd.gebhart_factors(
-        lines, emissivity={"*": 1.0, "pane": 0.5}, group={name: [name] for name in ("hot", "cold", "pane")}
-    )
+    shares = rd.gebhart_factors(lines, emissivity={"*": 1.0, "pane": 0.5}, group=GROUPS)
     half, whole = (float(exchange(at(0)[None], at(gap)[::-1][None])[0]) for gap in (0.5, 1.0))
     expected = np.array([[0, 0.5 * whole / 2, 0.5 * half / 2], [0.5 * whole / 2, 0, 0.5 * half / 2], [half / 2, half / 2, 0]])
     assert shares.matrix == pytest.approx(expected, abs=4e-3)
     assert shares.conductors == pytest.approx(shares.conductors.T, abs=6e-3)
     assert shares.values.sum(axis=1) == pytest.approx(np.ones(3))
+
+
+def test_view_factors_count_the_solid_part():
+    """Rows sum to one; a plate sees t F of the other, and the solid part of the pane; reciprocity is with its area."""
+    factors = rd.view_factors(rd.subdivide(plates(0.5, 0.0), cells=1), rays=400_000, seed=2, group=GROUPS)
+    half, whole = (float(exchange(at(0)[None], at(gap)[::-1][None])[0]) for gap in (0.5, 1.0))
+    assert factors.area.tolist() == [2.0, 2.0, 1.0]
+    expected = np.array([[0, 0.5 * whole / 2, 0.5 * half / 2], [0.5 * whole / 2, 0, 0.5 * half / 2], [half / 2, half / 2, 0]])
+    assert factors.matrix == pytest.approx(expected, abs=4e-3)
+    exchanged = factors.restored().matrix * factors.area[:, None]
+    assert exchanged == pytest.approx(exchanged.T, abs=1e-9)
 
 
 def test_emissivity_of_a_pane():

@@ -15,6 +15,41 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "image/through.py",
+        "share[going] *= np.where(again, 1.0, t)",
+        "share[going] *= np.where(again, 1.0, 1.0)",
+        ("test_panes.py",),
+        "pictures show all of what is behind a pane",
+    ),
+    Mistake(
+        "sensors/reflected.py",
+        "/ problem.patches.area",
+        "/ solution.patches.area",
+        ("test_panes.py",),
+        "lines of sensors read the whole pane where they hit its solid part",
+    ),
+    Mistake(
+        "solution/means.py",
+        "error, low, high = error * part, low * part, high * part",
+        "error, low, high = error, low, high",
+        ("test_panes.py",),
+        "errors of what panes absorb are those of their solid part",
+    ),
+    Mistake(
+        "scene/formats/mitsuba/part.py",
+        "tuple(value * opacity for value in base)",
+        "base",
+        ("test_formats_mitsuba_emitters.py",),
+        "a mask reflects as if it were whole",
+    ),
+    Mistake(
+        "scene/quads.py",
+        "same &= scene.transmittance[one] == scene.transmittance[two]",
+        "pass",
+        ("test_panes.py",),
+        "halves of unlike transmittance become one face",
+    ),
+    Mistake(
         "exchange/panes.py",
         "np.minimum(emissivity / (1 - through), 1.0)",
         "emissivity",
@@ -30,8 +65,8 @@ MISTAKES = (
     ),
     Mistake(
         "tracing/visibility.py",
-        "part = part * (1 - through[one.face])",
-        "part = part * 1",
+        "means[:, 1] *= 1 - through[one.face]",
+        "means[:, 1] *= 1",
         ("test_panes.py",),
         "a pane that sends counts whole, and one that receives does not",
     ),

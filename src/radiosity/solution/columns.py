@@ -24,6 +24,8 @@ def patch_columns(solution) -> dict[str, np.ndarray]:
         ("irradiance", solution.irradiance, received),
         ("standard error of irradiance", solution.irradiance_standard_error, received),
     ):
+        if title == "emission" and patches.scene.transmittance is not None:
+            columns["transmittance"] = patches.transmittance
         for i, band in enumerate(bands):
             label = f"{title} {band}" if len(bands) > 1 else title
             columns[f"{label} [{measure}]" if measure else label] = np.asarray(values)[:, i]

@@ -139,9 +139,11 @@ class Materials:
         what = f"transmission of '{name}'"
         held = self.file.dictionary(extensions.get("KHR_materials_transmission", {}), what)
         (factor,) = self.file.numbers({"v": [held.get("transmissionFactor", 0.0)]}, "v", (0.0,), what)
+        if not 0 <= factor <= 1:
+            raise self.file.fail(f"{what} has the factor {factor:g}; it must lie between 0 and 1")
         if factor and "transmissionTexture" in held:
             self.transparent.append(name)
-        if "transmissionTexture" in held or not 0 < factor <= 1:
+        if "transmissionTexture" in held or not factor:
             return 0.0, 0.0
         mean = np.ones(3) if base is None else np.broadcast_to(base.image.mean(axis=(0, 1)), (3,))
         self.panes[name] = transmittance = factor * NOT_MIRRORED * min(float(luminance_weights() @ (mean * color)), 1.0)
