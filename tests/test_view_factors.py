@@ -82,6 +82,40 @@ def test_rows_of_a_box_are_exact_within_their_errors_and_better_restored(raw):
     assert 0.7 < np.mean(spread) < 1.4
 
 
+def test_intervals_of_restored_factors_hold_the_truth():
+    """Of 400 made-up measurements between six groups, whose entries have normal errors of Poisson's variances.
+
+    The share of entries that 90 % intervals hold has a standard error of 0.005. Weights that follow the eight replicates closely
+    (8 degrees of freedom of the prior) make it 0.87.
+    """
+    draw = np.random.default_rng(2)
+    power = draw.random((6, 6)) * draw.random((6, 6))
+    power = np.where(np.eye(6) > 0, 0, power + power.T)
+    area = power.sum(axis=1)
+    exact = power / area[:, None]
+    rows, columns = np.nonzero(exact)
+    lines, values, held = 10_000 * area / area.sum(), exact[rows, columns], []
+    for _ in range(400):
+        samples = values + np.sqrt(values / lines[rows]) * draw.normal(size=(8, len(values)))
+        samples /= np.array([np.bincount(rows, sample, 6)[rows] for sample in samples])
+        factors = rd.ViewFactors(
+            names=WALLS,
+            area=area,
+            rows=rows,
+            columns=columns,
+            values=samples.mean(axis=0),
+            errors=samples.std(axis=0, ddof=1) / np.sqrt(8),
+            replicates=8,
+            samples=samples,
+            line=1 / (8 * lines),
+            hits=(values * lines[rows] * 8).astype(np.int64),
+        )
+        low, high = (end[:, :6][exact > 0] for end in factors.restored().interval(0.9))
+        held.append(np.mean((low <= values) & (values <= high)))
+    assert np.std(held) / 20 < 0.006
+    assert 0.885 < np.mean(held) < 0.915
+
+
 def problem(draw: np.random.Generator, n: int) -> Unknowns:
     one, other = np.triu_indices(n)
     one, other = np.append(one, np.arange(n)), np.append(other, np.arange(n))
