@@ -108,8 +108,8 @@ MISTAKES = (
     ),
     Mistake(
         "factors/balance.py",
-        "trust = weight[rows] + weight[columns]",
-        "trust = 2 * weight[rows]",
+        "trust += weight[columns]",
+        "trust += weight[rows]",
         ("test_balance.py",),
         "both estimates of a pair are trusted as the first",
     ),
