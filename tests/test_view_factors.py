@@ -11,8 +11,12 @@ import pytest
 from enclosures import cube, parallel_squares, sphere_in_box
 
 import radiosity as rd
+from radiosity.device.backend import choose
+from radiosity.exchange.from_polygons import FacingPairs
 from radiosity.exchange.least_squares import Unknowns, nearest
+from radiosity.factors.polygons import exchange
 from radiosity.scene.shapes import box, quad
+from radiosity.tracing.geometry import Geometry
 from validation.closed_forms.rectangles import parallel, perpendicular
 from validation.shapes import disc, moved, scene, tube, turned
 
@@ -352,6 +356,30 @@ def test_polygons_and_lines_agree_in_a_room_with_a_cylinder():
     auto = rd.view_factors(patches, rays=1_000_000, replicates=16)
     predicted = auto.provenance["predicted"]
     assert auto.method == min(("lines", "polygons"), key=lambda name: predicted[name])
+
+
+def test_no_pair_that_faces_is_left_out():
+    """Pairs are looked through roughly first: corners in a plane, or nearly, are looked at, here at the rims of walls."""
+    patches = rd.subdivide(with_a_cylinder(), cells=2)
+    one, other = np.triu_indices(len(patches), 1)
+    values = exchange(patches.corners[one], patches.corners[other])
+    pairs = FacingPairs.of(Geometry(patches, choose()), 1)
+    found = np.zeros((len(patches), len(patches)))
+    found[pairs.one, pairs.other] = pairs.values
+    assert found[one, other] == pytest.approx(values, rel=1e-12)
+    assert 0.1 < len(pairs.one) / len(one) < 0.9
+
+
+def test_auto_takes_lines_where_the_work_is_not_a_ray_a_pair():
+    """And polygons of two rays a pair and replicate err less than as many lines, where the work is enough for them."""
+    patches = rd.subdivide(with_a_cylinder(), cells=3)
+    little = rd.view_factors(patches, rays=300_000, group="patch")
+    assert (little.method, "predicted" in little.provenance) == ("lines", False)
+    more = rd.view_factors(patches, rays=540_000, group="patch", seed=1)
+    assert (more.method, more.provenance["rays_of_a_pair"]) == ("polygons", 2)
+    many = rd.view_factors(patches, rays=3_000_000, group="patch", seed=2)
+    lines = rd.view_factors(patches, rays=540_000, group="patch", method="lines", seed=1).restored()
+    assert distance(more, many.matrix) < 0.5 * distance(lines, many.matrix)
 
 
 def test_lines_that_were_traced_go_on_to_the_bits_of_one_run():
