@@ -19,7 +19,7 @@ help:
 	@echo 'make bench   print lines per second against the bare ray caster, and add the figures to benchmarks/history.jsonl'
 	@echo 'make bench-compare  ratios of the last two runs of make bench'
 	@echo 'make bench-error  seconds to 1 % and 0.3 % of error against long references (ARGS=--quick: minutes)'
-	@echo 'make bench-heat  CPU seconds of view factors to the error that raystrack and pyviewfactor reach'
+	@echo 'make bench-heat  CPU seconds of view factors to the error of other programs: half an hour (ARGS=--quick: minutes)'
 	@echo 'make validate  compare with exact solutions, Mitsuba and Radiance, and write docs/validation (ARGS=--quick: a minute)'
 	@echo 'make docs    build the documentation site into build/docs'
 	@echo 'make check   lint and types'

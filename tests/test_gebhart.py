@@ -77,6 +77,34 @@ def test_what_escapes_is_a_conductor_to_the_surroundings(tmp_path):
     assert float(first["conductor standard error m²"]) == 0.5 * float(first["standard error"]) > 0
 
 
+@pytest.mark.parametrize("both_ways", [True, False])
+def test_one_factorisation_gives_what_iterations_do(monkeypatch, both_ways):
+    """Values, and errors with the bias that lines have by carrying light back, where some escapes; with unlike emissivities."""
+    from radiosity.exchange import gebhart
+
+    walls = box((0, 0, 0), (3, 2, 1), inward=True)[:5]
+    open_box = scene(*((f"wall {i}", 0.5, 0.0, [wall]) for i, wall in enumerate(walls)))
+    lines = rd.trace_lines(rd.subdivide(open_box, cells=2), rays=20_000, replicates=4, both_ways=both_ways)
+    emissivity, found = np.linspace(0.05, 1, 20), []
+    for quicker in (True, False):
+        monkeypatch.setattr(gebhart, "is_quicker", lambda *_, quicker=quicker: quicker)
+        found.append(rd.gebhart_factors(lines, emissivity=emissivity))
+    assert found[0].values == pytest.approx(found[1].values, abs=1e-9)
+    assert found[0].errors == pytest.approx(found[1].errors, abs=1e-9)
+    assert found[0].values[:, 5].min() > 0.01  # it escapes
+
+
+def test_a_factorisation_is_taken_where_it_is_less_work():
+    from radiosity.factors.direct import MOST, is_quicker
+
+    dull, shiny = np.full(500, 0.1), np.full(500, 0.98)
+    assert is_quicker(500, 40_000, 7, shiny)
+    assert not is_quicker(500, 40_000, 7, dull)
+    assert is_quicker(500, 40_000, 500, dull)
+    assert not is_quicker(MOST + 1, 10**9, MOST, shiny)
+    assert not is_quicker(500, 40_000, 7, 0 * dull)
+
+
 def test_wrong_emissivities_are_refused():
     lines = rd.trace_lines(rd.subdivide(parallel_squares()[0], cells=1), rays=1000)
     for wrong in (0.0, 1.5, -0.1, float("nan"), "half", None, True):

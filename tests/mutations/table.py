@@ -106,6 +106,20 @@ MISTAKES = (
         "what groups emit is lost where counts are not reciprocal",
     ),
     Mistake(
+        "factors/direct.py",
+        "return np.abs(own + self.irradiance(rho[:, None] * own))",
+        "return np.abs(own)",
+        ("test_gebhart.py",),
+        "errors of Gebhart factors leave out what is reflected of the bias",
+    ),
+    Mistake(
+        "exchange/restored_many.py",
+        "back &= (column < n) & (column != row)",
+        "back &= column < n",
+        ("test_many_groups.py",),
+        "what a group sends to itself counts twice where many groups are restored",
+    ),
+    Mistake(
         "exchange/small_gaps.py",
         "MOVED = 6",
         "MOVED = 1e9",
@@ -164,8 +178,8 @@ MISTAKES = (
     ),
     Mistake(
         "factors/balance.py",
-        "trust = weight[rows] + weight[columns]",
-        "trust = 2 * weight[rows]",
+        "trust += weight[columns]",
+        "trust += weight[rows]",
         ("test_balance.py",),
         "both estimates of a pair are trusted as the first",
     ),

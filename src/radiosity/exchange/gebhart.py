@@ -2,8 +2,9 @@
 
 B. Gebhart, "Surface temperature calculations in radiant surroundings of arbitrary complexity", International Journal of Heat and
 Mass Transfer 3, 1961. Every group emits in turn, in proportion to the emissivity of its patches, and the counted lines carry it:
-one solution a group and replicate. The lines carry power from where they begin, so that all of it ends somewhere: rows, with what
-escapes and is lost, sum to one. The conductor e_i A_i G_ij of a pair is the same both ways as far as counts are reciprocal.
+one solution a group and replicate. Where that is less work, one factorisation a replicate serves all groups (`factors.direct`).
+The lines carry power from where they begin, so that all of it ends somewhere: rows, with what escapes and is lost, sum to one.
+The conductor e_i A_i G_ij of a pair is the same both ways as far as counts are reciprocal.
 """
 
 from dataclasses import dataclass, replace
@@ -14,6 +15,7 @@ from ..device import memory
 from ..device.backend import choose
 from ..errors import MethodError, SceneError, shown
 from ..factors.counted import CountedPairs
+from ..factors.direct import Direct, is_quicker
 from ..patches.model import Patches
 from ..patches.values import of_sides
 from ..run.line_set.model import LineSet
@@ -143,12 +145,15 @@ def gebhart_factors(lines: LineSet, *, emissivity, group="surface") -> GebhartFa
         )
     if lines.method.lines == "local":
         warn_of_narrow(Geometry(patches, choose("auto")), groups)
-    values = np.zeros((replicates, n, n + 2))
-    bias = np.zeros((n, n + 2))
     carried = replace(lines.pairs, directed=True)  # from where lines begin: all that is sent ends somewhere
-    for begin in range(0, n, AT_ONCE):
-        some = np.arange(begin, min(begin + AT_ONCE, n))
-        values[:, some], bias[some] = _absorbed(carried, groups, solid, some)
+    factors = len(carried.keys) * (2 if carried.both_ways else 1) // replicates
+    if is_quicker(len(patches), factors, n, 1 - solid):
+        values, bias = _at_once(carried, groups, solid)
+    else:
+        values, bias = np.zeros((replicates, n, n + 2)), np.zeros((n, n + 2))
+        for begin in range(0, n, AT_ONCE):
+            some = np.arange(begin, min(begin + AT_ONCE, n))
+            values[:, some], bias[some] = _absorbed(carried, groups, solid, some)
     mean, error = mean_and_error(values)
     area = groups.area(patches)
     return GebhartFactors(
@@ -172,6 +177,28 @@ def _absorbed(pairs: CountedPairs, groups: Groups, share: np.ndarray, some: np.n
             values[replicate, k, :n] = np.bincount(labels, share * power, n) / emitted[k]
             values[replicate, k, n:] = missed / emitted[k]
         bias[k, :n] = np.bincount(labels, share * found.bias.mean(axis=0), n) / emitted[k]
+    return values, bias
+
+
+def _at_once(pairs: CountedPairs, groups: Groups, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return what `_absorbed` does, of all groups, by one factorisation a replicate."""
+    from scipy.sparse import csr_array
+
+    area, n, count = pairs.patches.area, len(groups.names), len(share)
+    member = csr_array((np.ones(count), groups.labels, np.arange(count + 1)), shape=(count, n))
+    emission, reflectance = (member * share[:, None]).toarray(), 1 - share
+    emitted = area @ emission
+    values, bias = np.zeros((pairs.replicates, n, n + 2)), np.zeros((n, n + 2))
+    for into, lines, factors in zip(values, pairs.lines, pairs.factors(), strict=True):
+        solver = Direct(factors.sent(area), reflectance)
+        received = solver.irradiance(emission)
+        sent = area[:, None] * (emission + reflectance[:, None] * received)
+        absorbed = member.T * (share * area)
+        into[:, :n] = (absorbed @ received).T
+        into[:, n], into[:, n + 1] = factors.escaped @ sent, factors.lost @ sent
+        into /= emitted[:, None]
+        off = solver.of_own_light(area, lines, emission, received, both_ways=pairs.both_ways)
+        bias[:, :n] += (absorbed @ off).T / emitted[:, None] / pairs.replicates
     return values, bias
 
 

@@ -25,7 +25,7 @@ from .least_squares import Nearest, Unknowns, nearest
 from .restoration import LEAST_SQUARES, RAW, SAMPLED
 from .restored_many import by_scaling
 
-PRIOR = 8  # degrees of freedom of Poisson's variance
+PRIOR = 64  # degrees of freedom of Poisson's variance: weights that follow the replicates make stated errors too small
 UNKNOWN = 0.01  # relative error of factors whose errors are unknown: only a weight
 LEAST = 1e-9  # relative: no counted or integrated value is more accurate
 

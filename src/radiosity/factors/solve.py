@@ -63,11 +63,17 @@ def of_own_light(factors: Factors, area, lines, emission, reflectance, received,
     Args:
         area, lines, emission, reflectance, received: (n,); ``lines`` of each row.
     """
-    i, j, one = factors.rows, factors.columns, np.maximum(lines, 1)
-    known = one[j] + (one[i] * area[j] / area[i] if both_ways else 0)
+    i, j = factors.rows, factors.columns
+    known = known_lines(factors, area, lines, both_ways=both_ways)
     more = emission[i] + reflectance[i] * received[i] - received[j]
     own = np.bincount(i, weights=factors.values * reflectance[j] * more / known, minlength=len(lines))
     # in two parts, since `irradiance` solves for values that are not negative
     up, down = (np.maximum(sign * own, 0) for sign in (1, -1))
     reflected = [irradiance(factors, reflectance * part, reflectance) for part in (up, down)]
     return np.abs(own + reflected[0] - reflected[1])
+
+
+def known_lines(factors: Factors, area: np.ndarray, lines: np.ndarray, *, both_ways: bool) -> np.ndarray:
+    """Return how many lines each factor is known by, (m,), as of `of_own_light`."""
+    i, j, one = factors.rows, factors.columns, np.maximum(lines, 1)
+    return one[j] + (one[i] * area[j] / area[i] if both_ways else 0)
