@@ -10,6 +10,7 @@ import numpy as np
 from ..device.memory import limited
 from ..device.turn import turn
 from ..diagnostics.contact_findings import tell
+from ..diagnostics.narrow import warn_of_light
 from ..errors import MethodError, shown
 from ..method import Auto, Baseline, Method, resolve
 from ..patches import Patches, subdivide
@@ -182,7 +183,11 @@ def prepared(
     from .record import Record
     from .run import Run
 
-    return Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of, choice, record=Record)
+    run = Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of, choice, record=Record)
+    local = chosen.lines == "local" or chosen.first_shot if isinstance(chosen, Method) else chosen.factors == "lines"
+    if local:
+        warn_of_light(run.geometry, scene, stacklevel=3)
+    return run
 
 
 def patches_of(scene: Scene | Patches, method: Method | Baseline | Auto, caller: str) -> Patches:

@@ -6,6 +6,8 @@ from pathlib import Path
 from ...algorithms.matrix.state import MatrixState
 from ...algorithms.matrix.tally import MatrixTally
 from ...algorithms.state import Sizes
+from ...device.backend import choose
+from ...diagnostics.narrow import warn_of_light
 from ...errors import SceneError, printable, shown
 from ...factors.counted import CountedPairs
 from ...method import Method
@@ -14,6 +16,7 @@ from ...patches.relit import relit
 from ...problem.model import Problem
 from ...solution.model import Solution
 from ...tally import unmet
+from ...tracing.geometry import Geometry
 from ..part import Part
 from ..record import Record
 from ..shortfall import warn_of_few_ends
@@ -120,6 +123,7 @@ class LineSet:
         unmet.warn(patches, self.pairs.lines)
         if self.method.lines == "local":
             warn_of_starved(patches, self.pairs.lines)
+            warn_of_light(Geometry(patches, choose("auto")), patches, stacklevel=2)
         warn_of_few_ends(self.method, self.rays / self.replicates / len(patches))
         return replace(solution, state={}, provenance=solution.provenance | {"line_set": self.provenance})
 
