@@ -1,5 +1,7 @@
 """Luminaires in scenes: how they are turned, what they send in which unit, and the light that a solution finds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from luminaire_files import GAMMA, LAMBERTIAN, ies, ldt
@@ -172,6 +174,24 @@ def test_a_luminaire_of_a_file_lights_the_floor(files, name):
     wanted = 1000 / np.pi * 1.5**2 / square**2
     assert np.abs(solution.irradiance[:, 0] / wanted - 1).max() < 0.03
     assert solution.patches.scene.power_unit == "lm"
+
+
+@pytest.mark.parametrize(("name", "bound"), [("random-walk", 0.1), ("gather", 0.02)])
+def test_soft_shadows(name, bound):
+    """A strip of light 0.8 m long over the edge of a screen halfway down: each of its points lights what it sees of the floor."""
+    corners = [*FLOOR, [1, 0, 1], [2, 0, 1], [2, 2, 1], [1, 2, 1]]
+    scene = rd.Scene.from_arrays(corners, [[0, 1, 2, 3], [4, 5, 6, 7]], 0.0, 0.0, surface=[0, 1], names=["floor", "screen"])
+    lamp = replace(rd.point_light(position=(1, 1, 2), lumens=4 * np.pi * 100), size=np.array([0.8, 0.0, 0.0]))
+    for soft in (False, True):
+        patches = rd.subdivide(scene.with_lights([replace(lamp, soft=soft)]), cells=20)
+        solution = rd.solve(patches, name, rays=400_000, replicates=4, seed=1)
+        along = np.linspace(0.6, 1.4, 801) if soft else np.ones(1)
+        for at in (0.55, 0.75, 1.25, 1.65):
+            here = (patches.centroid[:, 2] == 0) & (np.abs(patches.centroid[:, 0] - at) < 0.01)
+            way = patches.centroid[here][:, None] - np.stack([along, along * 0 + 1, along * 0 + 2], axis=1)
+            seen = (at + along) / 2 < 1  # where the line meets the height of the screen
+            wanted = (200 / np.linalg.norm(way, axis=2) ** 3 * seen).mean()
+            assert solution.irradiance[here, 0].mean() == pytest.approx(wanted, rel=bound, abs=1e-9)
 
 
 def test_a_saved_solution_has_its_luminaires(files, tmp_path):
