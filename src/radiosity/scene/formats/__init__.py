@@ -19,6 +19,7 @@ FORMATS = {
     ".stl": "mesh",
     ".mgf": "mgf",
     ".rad": "radiance",
+    ".hbjson": "honeybee",
     ".vs3": "vs3",
     ".toml": "toml",
 }
