@@ -20,6 +20,7 @@ FORMATS = {
     ".mgf": "mgf",
     ".rad": "radiance",
     ".hbjson": "honeybee",
+    ".ifc": "ifc",
     ".vs3": "vs3",
     ".toml": "toml",
 }
