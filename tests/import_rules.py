@@ -52,7 +52,8 @@ PLACES = {"drjit": KERNELS, "mitsuba": ("device/", "scene/formats/mitsuba/", "im
 EARLY = {  # packages besides numpy that a file may import when it is imported itself
     "cyclopts": ("cli/",),
     "drjit": KERNELS,
-    "pydantic": ("scene/formats/toml/schema.py",),  # its classes derive from the package's; its reader alone loads it
+    # its classes derive from the package's; their readers alone load it
+    "pydantic": ("scene/formats/toml/schema.py", "scene/formats/honeybee/schema.py"),
 }
 RECORDING = {"while_loop", "syntax", "if_stmt", "switch", "dispatch", "freeze"}
 WITH_NUMBERS = ("tracing/", "tally/", "factors/", "algorithms/")  # their kernels take numbers

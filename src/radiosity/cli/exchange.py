@@ -94,8 +94,8 @@ def exchange(
     Parameters
     ----------
     scene
-        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .rad .vs3 .toml), a built-in scene, or an .npz file of `radiosity
-        lines`, whose lines are taken.
+        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .rad .hbjson .ifc .vs3 .toml), a built-in scene, or an .npz file of
+        `radiosity lines`, whose lines are taken.
     output
         Files to write: .csv (the table; beside it NAME.exchange.csv, watts from surface to surface), .npz, .png (a view of net
         heat; beside it NAME.exchange.png, a matrix of watts, and NAME.flows.png, which shows them as bands).

@@ -76,8 +76,8 @@ def factors(
     Parameters
     ----------
     scene
-        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .rad .vs3 .toml), a built-in scene, or an .npz file of `radiosity
-        lines`, whose lines are taken.
+        A scene file (.xml .glb .gltf .obj .ply .stl .mgf .rad .hbjson .ifc .vs3 .toml), a built-in scene, or an .npz file of
+        `radiosity lines`, whose lines are taken.
     output
         Files to write: .csv, .npz, and .idf (ZoneProperty:UserViewFactors:BySurfaceName of EnergyPlus).
     group

@@ -19,6 +19,8 @@ FORMATS = {
     ".stl": "mesh",
     ".mgf": "mgf",
     ".rad": "radiance",
+    ".hbjson": "honeybee",
+    ".ifc": "ifc",
     ".vs3": "vs3",
     ".toml": "toml",
 }

@@ -1,5 +1,7 @@
 """Triangles of a flat polygon: concave, or with holes that seams (edges run both ways) join to its outline."""
 
+from itertools import pairwise
+
 import numpy as np
 
 ROUNDING = 1e-9  # relative difference of areas that is none
@@ -28,9 +30,7 @@ def triangulate(points: np.ndarray) -> tuple[np.ndarray, float]:
     reach = np.abs(points - points[0]).max()
     if not area > 1e-14 * reach**2:
         return np.zeros((0, 3), np.int64), 0.0
-    axes = np.linalg.svd(normal[None])[2]  # normal first, up to sign
-    turn = np.sign(np.linalg.det(axes) * (axes[0] @ normal))
-    flat = (points - points[0]) @ axes[1:].T / reach * (1, turn)
+    flat = _projected(points, normal) / reach
     ring = np.arange(len(points))
     best = _cut(flat, [ring], area / reach**2)
     # a seam may run across its own hole: then the hole must be told apart from the outline
@@ -39,6 +39,36 @@ def triangulate(points: np.ndarray) -> tuple[np.ndarray, float]:
         loops = [loops[i] for i in np.argsort(size)[::-1]]
         best = min(best, _cut(flat, loops, area / reach**2), key=lambda found: found[1])
     return best
+
+
+def pierced(outline: np.ndarray, holes: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, float]:
+    """Triangles of a flat polygon with holes that are given apart; they may run either way, and touch its edges.
+
+    Returns:
+        (n, 3) corners, (m, 3) int64 triangles, facing as the outline does, and how far their area is from that of the outline
+        less that of the holes, relative to the outline's: 0 but for rounding unless holes overlap, or reach out of it.
+    """
+    points = np.concatenate([outline, *holes])
+    normal = vector_area(outline)
+    whole = float(np.linalg.norm(normal))
+    reach = np.abs(points - points[0]).max()
+    if not whole > 1e-14 * reach**2:
+        return points, np.zeros((0, 3), np.int64), 0.0
+    flat = _projected(points, normal) / reach
+    ends = np.cumsum([0, len(outline), *map(len, holes)])
+    loops = [np.arange(start, end) for start, end in pairwise(ends)]
+    area = whole / reach**2 - sum(abs(_signed(flat[loop])) for loop in loops[1:])
+    if abs(area) * reach**2 <= ROUNDING * whole:
+        return points, np.zeros((0, 3), np.int64), 0.0
+    triangles, difference = _cut(flat, loops, area)
+    return points, triangles, abs(difference * area) * reach**2 / whole
+
+
+def _projected(points: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Coordinates in the plane of a normal, (n, 2), from the first point; counterclockwise stays so."""
+    axes = np.linalg.svd(normal[None])[2]  # normal first, up to sign
+    turn = np.sign(np.linalg.det(axes) * (axes[0] @ normal))
+    return (points - points[0]) @ axes[1:].T * (1, turn)
 
 
 def _cut(flat: np.ndarray, loops: list[np.ndarray], area: float) -> tuple[np.ndarray, float]:

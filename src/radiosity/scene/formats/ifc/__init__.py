@@ -1,0 +1,110 @@
+"""Read IFC models through ifcopenshell, which makes triangles of all shapes, in metres.
+
+A surface is class/name/material: ``IfcWall/W1/paint``, where the material is the name of the surface's style, or of the only IFC
+material of the product. Colours of styles are taken as sRGB, and are the reflectance. Closed shells have one side, with the front
+outside; other surfaces have two. Openings, spaces and annotations are no surfaces. Glass lets light through.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from ....errors import SceneError, shown
+from ...assemble import assemble, warn
+from ...model import Back, Scene
+from ...parts import Material, Part, ReadOptions
+from ..glazing import clear_share
+from ..textures import decode_srgb
+from .run import Product, products
+from .shells import mended
+
+GLASS = ("glass", "glas", "glazing", "glaz", "verre", "vitrage", "vidrio", "vetro", "vidro", "lasi", "szkło", "стекло", "ガラス", "玻璃")
+CLEAR = 0.96  # transmissivity of glass whose transparency is not given
+WITH_PANES = ("IfcWindow", "IfcWindowStandardCase", "IfcCurtainWall")
+MOST_CLEAR = 0.95
+
+
+def read(path: Path, options: ReadOptions) -> Scene:
+    """Read an .ifc file.
+
+    Raises:
+        SceneError: ifcopenshell is not installed, or cannot read the file; or the file holds no surfaces.
+    """
+    found, told = products(path)
+    if not found:
+        raise SceneError(f"{path}: ifcopenshell finds no shapes; export the model with its geometry (a Body representation)")
+    reader = Reader()
+    for product in found:
+        reader.add(product)
+    lost = told["products_with_shape"] - told["left_out"] - len(found)
+    kinds = {
+        "shells that looked inward, of mirrored items, are turned": reader.turned,
+        "transparent surfaces are clear panes, which let all colours through alike": reader.panes,
+        "windows without a transparent part are opaque; give their glass a transmittance in a .toml": reader.opaque,
+    }
+    for text, names in kinds.items():
+        if names:
+            warn(f"{path}: {text}: {shown(names)}")
+    for text, number in (("products have no shape that ifcopenshell can make", lost), ("light sources are left out", told["lights"])):
+        if number > 0 and options.strict:
+            raise SceneError(f"{path}: {number} {text}; read the file without strict")
+        if number > 0:
+            warn(f"{path}: {number} {text}")
+    return assemble(reader.parts, str(path), options)
+
+
+class Reader:
+    """Makes surfaces of products.
+
+    Attributes:
+        parts: found so far.
+        turned, panes, opaque: names of what is told.
+    """
+
+    def __init__(self):
+        self.parts: list[Part] = []
+        self.turned: dict[str, None] = {}
+        self.panes: dict[str, None] = {}
+        self.opaque: dict[str, None] = {}
+
+    def add(self, product: Product) -> None:
+        """Take a product: a surface for each of its styles, and for closed and open shells of it."""
+        triangles, closed, turned = mended(product.vertices, product.triangles)
+        name = f"{product.kind}/{product.name}"
+        if turned:
+            self.turned[name] = None
+        clear = False
+        for number in np.unique(product.style):
+            style = product.styles[number] if 0 <= number < len(product.styles) else {}
+            only = product.materials[0] if len(product.materials) == 1 else None
+            label = style.get("name") or only
+            for solid in (True, False):
+                rows = (product.style == number) & (closed == solid)
+                if rows.any():
+                    material = _material(style, label, solid)
+                    part = Part(f"{name}/{label}" if label else name, product.vertices, triangles[rows], material)
+                    self.parts.append(part)
+                    if material.transmittance > 0:
+                        clear = True
+                        whole = material.transmittance ** (2 if solid else 1)
+                        self.panes[f"{part.name} ({whole:.2f})"] = None
+        if product.kind in WITH_PANES and not clear:
+            self.opaque[name] = None
+
+
+def _material(style: dict, label: str | None, solid: bool) -> Material:
+    """The material of a style; light goes through two faces of a solid pane, each of which lets the root of it through."""
+    color, transparency = style.get("color"), style.get("transparency")
+    back = Back.ABSORBS if solid else Back.RADIATES
+    if transparency or (transparency is None and is_glass(label)):
+        whole = min(transparency, MOST_CLEAR) if transparency else float(clear_share(np.array([CLEAR]))[0])
+        return Material((0.0,), back=back, transmittance=whole**0.5 if solid else whole)
+    if color is None:
+        return Material(back=back)
+    linear = decode_srgb(np.array(color))
+    return Material((float(linear[0]),) if np.ptp(linear) == 0 else tuple(map(float, linear)), back=back)
+
+
+def is_glass(label: str | None) -> bool:
+    """Return whether a name of a material says that it is glass."""
+    return label is not None and any(word in label.lower() for word in GLASS)

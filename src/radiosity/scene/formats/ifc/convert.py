@@ -1,0 +1,84 @@
+"""A program of its own that writes the triangles of an IFC file to an NPZ file. The geometry library may end it, and nothing else.
+
+It imports nothing of this package: ``python convert.py FILE OUTPUT``.
+"""
+
+import json
+import sys
+from importlib import import_module
+
+import numpy as np
+
+LEFT_OUT = ("IfcFeatureElementSubtraction", "IfcSpatialElement", "IfcSpatialStructureElement", "IfcVirtualElement", "IfcAnnotation")
+KEPT = ("IfcSite",)  # of those: its shape is the ground
+LIGHTS = "IfcLightSource"
+
+
+def convert(source: str, target: str) -> None:
+    """Write vertices (m), triangles, the material of each triangle, and what is told of products and materials as JSON."""
+    ifc = import_module("ifcopenshell")
+    file = ifc.open(source)
+    shapes = list(_shapes(file, _instances(file, LEFT_OUT, KEPT)))
+    told = {
+        "products": [told for told, *_ in shapes],
+        "lights": len(_instances(file, (LIGHTS,), ())),
+        "version": str(ifc.version),
+        "products_with_shape": sum(1 for one in file.by_type("IfcProduct") if getattr(one, "Representation", None)),
+        "left_out": len([one for one in _instances(file, LEFT_OUT, KEPT) if getattr(one, "Representation", None)]),
+    }
+    arrays = {f"{key}{i}": array for i, (_, *found) in enumerate(shapes) for key, array in zip("vtm", found, strict=True)}
+    with open(target, "wb") as output:
+        np.savez(output, told=np.frombuffer(json.dumps(told).encode(), np.uint8), **arrays)
+
+
+def _instances(file, names, but) -> list:
+    found = {}
+    for name in names:
+        try:
+            found |= {one.id(): one for one in file.by_type(name)}
+        except RuntimeError:  # another version of IFC has no such class
+            continue
+    return [one for one in found.values() if not any(one.is_a(name) for name in but)]
+
+
+def _shapes(file, excluded):
+    """What is told of each product, its vertices, triangles, and the number of each triangle's material."""
+    geometry, element = import_module("ifcopenshell.geom"), import_module("ifcopenshell.util.element")
+    settings = geometry.settings()
+    settings.set("use-world-coords", True)
+    more = {"exclude": excluded} if excluded else {}
+    iterator = geometry.iterator(settings, file, 1, **more)
+    if not iterator.initialize():
+        return
+    while True:
+        shape = iterator.get()
+        mesh = shape.geometry
+        vertices, triangles = np.array(mesh.verts, float).reshape(-1, 3), np.array(mesh.faces, np.int64).reshape(-1, 3)
+        product = file.by_id(shape.id)
+        told = {
+            "class": product.is_a(),
+            "name": product.Name or product.GlobalId,
+            "materials": [one.Name for one in element.get_materials(product) if getattr(one, "Name", None)],
+            "styles": [_style(file, style) for style in mesh.materials],
+        }
+        if len(triangles):
+            yield told, vertices, triangles, np.array(mesh.material_ids, np.int64)
+        if not iterator.next():
+            return
+
+
+def _style(file, style) -> dict:
+    """The name, colour and transparency of a style; none of them where it is only a default."""
+    number = style.instance_id()
+    if not number:
+        return {"name": None, "color": None, "transparency": None}
+    color, clear = style.diffuse, float(style.transparency)
+    return {
+        "name": getattr(file.by_id(number), "Name", None),
+        "color": [float(color.r()), float(color.g()), float(color.b())],
+        "transparency": clear if np.isfinite(clear) else None,
+    }
+
+
+if __name__ == "__main__":
+    convert(*sys.argv[1:3])
