@@ -112,13 +112,17 @@ def _lines(scene: Scene, power: np.ndarray, walks: int, seed: int, device: str):
     followed = leaks.follow(scene, power, walks, seed=seed, device=device)
     fates = dark_sides.inside(scene, followed)
     lines = len(fates.fate)
-    if fates.escaped + fates.lost > 0.99:
+    outside = scene.lights.sky is not None or bool(scene.lights.suns)  # lines then leave to where light comes from
+    if fates.escaped + fates.lost > 0.99 and not (outside and fates.escaped > fates.lost):
         gone = _percent(fates.escaped + fates.lost)
         yield Finding(SERIOUS, "leaks", f"{gone} of {lines} lines meet no radiating side; are the normals turned round?")
         return
     if fates.escaped:
         where, advice = _escapes(scene, fates), "an open scene where the share is large, a crack where it is small"
-        yield Finding(WARNING, "leaks", f"{_percent(fates.escaped)} of {lines} lines leave the scene ({where}): {advice}")
+        if outside:
+            advice = "where the sky and the sun shine in, or a crack where the share is small"
+        text = f"{_percent(fates.escaped)} of {lines} lines leave the scene ({where}): {advice}"
+        yield Finding(NOTE if outside else WARNING, "leaks", text)
     if fates.lost:
         counts = np.bincount(scene.surface[fates.hit[fates.fate == leaks.LOST]], minlength=len(scene.names))
         where, advice = _ranked(scene.names, counts), "if they should reflect, turn those faces round or make them two-sided"
