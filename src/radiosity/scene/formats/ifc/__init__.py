@@ -18,7 +18,23 @@ from ..textures import decode_srgb
 from .run import Product, products
 from .shells import mended
 
-GLASS = ("glass", "glas", "glazing", "glaz", "verre", "vitrage", "vidrio", "vetro", "vidro", "lasi", "szkło", "стекло", "ガラス", "玻璃")
+GLASS = (
+    "glass",
+    "glas",
+    "glazing",
+    "glaz",
+    "verre",
+    "vitrage",
+    "vidrio",
+    "vetro",
+    "vidro",
+    "lasi",
+    "szkło",
+    "стекло",
+    "ガラス",
+    "玻璃",
+)
+NO_GLASS = ("wool", "fib", "wolle", "faser", "foam", "laine", "lana")  # of names such as glass wool
 CLEAR = 0.96  # transmissivity of glass whose transparency is not given
 WITH_PANES = ("IfcWindow", "IfcWindowStandardCase", "IfcCurtainWall")
 MOST_CLEAR = 0.95
@@ -45,7 +61,10 @@ def read(path: Path, options: ReadOptions) -> Scene:
     for text, names in kinds.items():
         if names:
             warn(f"{path}: {text}: {shown(names)}")
-    for text, number in (("products have no shape that ifcopenshell can make", lost), ("light sources are left out", told["lights"])):
+    for text, number in (
+        ("products have no shape that ifcopenshell can make", lost),
+        ("light sources are left out", told["lights"]),
+    ):
         if number > 0 and options.strict:
             raise SceneError(f"{path}: {number} {text}; read the file without strict")
         if number > 0:
@@ -107,4 +126,5 @@ def _material(style: dict, label: str | None, solid: bool) -> Material:
 
 def is_glass(label: str | None) -> bool:
     """Return whether a name of a material says that it is glass."""
-    return label is not None and any(word in label.lower() for word in GLASS)
+    text = (label or "").lower()
+    return any(word in text for word in GLASS) and not any(word in text for word in NO_GLASS)

@@ -1,4 +1,4 @@
-"""A program of its own that writes the triangles of an IFC file to an NPZ file. The geometry library may end it, and nothing else.
+"""A program of its own that writes the triangles of an IFC file to an NPZ file. Where the geometry library crashes, it ends alone.
 
 It imports nothing of this package: ``python convert.py FILE OUTPUT``.
 """
@@ -9,7 +9,13 @@ from importlib import import_module
 
 import numpy as np
 
-LEFT_OUT = ("IfcFeatureElementSubtraction", "IfcSpatialElement", "IfcSpatialStructureElement", "IfcVirtualElement", "IfcAnnotation")
+LEFT_OUT = (
+    "IfcFeatureElementSubtraction",
+    "IfcSpatialElement",
+    "IfcSpatialStructureElement",
+    "IfcVirtualElement",
+    "IfcAnnotation",
+)
 KEPT = ("IfcSite",)  # of those: its shape is the ground
 LIGHTS = "IfcLightSource"
 
@@ -26,9 +32,11 @@ def convert(source: str, target: str) -> None:
         "products_with_shape": sum(1 for one in file.by_type("IfcProduct") if getattr(one, "Representation", None)),
         "left_out": len([one for one in _instances(file, LEFT_OUT, KEPT) if getattr(one, "Representation", None)]),
     }
-    arrays = {f"{key}{i}": array for i, (_, *found) in enumerate(shapes) for key, array in zip("vtm", found, strict=True)}
+    arrays = {"told": np.frombuffer(json.dumps(told).encode(), np.uint8)}
+    for number, (_, *found) in enumerate(shapes):
+        arrays |= {f"{key}{number}": array for key, array in zip("vtm", found, strict=True)}
     with open(target, "wb") as output:
-        np.savez(output, told=np.frombuffer(json.dumps(told).encode(), np.uint8), **arrays)
+        np.savez(output, allow_pickle=False, **arrays)
 
 
 def _instances(file, names, but) -> list:
