@@ -16,6 +16,7 @@ import radiosity as rd
 from radiosity.algorithms.gather import chances as chances_module
 from radiosity.algorithms.gather import lines as lines_module
 from radiosity.algorithms.gather import tally as tally_module
+from radiosity.algorithms.gather import targets as targets_module
 from radiosity.algorithms.gather.chances import Chances
 from radiosity.algorithms.gather.lamps import Lamps
 from radiosity.algorithms.gather.packets import Packets
@@ -209,7 +210,7 @@ def bright(patches: rd.Patches, truth: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("kernel", [0.01, 1 / 3, 1.5])
 @pytest.mark.parametrize("name", ["far", "near", "both"])
 def test_wherever_the_rule_divides_pairs_of_points_the_sum_is_the_same(monkeypatch, name, kernel):
-    monkeypatch.setattr(lines_module, "KERNEL", kernel)
+    monkeypatch.setattr(targets_module, "KERNEL", kernel)
     geometry = geometry_of(lit(LIGHTS[name]), 3)
     truth = solution_by_factors(geometry.patches, exact(geometry).dense())
     assert off(geometry.patches, truth, key=bright(geometry.patches, truth)) < 1
@@ -217,7 +218,7 @@ def test_wherever_the_rule_divides_pairs_of_points_the_sum_is_the_same(monkeypat
 
 @pytest.mark.parametrize(("kernel", "which"), [(1e9, "brought"), (1e-9, "met")])
 def test_at_its_ends_the_rule_leaves_one_kind_of_line(monkeypatch, kernel, which):
-    monkeypatch.setattr(lines_module, "KERNEL", kernel)
+    monkeypatch.setattr(targets_module, "KERNEL", kernel)
     solution = rd.solve(rd.subdivide(lit(LIGHTS["both"]), cells=2), "gather", rays=100_000)
     other = {"brought": "met", "met": "brought"}[which]
     assert solution.state[which].any()
@@ -232,7 +233,7 @@ def test_rules_that_disagree_are_rejected(monkeypatch, cosine, shadow):
         plain = getattr(lines_module.Lines, name)
 
         def with_kernel(self, *arguments, _plain=plain, _kernel=kernel, **named):
-            monkeypatch.setattr(lines_module, "KERNEL", _kernel)
+            monkeypatch.setattr(targets_module, "KERNEL", _kernel)
             return _plain(self, *arguments, **named)
 
         monkeypatch.setattr(lines_module.Lines, name, with_kernel)

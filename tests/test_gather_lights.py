@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.algorithms.gather import lines
+from radiosity.algorithms.gather import targets
 from radiosity.problem.lights.openings import Openings
 from radiosity.scene.lights.luminaire import Luminaire
 from radiosity.scene.lights.model import Lights
@@ -108,13 +108,13 @@ def test_openings_change_errors_alone(windowed, with_opening):
 @pytest.mark.parametrize("fault", ["both count", "cosine lines never count", "another opening"])
 def test_wrong_weights_of_openings_are_noticed(windowed, with_opening, fault, monkeypatch):
     """Shadow rays through openings and cosine lines share the light of the sky among them: each direction counts once."""
-    monkeypatch.setattr(lines, "KERNEL", 0.02)  # so that cosine lines have much of it
+    monkeypatch.setattr(targets, "KERNEL", 0.02)  # so that cosine lines have much of it
     if fault == "another opening":
         nearest = Openings.nearest
         monkeypatch.setattr(Openings, "nearest", lambda *a: (nearest(*a)[0] + 1, *nearest(*a)[1:]))
     else:
-        density, factor = lines.Chances.density_of, 0.0 if fault == "both count" else 1e9
-        monkeypatch.setattr(lines.Chances, "density_of", lambda *a: density(*a) * factor)  # only cosine lines ask for it
+        density, factor = targets.Chances.density_of, 0.0 if fault == "both count" else 1e9
+        monkeypatch.setattr(targets.Chances, "density_of", lambda *a: density(*a) * factor)  # only cosine lines ask for it
     sky, where = Sky("sky", OVERCAST, np.eye(3)), with_opening.irradiance[:, 0] > 0
     wrong = gathered(lit(windowed, sky=sky, openings=WINDOW, cells=5), quanta=60_000)
     assert abs(wrong.irradiance[where].mean() / with_opening.irradiance[where].mean() - 1) > 0.02

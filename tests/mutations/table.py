@@ -169,7 +169,7 @@ MISTAKES = (
         "lines of all stages that escaped are shares of the stored ones",
     ),
     Mistake(
-        "algorithms/gather/lines.py",
+        "algorithms/gather/targets.py",
         "(kernel <= KERNEL * bound)",
         "(kernel <= 2 * KERNEL * bound)",
         ("test_gather.py",),
@@ -2268,5 +2268,26 @@ MISTAKES = (
         "back, right, up = axes[:, 2], axes[:, 0], axes[:, 1]",
         ("test_formats_mitsuba_lights.py",),
         "the image of the surroundings is mirrored",
+    ),
+    Mistake(
+        "algorithms/gather/targets.py",
+        "arrival = aimed, light, distance, above * share / density, beams.powers",
+        "arrival = aimed, light, distance, share / density, beams.powers",
+        ("test_gather_lights.py",),
+        "light of luminaires and suns arrives without the cosine",
+    ),
+    Mistake(
+        "algorithms/gather/targets.py",
+        "through &= side == lamp - chances.lamps.n_faces",
+        "through &= side != lamp - chances.lamps.n_faces",
+        ("test_gather_lights.py",),
+        "shadow rays bring the sky through other openings than theirs alone",
+    ),
+    Mistake(
+        "algorithms/gather/chances.py",
+        "if self.beams is None:\n            return CLUSTER",
+        "if self.beams is None or True:\n            return CLUSTER",
+        ("test_gather_lights.py",),
+        "many luminaires are chosen by clusters that are too large",
     ),
 )

@@ -141,7 +141,7 @@ class Chances:
             return
         if self.beams is not None:
             self.beams.prepare()
-        _ = self.cumulative, self.density, self.chosen_within, self.spans
+        _ = self.cumulative, self.density, self.chosen_within, self.spans, self.n_lamps
 
     @property
     def types(self):
@@ -169,6 +169,11 @@ class Chances:
             upload(types.Float, sums.astype(np.float32)),
             upload(types.Float, (self.within / self.area).astype(np.float32)),
         )
+
+    @cached_property
+    def n_lamps(self):
+        """The number of lamps, UInt32: targets from there on are lights without area."""
+        return dr.opaque(self.types.UInt32, len(self.lamps))
 
     @cached_property
     def spans(self):

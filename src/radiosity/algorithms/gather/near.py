@@ -11,7 +11,7 @@ import numpy as np
 
 from ...factors.polygons.exchange import exchange
 from .chances import Chances
-from .lines import KERNEL
+from .targets import KERNEL
 
 ENOUGH = 10.0  # hits in all replicates together: from there on their spread is known well enough
 R4 = (1 / 1.1673039782614187) ** np.arange(1, 5)  # the additive recurrence of the root of x^5 = x + 1
