@@ -209,6 +209,13 @@ def test_faults_are_one_error_with_file_and_value(photometry, name):
     assert says in str(error.value)
 
 
+@pytest.mark.parametrize(("multiplier", "says"), [(1e306, "not believed"), (1e-30, "sends no light")])
+def test_light_that_no_lamp_sends_is_refused(tmp_path, multiplier, says):
+    (tmp_path / "lamp.ies").write_text(ies(np.array(LAMBERTIAN) * 1e4, multiplier=multiplier))
+    with pytest.raises(rd.SceneError, match=says):
+        rd.load_photometry(tmp_path / "lamp.ies")
+
+
 def test_small_negative_values_and_numbers_that_follow_are_told(photometry):
     table = np.array(LAMBERTIAN)
     table[-1] = -0.001
