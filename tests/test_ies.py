@@ -120,6 +120,7 @@ def test_planes_that_stop_before_360_are_closed_and_told(photometry):
 
 
 def test_tilt_is_read_past_and_told(photometry):
+    assert photometry(ies(tilt="Tilt = none")).notes == ()
     found = photometry(ies(tilt="TILT=INCLUDE\n1\n3\n0 45 90\n1.0 0.9 0.8"))
     assert found.flux == pytest.approx(FLUX, rel=1e-5)
     assert "0.8 to 1" in found.notes[0]
