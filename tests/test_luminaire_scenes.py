@@ -203,6 +203,14 @@ def test_a_saved_solution_has_its_luminaires(files, tmp_path):
     assert [lamp.photometric for lamp in again.patches.scene.lights.luminaires] == [True, True]
 
 
+def test_the_hash_of_a_scene_does_not_depend_on_where_its_files_lie(files):
+    one, other = (floor().with_lights([rd.read_luminaire(path, position=(1, 1, 1))]) for path in ("down.ies", files / "down.ies"))
+    assert one.hash == other.hash
+    dimmed = floor().with_lights([rd.read_luminaire("down.ies", position=(1, 1, 1), maintenance=0.9)])
+    ball = floor().with_lights([rd.read_luminaire("globe.ldt", position=(1, 1, 1), lumens=one.lights.luminaires[0].power[0])])
+    assert len({one.hash, dimmed.hash, ball.hash, floor().hash}) == 4
+
+
 def test_choosing_faces_keeps_the_lights():
     lit = floor().with_lights([rd.point_light(position=(1, 1, 1), lumens=5)])
     assert lit.take(np.array([0])).lights is lit.lights
