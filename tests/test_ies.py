@@ -120,6 +120,7 @@ def test_planes_that_stop_before_360_are_closed_and_told(photometry):
 
 
 def test_tilt_is_read_past_and_told(photometry):
+    assert photometry(ies(tilt="Tilt = none")).notes == ()
     found = photometry(ies(tilt="TILT=INCLUDE\n1\n3\n0 45 90\n1.0 0.9 0.8"))
     assert found.flux == pytest.approx(FLUX, rel=1e-5)
     assert "0.8 to 1" in found.notes[0]
@@ -207,6 +208,13 @@ def test_faults_are_one_error_with_file_and_value(photometry, name):
     with pytest.raises(rd.SceneError, match=r"lamp\.ies") as error:
         photometry(edit(ies()))
     assert says in str(error.value)
+
+
+@pytest.mark.parametrize(("multiplier", "says"), [(1e306, "not believed"), (1e-30, "sends no light")])
+def test_light_that_no_lamp_sends_is_refused(tmp_path, multiplier, says):
+    (tmp_path / "lamp.ies").write_text(ies(np.array(LAMBERTIAN) * 1e4, multiplier=multiplier))
+    with pytest.raises(rd.SceneError, match=says):
+        rd.load_photometry(tmp_path / "lamp.ies")
 
 
 def test_small_negative_values_and_numbers_that_follow_are_told(photometry):

@@ -203,6 +203,14 @@ def test_a_saved_solution_has_its_luminaires(files, tmp_path):
     assert [lamp.photometric for lamp in again.patches.scene.lights.luminaires] == [True, True]
 
 
+def test_the_hash_of_a_scene_does_not_depend_on_where_its_files_lie(files):
+    one, other = (floor().with_lights([rd.read_luminaire(path, position=(1, 1, 1))]) for path in ("down.ies", files / "down.ies"))
+    assert one.hash == other.hash
+    dimmed = floor().with_lights([rd.read_luminaire("down.ies", position=(1, 1, 1), maintenance=0.9)])
+    ball = floor().with_lights([rd.read_luminaire("globe.ldt", position=(1, 1, 1), lumens=one.lights.luminaires[0].power[0])])
+    assert len({one.hash, dimmed.hash, ball.hash, floor().hash}) == 4
+
+
 def test_choosing_faces_keeps_the_lights():
     lit = floor().with_lights([rd.point_light(position=(1, 1, 1), lumens=5)])
     assert lit.take(np.array([0])).lights is lit.lights
@@ -247,6 +255,13 @@ class TestToml:
         assert (one.group, two.soft) == ("a", True)
         assert scene.unit == "lm/m²"
 
+    def test_one_entry_for_several(self, files):
+        rows = "positions = [[1, 1, 3], [2, 1, 3], [3, 1, 3]]\n"
+        scene = scene_of(files, '[[luminaire]]\nfile = "down.ies"\nname = "row"\n' + rows)
+        assert [lamp.name for lamp in scene.lights.luminaires] == ["row", "row#2", "row#3"]
+        assert [lamp.position[0] for lamp in scene.lights.luminaires] == [1, 2, 3]
+        assert len({id(lamp.web) for lamp in scene.lights.luminaires}) == 1
+
     def test_lengths_follow_the_unit(self, files):
         scene = scene_of(files, 'unit = "cm"\nscale = 2\n' + DOWN)
         assert scene.lights.luminaires[0].position == pytest.approx((0.02, 0.04, 0.06))
@@ -256,7 +271,7 @@ class TestToml:
         ("entry", "says"),
         [
             ("position = [1, 1, 1]", "luminaire 1: give file ="),
-            ('file = "down.ies"', "luminaire 1, position is missing"),
+            ('file = "down.ies"', "luminaire 1: give position = [x, y, z]"),
             (DOWN.split("\n", 1)[1] + 'type = "point"', "luminaire 1: give file ="),
             ('type = "spot"\nposition = [0, 0, 0]\nlumens = 5', "needs beam"),
             ('type = "point"\nposition = [0, 0, 0]\nlumens = 5\nbeam = 20', "beam do not go with type point"),

@@ -9,11 +9,13 @@ import json
 import struct
 import tempfile
 import zipfile
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from random import Random
 
 import numpy as np
+from luminaire_files import ies, ldt
 from mutate import mutated
 from samples import (
     MGF,
@@ -43,6 +45,10 @@ XML = (
 </texture></bsdf></shape>"""
     + XML_END
 )
+LUMINAIRES = {
+    "lamp.ies": ies(np.eye(37)[:3] + 1, horizontal=(0, 45, 90), tilt="TILT=INCLUDE\n1\n2\n0 90\n1 0.5", size=(-0.2, 0.4, 0)),
+    "lamp.ldt": ldt(np.eye(37)[:5] + 1, range(0, 360, 45), symmetry=2, sets=((2, 3000.0), (-1, 500.0))),
+}
 PART = b"m wall =\n\tsides 1\n\trd .5\nv q =\n p 0 0 9\nv r =\n p 1 0 9\nv s =\n p 0 1 9\nf q r s\n"
 
 
@@ -153,6 +159,16 @@ def _toml(random: Random) -> dict[str, bytes]:
     return {"scene.toml": mutated(TOML.encode(), random), "lamp.stl": stl_bytes(TRIANGLES), "room.ply": ply_text().encode()}
 
 
+def _luminaire(name: str) -> Callable[[Random], dict[str, bytes]]:
+    """Damaged luminaire files, which a sound scene names."""
+
+    def files(random: Random) -> dict[str, bytes]:
+        text = f'geometry = "room.ply"\n[[luminaire]]\nfile = "{name}"\nposition = [0, 0, 2]\n'
+        return {"scene.toml": text.encode(), "room.ply": ply_text().encode(), name: mutated(LUMINAIRES[name].encode(), random)}
+
+    return files
+
+
 def _xml(random: Random) -> dict[str, bytes]:
     files = {"scene.xml": XML, "mesh.obj": OBJ.encode(), "mesh.ply": ply_bytes(), "wall.png": picture()}
     name = random.choice(("scene.xml",) * 6 + ("mesh.obj", "mesh.ply"))
@@ -223,6 +239,8 @@ FORMATS = {
     "stl-binary": _one("scene.stl", lambda: stl_bytes(TRIANGLES)),
     "vs3": _one("scene.vs3", lambda: VS3.encode()),
     "toml": _toml,
+    "ies": _luminaire("lamp.ies"),
+    "ldt": _luminaire("lamp.ldt"),
     "npz": _npz,
     "lines": _lines,
 }

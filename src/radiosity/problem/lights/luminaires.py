@@ -110,13 +110,11 @@ def _words(one: Luminaire, bvh: Any) -> np.ndarray:
 
 def _distinct(webs: list[Web]) -> tuple[tuple[Web, ...], list[int]]:
     """Return the different ones of webs, and the number of each among them."""
+    each = {id(web): web for web in webs}  # most share one by themselves
     known: dict[tuple, int] = {}
-    first: list[Web] = []
-    number = []
-    for web in webs:
+    number = {}
+    for name, web in each.items():
         key = tuple((x.shape, x.tobytes()) for x in (web.planes, web.gamma, web.intensity))
-        if key not in known:
-            known[key] = len(first)
-            first.append(web)
-        number.append(known[key])
-    return tuple(first), number
+        number[name] = known.setdefault(key, len(known))
+    first = {number[name]: web for name, web in reversed(each.items())}
+    return tuple(first[i] for i in range(len(first))), [number[id(web)] for web in webs]

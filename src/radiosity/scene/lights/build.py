@@ -90,7 +90,8 @@ def load_photometry(file: str | os.PathLike, *, lamp_set: int | None = None) -> 
     try:
         if lamp_set is not None and reader is not eulumdat.read:
             raise SceneError(f"{path}: lamp_set is for EULUMDAT files; an IES file has one set of lamps")
-        return reader(path) if lamp_set is None else eulumdat.read(path, lamp_set)
+        with np.errstate(all="ignore"):  # numbers out of range are found by the checks
+            return reader(path) if lamp_set is None else eulumdat.read(path, lamp_set)
     except SceneError:
         raise
     except Exception as error:  # damage that no check knows

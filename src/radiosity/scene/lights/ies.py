@@ -15,6 +15,7 @@ from .web import Web
 
 VERSION = re.compile(r"\s*(?:IESNA(91)|IES(?:NA)?:LM-63-(\d{4}))\b", re.IGNORECASE)
 OLDEST, NEWEST = 1986, 2019  # the oldest has no first line of its own
+TILT = re.compile(r"\s*TILT\s*=", re.IGNORECASE)
 TYPES = {1: "C", 2: "B", 3: "A"}
 UNITS = {1: 0.3048, 2: 1.0}  # feet, metres
 MOST_ANGLES = 8000
@@ -49,13 +50,13 @@ def read(path: Path) -> Photometry:
         SceneError: it is none, or damaged; the message names the line and the value.
     """
     lines, source = lines_of(path), str(path)
-    tilt = next((i for i, line in enumerate(lines) if line.strip().upper().startswith("TILT=")), None)
+    tilt = next((i for i, line in enumerate(lines) if TILT.match(line)), None)
     if tilt is None:
         raise SceneError(f"{source}: has no line TILT=, so it is no IES file (LM-63)")
     keywords = _keywords(lines[:tilt])
     words, notes = Words.of(lines[tilt + 1 :], tilt + 2, source), []
     version = _version(lines[0], notes)
-    _tilt(lines[tilt].strip()[5:].strip(), words, notes)
+    _tilt(lines[tilt].split("=", 1)[1].strip(), words, notes)
     header = _header(words)
     vertical = words.several(header.n_vertical, "the vertical angles")
     horizontal = words.several(header.n_horizontal, "the horizontal angles")

@@ -8,6 +8,7 @@ import numpy as np
 from .luminaire import Luminaire
 from .sky import Sky
 from .sun import Sun
+from .web import Web
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,22 +38,35 @@ class Lights:
         return (*self.luminaires, *self.suns, *(() if self.sky is None else (self.sky,)))
 
     def digest(self) -> bytes:
-        """Return a hash of everything that a solution depends on."""
+        """Return a hash of everything that a solution depends on: not of where luminaire files lie. A web that many share is read
+        once."""
         digest = hashlib.sha256()
-        _update(digest, self)
+        _update(digest, self, {})
         return digest.digest()
 
 
-def _update(digest, value) -> None:
-    """Add a value to a hash: dataclasses field by field, arrays with their shapes."""
-    if is_dataclass(value):
+def _update(digest, value, webs: dict[int, bytes]) -> None:
+    """Add a value to a hash: dataclasses field by field, arrays with their shapes.
+
+    Args:
+        webs: hashes of webs so far, by identity.
+    """
+    if isinstance(value, Web):
+        if id(value) not in webs:
+            own = hashlib.sha256()
+            for one in fields(value):
+                _update(own, getattr(value, one.name), webs)
+            webs[id(value)] = own.digest()
+        digest.update(webs[id(value)])
+    elif is_dataclass(value):
         digest.update(type(value).__name__.encode())
         for one in fields(value):
-            _update(digest, getattr(value, one.name))
+            if one.name != "source":
+                _update(digest, getattr(value, one.name), webs)
     elif isinstance(value, tuple):
         digest.update(str(len(value)).encode())
         for one in value:
-            _update(digest, one)
+            _update(digest, one, webs)
     elif isinstance(value, np.ndarray):
         digest.update(str((value.dtype.str, value.shape)).encode())
         digest.update(np.ascontiguousarray(value).tobytes())

@@ -8,6 +8,7 @@ from ...errors import SceneError
 from .web import Web
 
 NOISE = 0.01  # of the largest intensity: negative values of this size are taken as zero, and told
+LEAST, LARGEST = 1e-12, 1e15  # cd; no lamp is outside
 SAME = 1e-6  # degrees between angles that are one
 
 
@@ -34,8 +35,10 @@ def checked_intensities(table: np.ndarray, angles: tuple[np.ndarray, np.ndarray]
     Raises:
         SceneError: one is large, or all are zero.
     """
-    if not table.max() > 0:
-        raise SceneError(f"{source}: all intensities are zero: the luminaire sends no light")
+    if not table.max() > LEAST:
+        raise SceneError(f"{source}: all intensities are zero, or below {LEAST:g} cd: the luminaire sends no light")
+    if not np.abs(table).max() < LARGEST:
+        raise SceneError(f"{source}: an intensity is {np.abs(table).max():g} cd; those of {LARGEST:g} and more are not believed")
     if table.min() < 0:
         plane, row = np.unravel_index(np.argmin(table), table.shape)
         text = f"the intensity at plane {angles[0][plane]:g}, angle {angles[1][row]:g} is {table.min():g} cd"

@@ -30,16 +30,17 @@ def luminaires_of(entries, factor: float, options: ReadOptions, source: Path) ->
         SceneError: a luminaire file is missing or damaged, or a value makes no sense; the message names the entry.
     """
     read: dict[tuple[Path, int | None], Photometry] = {}
+    taken: dict[str, int] = {}
     result = []
     for number, entry in enumerate(entries, 1):
-        try:
-            result.append(_luminaire(entry, factor, options, source, read))
-        except SceneError as error:
-            said = str(error)
-            raise SceneError(said if said.startswith(f"{source}: ") else f"{source}: luminaire {number}: {said}") from None
-    taken = {entry.name: 1 for entry in entries if entry.name}
-    pairs = zip(entries, result, strict=True)
-    return [one if entry.name else replace(one, name=numbered(one.name, taken)) for entry, one in pairs]
+        for position in entry.positions or [entry.position]:
+            try:
+                one = _luminaire(entry, np.asarray(position) * factor, factor, options, source, read)
+            except SceneError as error:
+                said = str(error)
+                raise SceneError(said if said.startswith(f"{source}: ") else f"{source}: luminaire {number}: {said}") from None
+            result.append(replace(one, name=numbered(one.name, taken)))
+    return result
 
 
 def warn_of_y_up(entries, scene: Scene, source: Path) -> None:
@@ -50,8 +51,8 @@ def warn_of_y_up(entries, scene: Scene, source: Path) -> None:
         warn(f"{source}: {text}: give direction = [0, -1, 0], or [0, 0, -1] where z is up")
 
 
-def _luminaire(entry, factor: float, options: ReadOptions, source: Path, read: dict) -> Luminaire:
-    position, aim = (None if value is None else np.asarray(value) * factor for value in (entry.position, entry.aim))
+def _luminaire(entry, position, factor: float, options: ReadOptions, source: Path, read: dict) -> Luminaire:
+    aim = None if entry.aim is None else np.asarray(entry.aim) * factor
     common = {"position": position, "aim": aim, "direction": entry.direction, "maintenance": entry.maintenance}
     common |= {"color": entry.color, "group": entry.group, "name": entry.name}
     if entry.type is not None:

@@ -110,7 +110,8 @@ class LuminaireEntry(_Table):
 
     file: Annotated[str, Field(min_length=1)] | None = None
     type: Literal["point", "spot"] | None = None
-    position: Point
+    position: Point | None = None
+    positions: Annotated[list[Point], Field(min_length=1)] | None = None
     aim: Point | None = None
     direction: Point | None = None
     rotate: float = 0.0
@@ -139,6 +140,8 @@ class LuminaireEntry(_Table):
             raise ValueError("a spot needs beam, the full angle of half its intensity in degrees")
         if self.aim is not None and self.direction is not None:
             raise ValueError("aim and direction exclude each other; give one")
+        if (self.position is None) == (self.positions is None):
+            raise ValueError("give position = [x, y, z], or positions = [[x, y, z], ...] for several that are alike")
         return self
 
 
