@@ -103,7 +103,12 @@ def tell_instead(text: str) -> None:
         sys.stderr.write(text)
 
 
-INSTALL = "pip install 'radiosity[all]' brings it (in a clone of the project: pip install '.[all]')"  # for optional libraries
+def installing(extra: str) -> str:
+    """Return how to install an extra that brings an optional library."""
+    return f"pip install 'radiosity[{extra}]' brings it (in a clone of the project: pip install '.[{extra}]')"
+
+
+INSTALL = installing("all")
 
 
 def shown(names, most: int = 8) -> str:

@@ -3,13 +3,15 @@
 import platform
 import sys
 
-from ..errors import INSTALL, DeviceError
+from ..errors import INSTALL, DeviceError, installing
 
 EXTRAS = {
     "formats": ("mapbox-earcut", "pyradiance", "pydantic"),
+    "ifc": ("ifcopenshell",),
     "plots": ("matplotlib",),
     "lab": ("matplotlib", "xarray", "pandas"),
 }
+ALONE = ("ifc",)  # extras that `all` leaves out
 
 
 def doctor() -> int:
@@ -31,7 +33,7 @@ def doctor() -> int:
     for extra, packages in EXTRAS.items():
         missing = [package for package in packages if _installed(package) is None]
         if missing:
-            _line("absent", extra, f"{', '.join(missing)} not installed; {INSTALL}")
+            _line("absent", extra, f"{', '.join(missing)} not installed; {installing(extra) if extra in ALONE else INSTALL}")
         else:
             _line("ok", extra, ", ".join(f"{package} {_installed(package)}" for package in packages))
     return 0 if usable else 1

@@ -7,6 +7,7 @@ import numpy as np
 from .model import Scene
 
 Y_UP = (".glb", ".gltf", ".obj", ".xml")  # formats whose scenes are mostly modelled with y upwards
+Z_UP = (".hbjson", ".ifc", ".rad")  # formats in which z is up
 CLEARLY = 1.3  # times as much level area along the other axis speaks against a format's habit
 
 
@@ -24,6 +25,8 @@ def up_axis(scene: Scene) -> str:
     if scene.cameras:
         up = np.abs(np.asarray(scene.cameras[0].up, np.float64))
         return "y" if up[1] > up[2] else "z"
+    if PurePath(scene.source).suffix.lower() in Z_UP:
+        return "z"
     level = (scene.area[:, None] * (np.abs(scene.normal) > 0.999)).sum(axis=0)
     if PurePath(scene.source).suffix.lower() in Y_UP:
         return "z" if level[2] > CLEARLY * level[1] else "y"

@@ -1,8 +1,8 @@
 """Read honeybee models (HBJSON): rooms with windows and doors, and shades, with the modifiers of honeybee-radiance.
 
 A surface is called by its kind and identifier: ``wall/office_north``, ``aperture/office_north_window``. Kinds are wall, floor,
-ceiling, aperture, door and shade. All have two sides. Of the two faces between adjacent rooms the first is taken, and has the
-second one's reflectance on the side of its room.
+ceiling, aperture, door and shade. All have two sides; fronts of rooms' faces look into the room. Of the two faces between
+adjacent rooms the first is taken, and has the second one's reflectance on the side of its room.
 """
 
 import json

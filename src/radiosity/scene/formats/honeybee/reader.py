@@ -50,24 +50,25 @@ class Reader:
         for room in model.rooms or ():
             of_room = room.light.modifier_set
             for face in room.faces:
-                self._face(face, of_room)
+                self._face(face, of_room, inward=True)
             self._shades(room, of_room)
         for face in model.orphaned_faces or ():
-            self._face(face, None)
+            self._face(face, None, inward=False)
         for aperture in model.orphaned_apertures or ():
-            self._aperture(aperture, "Wall", None)
+            self._aperture(aperture, "Wall", None, inward=False)
         for door in model.orphaned_doors or ():
-            self._door(door, "Wall", None)
+            self._door(door, "Wall", None, inward=False)
         for shade in model.orphaned_shades or ():
             role = ("", "context_modifier") if shade.is_detached else ("shade_set", "exterior_modifier")
-            self._add("shade", shade, shade.geometry, (), None, role)
+            self._add("shade", shade, shade.geometry, None, role)
         for mesh in model.shade_meshes or ():
             role = ("", "context_modifier") if mesh.is_detached else ("shade_set", "exterior_modifier")
             faces = np.array([[*face, -1][:4] for face in mesh.geometry.faces], np.int64).reshape(-1, 4)
             vertices = np.array(mesh.geometry.vertices, float).reshape(-1, 3)
             self._part(f"shade/{mesh.identifier}", vertices, faces, self._modifiers.of(mesh.light.modifier, None, role))
 
-    def _face(self, face: Face, of_room: Named) -> None:
+    def _face(self, face: Face, of_room: Named, *, inward: bool) -> None:
+        """Take a face; ``inward``: it is turned, since faces of rooms look outward, and what is in the room matters."""
         self._shades(face, of_room)
         holes = [one.geometry.boundary for one in [*(face.apertures or ()), *(face.doors or ())]]
         if face.face_type in KINDS:
@@ -75,35 +76,35 @@ class Reader:
             role = (of, "exterior_modifier" if face.boundary_condition.type == "Outdoors" else "interior_modifier")
             if self._first(face):
                 self._number[face.identifier] = len(self.parts)
-                self._add(kind, face, face.geometry, holes, of_room, role)
+                self._add(kind, face, face.geometry, of_room, role, holes=holes, inward=inward)
                 if self._number[face.identifier] == len(self.parts):  # nothing is left between windows, or it is invisible
                     del self._number[face.identifier]
             else:
                 self._other_side(face, self._modifiers.of(face.light.modifier, of_room, role))
         for aperture in face.apertures or ():
-            self._aperture(aperture, face.face_type, of_room)
+            self._aperture(aperture, face.face_type, of_room, inward=inward)
         for door in face.doors or ():
-            self._door(door, face.face_type, of_room)
+            self._door(door, face.face_type, of_room, inward=inward)
 
-    def _aperture(self, aperture: Aperture, wall: str, of_room: Named) -> None:
+    def _aperture(self, aperture: Aperture, wall: str, of_room: Named, *, inward: bool) -> None:
         self._shades(aperture, of_room)
         if self._first(aperture):
             outside = "operable" if aperture.is_operable else "window" if wall == "Wall" else "skylight"
             which = "interior" if aperture.boundary_condition.type == "Surface" else outside
-            self._add("aperture", aperture, aperture.geometry, (), of_room, ("aperture_set", f"{which}_modifier"))
+            self._add("aperture", aperture, aperture.geometry, of_room, ("aperture_set", f"{which}_modifier"), inward=inward)
 
-    def _door(self, door: Door, wall: str, of_room: Named) -> None:
+    def _door(self, door: Door, wall: str, of_room: Named, *, inward: bool) -> None:
         self._shades(door, of_room)
         if self._first(door):
             which = "interior" if door.boundary_condition.type == "Surface" else "exterior"
             which = f"{which}_glass" if door.is_glass else which
             which = "overhead" if which == "exterior" and wall != "Wall" else which
-            self._add("door", door, door.geometry, (), of_room, ("door_set", f"{which}_modifier"))
+            self._add("door", door, door.geometry, of_room, ("door_set", f"{which}_modifier"), inward=inward)
 
     def _shades(self, holder: Shaded, of_room: Named) -> None:
         for shades, side in ((holder.indoor_shades, "interior"), (holder.outdoor_shades, "exterior")):
             for shade in shades or ():
-                self._add("shade", shade, shade.geometry, (), of_room, ("shade_set", f"{side}_modifier"))
+                self._add("shade", shade, shade.geometry, of_room, ("shade_set", f"{side}_modifier"))
 
     def _first(self, one: Face | Aperture | Door) -> bool:
         """Return whether an object is the first of a pair of adjacent ones, or has no other."""
@@ -115,20 +116,30 @@ class Reader:
         return True
 
     def _other_side(self, face: Face, chain: Chain) -> None:
-        """Give the first face of a pair, which looks into the room of the second one, the second one's reflectance there."""
+        """Give the first face of a pair, whose back looks into the room of the second one, the second one's reflectance there."""
         number = self._number.get(self._second[face.identifier])
         material = self._material(f"the other side of {self._second[face.identifier]}", chain)
         if number is not None and material is not None:
             one = self.parts[number].material
             if material.reflectance != one.reflectance and not material.transmittance and not one.transmittance:
-                both = replace(one, reflectance=material.reflectance, back_reflectance=one.reflectance)
+                both = replace(one, back_reflectance=material.reflectance)
                 self.parts[number] = replace(self.parts[number], material=both)
 
-    def _add(self, kind: str, one: Shade | Shaded, shape: Polygon, holes: Iterable, of_room: Named, role: Role) -> None:
+    def _add(
+        self,
+        kind: str,
+        one: Shade | Shaded,
+        shape: Polygon,
+        of_room: Named,
+        role: Role,
+        *,
+        holes: Iterable = (),
+        inward: bool = False,
+    ) -> None:
         name = f"{kind}/{one.identifier}"
         if one.light.dynamic_group_identifier is not None:
             self._dynamic[name] = None
-        outline = np.array(shape.boundary, float)
+        outline = np.array(shape.boundary, float)[:: -1 if inward else 1]
         inside = [np.array(hole, float) for hole in [*(shape.holes or ()), *holes]]
         if inside:
             vertices, triangles, difference = pierced(outline, inside)

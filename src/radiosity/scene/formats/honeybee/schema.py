@@ -164,7 +164,7 @@ def checked(values: Any, source: str) -> Model:
 
 
 def _place(steps: tuple[int | str, ...]) -> str:
-    """Return where a fault is, such as ``rooms 2, faces 1, geometry``; numbers begin with 1."""
+    """Return the place of a fault, such as ``rooms 2, faces 1, geometry``; numbers begin with 1."""
     text = ""
     for step in steps:
         text += f" {step + 1}" if isinstance(step, int) else f"{', ' if text else ''}{step}"

@@ -1,4 +1,4 @@
-"""A program of its own that writes the triangles of an IFC file to an NPZ file. If the geometry library crashes, it alone ends.
+"""A program of its own that writes the triangles of an IFC file to an NPZ file: a crash of the geometry library ends it alone.
 
 It imports nothing of this package: ``python convert.py FILE OUTPUT``.
 """

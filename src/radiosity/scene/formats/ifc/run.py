@@ -10,11 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ....errors import SceneError
+from ....errors import SceneError, installing
 
 PROGRAM = Path(__file__).with_name("convert.py")
 SECONDS = 1800
-INSTALL = "pip install 'radiosity[ifc]' brings it (in a clone of the project: pip install '.[ifc]')"
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +46,7 @@ def products(path: Path) -> tuple[list[Product], dict]:
         SceneError: ifcopenshell is not installed, or cannot read the file.
     """
     if find_spec("ifcopenshell") is None:
-        raise SceneError(f"{path}: reading .ifc files needs 'ifcopenshell'; {INSTALL}")
+        raise SceneError(f"{path}: reading .ifc files needs 'ifcopenshell'; {installing('ifc')}")
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "shapes.npz"
         command = [sys.executable, str(PROGRAM), str(path.resolve()), str(target)]

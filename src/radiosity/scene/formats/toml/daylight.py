@@ -18,7 +18,7 @@ from ...lights.sun_position import YEAR, day_of_year, sun_position
 from ...lights.weather import epw_sky, perez_sky
 from ...model import Scene
 from ...parts import ReadOptions
-from ...up import up_axis
+from ...up import Z_UP, up_axis
 from ..beside import named_file
 
 FLAT = 1e-6  # of its size: so far the fourth corner of an opening may stand from the plane of the others
@@ -55,7 +55,8 @@ def _far(asked: Any, scene: Scene, options: ReadOptions, source: Path) -> tuple[
     if sky is None and sun is None:
         return None, ()
     in_lumens = sky is not None or sun.illuminance is not None if asked.photometric is None else asked.photometric
-    frame = _frame(sky, sun, scene, source)
+    of_z = all(Path(entry.file).suffix.lower() in Z_UP for entry in asked.geometry)
+    frame = _frame(sky, sun, source, "z" if of_z else up_axis(scene))
     if _place(sky) and _place(sun) and _place(sky) != _place(sun):
         raise SceneError(f"sky and sun place the sun at {_place(sky)} and {_place(sun)} (altitude, azimuth); give its place once")
     suns = () if sun is None else (_sun(sun, _place(sun) or _place(sky), frame, in_lumens),)
@@ -116,8 +117,8 @@ def _place(entry: Any) -> tuple[float, float] | None:
     return sun_position(*where, entry.month, entry.day, entry.hour, entry.year or YEAR)
 
 
-def _frame(sky: Any, sun: Any, scene: Scene, source: Path) -> dict:
-    """Return up and north, which the sky and the sun share."""
+def _frame(sky: Any, sun: Any, source: Path, seen: str) -> dict:
+    """Return up and north, which the sky and the sun share; ``seen`` is the axis that seems to be up."""
     found = {}
     for key in ("up", "north"):
         given = {name: getattr(entry, key) for name, entry in (("sky", sky), ("sun", sun)) if entry is not None}
@@ -127,7 +128,7 @@ def _frame(sky: Any, sun: Any, scene: Scene, source: Path) -> dict:
         found[key] = next(iter(values.values()), None)
     if found["up"] is None:
         found["up"] = "z"
-        if up_axis(scene) == "y":
+        if seen == "y":
             warn(f'{source}: the sky and the sun take z as up; the scene seems to have y upwards: give up = "y", or up = "z"')
     return found
 
