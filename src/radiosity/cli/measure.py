@@ -1,6 +1,6 @@
 """``radiosity measure``"""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Group, Parameter
 
 from ..errors import MethodError, OutputError, SceneError, printable
-from . import interrupts, outputs
+from . import amounts, interrupts, outputs
 from .options import Count, Length, Outputs, Share
 from .solve import NOT_REACHED
 from .solve_options import RUN, Machine, SceneOptions, Unset
@@ -16,6 +16,7 @@ from .streams import tell
 
 Texts = Annotated[tuple[str, ...], Parameter(consume_multiple=(1, None), negative=(), show_default=False)]
 Tables = Annotated[tuple[Path, ...], Parameter(consume_multiple=(1, None), negative=(), show_default=False)]
+Observers = Annotated[tuple[str, ...], Parameter(allow_leading_hyphen=True, negative=(), show_default=False)]  # one each time
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
 
@@ -29,12 +30,15 @@ class Places:
         points: Tables of points, .csv: x,y,z in metres and, where the planes do not look up, nx,ny,nz.
         margin: How far the sensors of grids stay away from the outline, in metres.
         kind: plane, or cylindrical: the mean of all planes that contain the axis, as on an upright cylinder.
+        ugr: Observers whose unified glare rating is found, as X,Y,Z,DX,DY,DZ: the eye in metres, and the line of sight; --ugr
+            again for another one.
     """
 
     grid: Texts = ()
     points: Tables = ()
     margin: Length = None
     kind: Literal["plane", "cylindrical"] = "plane"
+    ugr: Observers = ()
 
 
 @dataclass(frozen=True)
@@ -115,20 +119,51 @@ def measure(
         if given:
             raise MethodError(f"{scene} holds a solution, whose patches are there already: leave {', '.join(given)} out")
         loaded = rd.load_solution(scene)
-        sensors = _sensors(loaded.patches.scene, places)
+        scene_read = loaded.patches.scene
     else:
         loaded = rd.load_scene(scene, **asdict(reading))
-        sensors = _sensors(loaded, places)
+        scene_read = loaded
         loaded = rd.subdivide(loaded, **cut) if given else loaded
+    observers = [_observer(text) for text in places.ugr]
+    only_glare = bool(observers) and replace(places, ugr=()) == NOWHERE and not scene_read.sensors
+    if only_glare:
+        if output:
+            raise OutputError(f"{output[0]}: the rating of glare is printed; files need sensors: give --grid or --points")
+        return _rate(loaded, observers, options)
+    sensors = _sensors(scene_read, places)
     with bar() as progress:
         found = rd.measure(loaded, sensors, **options, progress=progress)
     tasks: list = [("the report", lambda: tell(found.report()))]
+    if observers:
+        tasks.append(("the rating of glare", lambda: _rate(loaded, observers, options)))
     failures = outputs.attempt([*tasks, *((path, partial(_write, found, path)) for path in output)])
     if failures:
         raise OutputError("; ".join(outputs.told(failures)))
     if found.status == "interrupted":
         return interrupts.status()
     return NOT_REACHED if found.status == "not reached" else 0
+
+
+def _rate(loaded, observers: list[tuple[float, ...]], options: dict) -> int:
+    """Print the unified glare rating of observers."""
+    import radiosity as rd
+
+    from .progress import bar
+
+    asked = {key: value for key, value in options.items() if key != "error_of"}
+    with bar() as progress:
+        rated = rd.unified_glare_rating(
+            loaded, [o[:3] for o in observers], [o[3:] for o in observers], **asked, progress=progress
+        )
+    tell(rated.report())
+    return 0
+
+
+def _observer(text: str) -> tuple[float, ...]:
+    try:
+        return amounts.numbers(text, 6)
+    except ValueError:
+        raise SceneError(f"--ugr is '{text}'; write X,Y,Z,DX,DY,DZ: the eye, and the line of sight") from None
 
 
 def _write(found, path: Path) -> None:
@@ -143,7 +178,7 @@ def _sensors(scene, places: Places):
     from ..scene.up import up_vector
 
     if not places.grid and not places.points:
-        if places != NOWHERE:
+        if replace(places, ugr=()) != NOWHERE:
             raise SceneError("--margin and --kind need sensors: give --grid or --points")
         if not scene.sensors:
             raise SceneError(

@@ -1,6 +1,6 @@
 """`measure`, which finds the light that falls on sensors."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
@@ -78,7 +78,7 @@ def measure(
     if error_of not in OF:
         raise MethodError(f"error_of is '{error_of}'; sensors take {', '.join(OF)}")
     if sensors is None:
-        sensors = Sensors.of_scene(_scene_of(scene))
+        sensors = Sensors.of_scene(scene_of(scene))
     if not isinstance(sensors, Sensors):
         raise MethodError(f"measure takes Sensors, not {type(sensors).__name__}; make them with Sensors.of or Sensors.grid")
     if rays is None and error is None:
@@ -99,40 +99,67 @@ def measure(
             )
             budget = replace(budget, rays=None if rays is None else max(rays - solution.rays, 1.0))
             status = solution.status if solution.status == "interrupted" else status
-        count = replicates or (solution.replicates if solution.replicates > 1 else 8)
+        run = Run(solution, sensors, budget, error_of, replicates, number, device, progress)
+        measured = replace(run.measured(), seconds=perf_counter() - begun)
+        return measured if status == "complete" else replace(measured, status=status)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A run of the lines of sensors, which read a solution.
+
+    Attributes:
+        solution: that lines read.
+        sensors: where.
+        budget: lines, or an error of what ``error_of`` says.
+        replicates: None: those of the solution.
+        seed, device, progress: see `measure`.
+        direct: the light of lamps, suns and the sky counts; False: only what surfaces reflect.
+    """
+
+    solution: Solution
+    sensors: Sensors
+    budget: Budget
+    error_of: str
+    replicates: int | None
+    seed: int
+    device: str
+    progress: Listener | None
+    direct: bool = True
+
+    def measured(self) -> Measurement:
+        """Trace the lines. What is left of the error asked for is told."""
+        solution, begun = self.solution, perf_counter()
+        count = self.replicates or (solution.replicates if solution.replicates > 1 else 8)
         if solution.replicates > 1 and count != solution.replicates:
             raise MethodError(
                 f"the solution has {solution.replicates} replicates, and sensors are to have {count}: leave replicates out"
             )
-        geometry = Geometry(solution.patches.solid, choose(device))
+        geometry = Geometry(solution.patches.solid, choose(self.device))
         if geometry.some_backs_pass:
             raise MethodError(
                 f"{solution.patches.scene.source}: some backs let lines pass, so what a sensor sees is not what sees the sensor; "
                 "sensors need both to be equal: make these surfaces radiate or absorb on both sides"
             )
         problem, stop = Problem.of(solution.patches), Stop()
-        teller = Teller(budget, progress)
+        teller = Teller(self.budget, self.progress)
         with stop.listening():
             light = reflected(solution, geometry, problem)
-            tracing = Tracing.of(geometry, problem, sensors, light, count, Seed(number))
-            found = _staged(tracing, budget, problem, sensors, teller, stop, error_of)
-        values, done, reached = found
-        if done == "interrupted":
-            status = done
-        measured = Measurement.of(
-            solution, sensors, problem, values, _inside(tracing, sensors), tracing.traced, perf_counter() - begun, status
+            tracing = Tracing.of(geometry, problem, self.sensors, light, count, Seed(self.seed), direct=self.direct)
+            values, status, reached = _staged(tracing, self.budget, problem, self.sensors, teller, stop, self.error_of)
+        inside = _inside(tracing, self.sensors)
+        found = Measurement.of(solution, self.sensors, problem, values, inside, tracing.traced, perf_counter() - begun, status)
+        if reached or status != "complete":
+            return found
+        of, now = achieved(found, self.error_of)
+        warn(
+            f"the relative error of {of} is {now:.2g}, and {self.budget.error:.2g} was asked for; what is left is the error of "
+            "the solution: solve longer"
         )
-        if not reached and status == "complete":
-            measured = replace(measured, status="not reached")
-            of, now = achieved(measured, error_of)
-            warn(
-                f"the relative error of {of} is {now:.2g}, and {error:.2g} was asked for; what is left is the error of the "
-                "solution: solve longer"
-            )
-        return measured
+        return replace(found, status="not reached")
 
 
-def _scene_of(given: Scene | Patches | Solution) -> Scene:
+def scene_of(given: Scene | Patches | Solution, caller: str = "measure") -> Scene:
     """Return the scene of what `measure` takes.
 
     Raises:
@@ -144,7 +171,7 @@ def _scene_of(given: Scene | Patches | Solution) -> Scene:
         return given.scene
     if isinstance(given, Solution):
         return given.patches.scene
-    raise MethodError(f"measure takes a Scene, Patches or a Solution, not {type(given).__name__}; load a file with load_scene")
+    raise MethodError(f"{caller} takes a Scene, Patches or a Solution, not {type(given).__name__}; load a file with load_scene")
 
 
 def _staged(tracing: Tracing, budget: Budget, problem: Problem, sensors: Sensors, teller: Teller, stop: Stop, error_of: str):
