@@ -9,6 +9,7 @@ from cyclopts import Group, Parameter
 
 from ..errors import MethodError, OutputError, SceneError, printable
 from . import amounts, interrupts, outputs
+from .exchange import named_numbers
 from .options import Count, Length, Outputs, Share
 from .solve import NOT_REACHED
 from .solve_options import RUN, Machine, SceneOptions, Unset
@@ -29,6 +30,8 @@ class Places:
             outline. Without SPACING it is that of EN 12464-1, without HEIGHT sensors lie on the surface.
         points: Tables of points, .csv: x,y,z in metres and, where the planes do not look up, nx,ny,nz.
         margin: How far the sensors of grids stay away from the outline, in metres.
+        dim: Levels of groups of lights, such as "row 1=0.5" window=0, of which each is measured by itself: luminaires by group or
+            name, suns, the sky, and surfaces that emit by name. Others stay at 1.
         kind: plane, or cylindrical: the mean of all planes that contain the axis, as on an upright cylinder.
         ugr: Observers whose unified glare rating is found, as X,Y,Z,DX,DY,DZ: the eye in metres, and the line of sight; --ugr
             again for another one.
@@ -37,6 +40,7 @@ class Places:
     grid: Texts = ()
     points: Tables = ()
     margin: Length = None
+    dim: Texts = ()
     kind: Literal["plane", "cylindrical"] = "plane"
     ugr: Observers = ()
 
@@ -106,6 +110,7 @@ def measure(
 
     import radiosity as rd
 
+    from ..sensors.groups import check_levels, parts_of
     from .progress import bar
 
     options = asdict(tracing) | asdict(running)
@@ -125,14 +130,22 @@ def measure(
         scene_read = loaded
         loaded = rd.subdivide(loaded, **cut) if given else loaded
     observers = [_observer(text) for text in places.ugr]
-    only_glare = bool(observers) and replace(places, ugr=()) == NOWHERE and not scene_read.sensors
+    only_glare = bool(observers) and replace(places, ugr=(), dim=()) == NOWHERE and not scene_read.sensors
     if only_glare:
         if output:
             raise OutputError(f"{output[0]}: the rating of glare is printed; files need sensors: give --grid or --points")
         return _rate(loaded, observers, options)
+    levels = named_numbers(places.dim, "dim")
+    if levels and observers:
+        raise MethodError("--dim and --ugr: glare is rated with all lights as the scene has them; leave one of them out")
+    if levels and isinstance(loaded, rd.Solution):
+        raise MethodError(f"{scene} holds a solution of all lights together; --dim needs the scene")
+    if levels:
+        check_levels(levels, list(parts_of(loaded, {})))
     sensors = _sensors(scene_read, places)
     with bar() as progress:
-        found = rd.measure(loaded, sensors, **options, progress=progress)
+        found = rd.measure(loaded, sensors, **options, groups=bool(levels), progress=progress)
+    found = found.dimmed(levels) if levels else found
     tasks: list = [("the report", lambda: tell(found.report()))]
     if observers:
         tasks.append(("the rating of glare", lambda: _rate(loaded, observers, options)))
@@ -178,7 +191,7 @@ def _sensors(scene, places: Places):
     from ..scene.up import up_vector
 
     if not places.grid and not places.points:
-        if replace(places, ugr=()) != NOWHERE:
+        if replace(places, ugr=(), dim=()) != NOWHERE:
             raise SceneError("--margin and --kind need sensors: give --grid or --points")
         if not scene.sensors:
             raise SceneError(

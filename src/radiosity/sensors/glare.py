@@ -21,8 +21,9 @@ from ..scene.up import up_vector
 from ..solution.model import Solution
 from .glare_sources import Seen, photopic_of, refuse
 from .guth import position_index
-from .measure import Run, scene_of
+from .measure import scene_of
 from .model import Sensors
+from .run import Run
 from .target import half_width
 
 LARGE, SMALL = 0.1, 3e-4  # sr: beyond them the formula was not made for a source (CIE 117)
