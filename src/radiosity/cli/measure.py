@@ -138,9 +138,9 @@ def measure(
     levels = named_numbers(places.dim, "dim")
     if levels and observers:
         raise MethodError("--dim and --ugr: glare is rated with all lights as the scene has them; leave one of them out")
-    if levels and isinstance(loaded, rd.Solution):
-        raise MethodError(f"{scene} holds a solution of all lights together; --dim needs the scene")
     if levels:
+        if isinstance(loaded, rd.Solution):
+            raise MethodError(f"{scene} holds a solution of all lights together; --dim needs the scene")
         check_levels(levels, list(parts_of(loaded, {})))
     sensors = _sensors(scene_read, places)
     with bar() as progress:
