@@ -1,6 +1,7 @@
 """``radiosity measure``, and the [[sensors]] of .toml scenes."""
 
 import csv
+import re
 
 import numpy as np
 import pytest
@@ -168,8 +169,33 @@ def test_the_command_measures_a_scene_and_a_solution(folder, capsys):
         (["--grid", ",1,2"], "write NAME,HEIGHT,SPACING"),
         (["--grid", "floor", "-o", "lux.txt"], "lux.txt"),
         (["--points", "none.csv"], "none.csv"),
+        (["--grid", "floor", "--dim", "roof=1", "--rays", "20k", "--cells", "1"], "no group of lights is called 'roof'"),
+        (["--grid", "floor", "--dim", "lamp"], "write NAME=VALUE"),
+        (["--ugr", "1,2,3"], "write X,Y,Z,DX,DY,DZ"),
+        (["--ugr", "1,1,1,1,0,0", "-o", "lux.csv"], "files need sensors"),
     ],
 )
 def test_what_the_command_refuses(folder, capsys, options, words):
     assert main(["measure", str(folder / "room.toml"), *options]) == 2
     assert words in capsys.readouterr().err
+
+
+def test_the_command_rates_glare(folder, capsys):
+    """The lamp covers the ceiling, so that it is far larger than the formula is made for."""
+    assert main(["measure", str(folder / "room.toml"), "--ugr", "0.1,1.5,1.2,1,0,0", "--cells", "2", "--rays", "40k"]) == 0
+    told = capsys.readouterr()
+    assert re.search(r"UGR \d+\.\d ± .* most by lamp 100%", told.out)
+    assert "'lamp' look above 0.1 sr" in told.err
+
+
+def test_the_command_dims_lights(folder, capsys):
+    out = folder / "lux.csv"
+    options = ["--grid", "floor,0,2", "--cells", "1", "--rays", "40k", "-o", str(out)]
+    means = []
+    for dim in (["--dim", "lamp=1"], ["--dim", "lamp=0.25"]):
+        assert main(["measure", str(folder / "room.toml"), *options, *dim]) == 0
+        rows = list(csv.DictReader(out.read_text().splitlines()))
+        means.append(np.mean([float(row["illuminance_lx"]) for row in rows]))
+        assert all(row["illuminance_lx"] == row["illuminance_by_lamp_lx"] for row in rows)
+    assert means[1] == pytest.approx(0.25 * means[0])
+    assert "by group of lights, floor: lamp" in capsys.readouterr().out

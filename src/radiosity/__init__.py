@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from .scene.lights.sun import Sun, sun
     from .scene.lights.sun_position import sun_position
     from .scene.lights.weather import epw_sky, perez_sky
+    from .sensors.glare import GlareRating, unified_glare_rating
     from .sensors.measure import measure
     from .sensors.model import Sensors
     from .sensors.result import Measurement
@@ -86,6 +87,7 @@ _HOMES = {
     "scene.lights.sun": ("Sun", "sun"),
     "scene.lights.sun_position": ("sun_position",),
     "scene.lights.weather": ("epw_sky", "perez_sky"),
+    "sensors.glare": ("GlareRating", "unified_glare_rating"),
     "sensors.measure": ("measure",),
     "sensors.model": ("Sensors",),
     "sensors.result": ("Measurement",),
@@ -101,6 +103,7 @@ __all__ = [
     "Camera",
     "DeviceError",
     "GebhartFactors",
+    "GlareRating",
     "LineSet",
     "Luminaire",
     "Measurement",
@@ -142,6 +145,7 @@ __all__ = [
     "sun",
     "sun_position",
     "trace_lines",
+    "unified_glare_rating",
     "uniform_sky",
     "view_factors",
 ]

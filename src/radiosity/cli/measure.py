@@ -1,6 +1,6 @@
 """``radiosity measure``"""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 from cyclopts import Group, Parameter
 
 from ..errors import MethodError, OutputError, SceneError, printable
-from . import interrupts, outputs
+from . import amounts, interrupts, outputs
+from .exchange import named_numbers
 from .options import Count, Length, Outputs, Share
 from .solve import NOT_REACHED
 from .solve_options import RUN, Machine, SceneOptions, Unset
@@ -16,6 +17,7 @@ from .streams import tell
 
 Texts = Annotated[tuple[str, ...], Parameter(consume_multiple=(1, None), negative=(), show_default=False)]
 Tables = Annotated[tuple[Path, ...], Parameter(consume_multiple=(1, None), negative=(), show_default=False)]
+Observers = Annotated[tuple[str, ...], Parameter(allow_leading_hyphen=True, negative=(), show_default=False)]  # one each time
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
 
@@ -28,13 +30,19 @@ class Places:
             outline. Without SPACING it is that of EN 12464-1, without HEIGHT sensors lie on the surface.
         points: Tables of points, .csv: x,y,z in metres and, where the planes do not look up, nx,ny,nz.
         margin: How far the sensors of grids stay away from the outline, in metres.
+        dim: Levels of groups of lights, such as "row 1=0.5" window=0, of which each is measured by itself: luminaires by group or
+            name, suns, the sky, and surfaces that emit by name. Others stay at 1.
         kind: plane, or cylindrical: the mean of all planes that contain the axis, as on an upright cylinder.
+        ugr: Observers whose unified glare rating is found, as X,Y,Z,DX,DY,DZ: the eye in metres, and the line of sight; --ugr
+            again for another one.
     """
 
     grid: Texts = ()
     points: Tables = ()
     margin: Length = None
+    dim: Texts = ()
     kind: Literal["plane", "cylindrical"] = "plane"
+    ugr: Observers = ()
 
 
 @dataclass(frozen=True)
@@ -102,6 +110,7 @@ def measure(
 
     import radiosity as rd
 
+    from ..sensors.groups import check_levels, parts_of
     from .progress import bar
 
     options = asdict(tracing) | asdict(running)
@@ -115,20 +124,59 @@ def measure(
         if given:
             raise MethodError(f"{scene} holds a solution, whose patches are there already: leave {', '.join(given)} out")
         loaded = rd.load_solution(scene)
-        sensors = _sensors(loaded.patches.scene, places)
+        scene_read = loaded.patches.scene
     else:
         loaded = rd.load_scene(scene, **asdict(reading))
-        sensors = _sensors(loaded, places)
+        scene_read = loaded
         loaded = rd.subdivide(loaded, **cut) if given else loaded
+    observers = [_observer(text) for text in places.ugr]
+    only_glare = bool(observers) and replace(places, ugr=(), dim=()) == NOWHERE and not scene_read.sensors
+    if only_glare:
+        if output:
+            raise OutputError(f"{output[0]}: the rating of glare is printed; files need sensors: give --grid or --points")
+        return _rate(loaded, observers, options)
+    levels = named_numbers(places.dim, "dim")
+    if levels and observers:
+        raise MethodError("--dim and --ugr: glare is rated with all lights as the scene has them; leave one of them out")
+    if levels:
+        if isinstance(loaded, rd.Solution):
+            raise MethodError(f"{scene} holds a solution of all lights together; --dim needs the scene")
+        check_levels(levels, list(parts_of(loaded, {})))
+    sensors = _sensors(scene_read, places)
     with bar() as progress:
-        found = rd.measure(loaded, sensors, **options, progress=progress)
+        found = rd.measure(loaded, sensors, **options, groups=bool(levels), progress=progress)
+    found = found.dimmed(levels) if levels else found
     tasks: list = [("the report", lambda: tell(found.report()))]
+    if observers:
+        tasks.append(("the rating of glare", lambda: _rate(loaded, observers, options)))
     failures = outputs.attempt([*tasks, *((path, partial(_write, found, path)) for path in output)])
     if failures:
         raise OutputError("; ".join(outputs.told(failures)))
     if found.status == "interrupted":
         return interrupts.status()
     return NOT_REACHED if found.status == "not reached" else 0
+
+
+def _rate(loaded, observers: list[tuple[float, ...]], options: dict) -> int:
+    """Print the unified glare rating of observers."""
+    import radiosity as rd
+
+    from .progress import bar
+
+    asked = {key: value for key, value in options.items() if key != "error_of"}
+    with bar() as progress:
+        rated = rd.unified_glare_rating(
+            loaded, [o[:3] for o in observers], [o[3:] for o in observers], **asked, progress=progress
+        )
+    tell(rated.report())
+    return 0
+
+
+def _observer(text: str) -> tuple[float, ...]:
+    try:
+        return amounts.numbers(text, 6)
+    except ValueError:
+        raise SceneError(f"--ugr is '{text}'; write X,Y,Z,DX,DY,DZ: the eye, and the line of sight") from None
 
 
 def _write(found, path: Path) -> None:
@@ -143,7 +191,7 @@ def _sensors(scene, places: Places):
     from ..scene.up import up_vector
 
     if not places.grid and not places.points:
-        if places != NOWHERE:
+        if replace(places, ugr=(), dim=()) != NOWHERE:
             raise SceneError("--margin and --kind need sensors: give --grid or --points")
         if not scene.sensors:
             raise SceneError(

@@ -5,32 +5,25 @@ from time import perf_counter
 
 import numpy as np
 
-from ..device.backend import choose
 from ..device.memory import limited
 from ..device.turn import turn
 from ..errors import MethodError, shown
 from ..patches import Patches
-from ..problem.model import Problem
 from ..run.budget import Budget
-from ..run.progress import Listener, Stop, Teller
+from ..run.progress import Listener
 from ..run.solve import solve
 from ..run.whole_number import whole
-from ..sampling.streams import Seed
 from ..scene.habits import warn
 from ..scene.model import Scene
 from ..solution.model import Solution
-from ..tracing.geometry import Geometry
+from .groups import parts_of
 from .model import Sensors
-from .reflected import reflected
 from .result import Measurement
-from .target import OF, achieved, worst
-from .tracing import Tracing
+from .run import Run
+from .target import OF
 
-FIRST = 32  # lines of a sensor in the first stage, in each replicate
-MOST = 1 << 20  # lines of a sensor in each replicate
+HURRIED = 1e5  # lines of each group after one that was interrupted
 SHARE = 0.5  # of the lines or of the error goes to the solution, where there is none yet
-AT_ONCE = 1 << 24  # lines of a launch: between launches a run can be interrupted
-BEHIND = 0.5  # share of lines that meet backs: a sensor is likely inside of something
 
 
 def measure(
@@ -40,6 +33,7 @@ def measure(
     rays: float | None = None,
     error: float | None = None,
     error_of: str = "mean",
+    groups: bool | dict[str, list[str]] = False,
     replicates: int | None = None,
     seed: int = 0,
     device: str = "auto",
@@ -58,6 +52,9 @@ def measure(
         rays, error: one at most: lines in all, replicates together; or the relative error that the true one is below in 95 % of
             runs. The default is an error of 1 %.
         error_of: "mean": of the mean of each set of sensors; "worst": of each sensor.
+        groups: True measures the light of each group by itself, so that it can be dimmed afterwards (`Measurement.dimmed`):
+            luminaires by their group (or name), suns, the sky, and surfaces that emit by name. A dictionary makes groups of names
+            or patterns; what it leaves out is the group "others".
         replicates: independent randomised runs, those of the solution by default; from 2 on there are standard errors.
         seed: with the same inputs, the same bits.
         device, progress, memory: as of `solve`.
@@ -78,61 +75,64 @@ def measure(
     if error_of not in OF:
         raise MethodError(f"error_of is '{error_of}'; sensors take {', '.join(OF)}")
     if sensors is None:
-        sensors = Sensors.of_scene(_scene_of(scene))
+        sensors = Sensors.of_scene(scene_of(scene))
     if not isinstance(sensors, Sensors):
         raise MethodError(f"measure takes Sensors, not {type(sensors).__name__}; make them with Sensors.of or Sensors.grid")
     if rays is None and error is None:
         error = 0.01
     if rays is not None and error is not None:
         raise MethodError("give rays or an error, not both")
-    budget = Budget(rays=rays, error=error)
     number = whole(seed, "seed", 0)
     with limited(memory), turn():
         begun = perf_counter()
-        status = "complete"
-        if isinstance(scene, Solution):
-            solution = scene
+
+        def one(part: Scene | Patches | Solution, budget: Budget) -> Measurement:
+            return _one(part, sensors, budget, error_of, replicates, number, device, progress)
+
+        if groups is False:
+            found = one(scene, Budget(rays=rays, error=error))
+        elif isinstance(scene, Solution):
+            raise MethodError("groups of lights are solved one by one: give the scene or its patches, not a solution")
         else:
-            part = Budget(rays=None if rays is None else rays * SHARE, error=None if error is None else error * SHARE)
-            solution = solve(
-                scene, rays=part.rays, error=part.error, replicates=replicates, seed=number, device=device, progress=progress
-            )
-            budget = replace(budget, rays=None if rays is None else max(rays - solution.rays, 1.0))
-            status = solution.status if solution.status == "interrupted" else status
-        count = replicates or (solution.replicates if solution.replicates > 1 else 8)
-        if solution.replicates > 1 and count != solution.replicates:
-            raise MethodError(
-                f"the solution has {solution.replicates} replicates, and sensors are to have {count}: leave replicates out"
-            )
-        geometry = Geometry(solution.patches.solid, choose(device))
-        if geometry.some_backs_pass:
-            raise MethodError(
-                f"{solution.patches.scene.source}: some backs let lines pass, so what a sensor sees is not what sees the sensor; "
-                "sensors need both to be equal: make these surfaces radiate or absorb on both sides"
-            )
-        problem, stop = Problem.of(solution.patches), Stop()
-        teller = Teller(budget, progress)
-        with stop.listening():
-            light = reflected(solution, geometry, problem)
-            tracing = Tracing.of(geometry, problem, sensors, light, count, Seed(number))
-            found = _staged(tracing, budget, problem, sensors, teller, stop, error_of)
-        values, done, reached = found
-        if done == "interrupted":
-            status = done
-        measured = Measurement.of(
-            solution, sensors, problem, values, _inside(tracing, sensors), tracing.traced, perf_counter() - begun, status
-        )
-        if not reached and status == "complete":
-            measured = replace(measured, status="not reached")
-            of, now = achieved(measured, error_of)
-            warn(
-                f"the relative error of {of} is {now:.2g}, and {error:.2g} was asked for; what is left is the error of the "
-                "solution: solve longer"
-            )
-        return measured
+            of_group, done = parts_of(scene, {} if groups is True else groups), {}
+            budget = Budget(rays=None if rays is None else max(rays / len(of_group), 1.0), error=error)
+            for name, part in of_group.items():
+                done[name] = one(part, budget)
+                if done[name].status == "interrupted":
+                    budget = Budget(rays=HURRIED)  # the rest is rough, and says so by its errors, but no light is missing
+            found = _together(done)
+        found = replace(found, seconds=perf_counter() - begun)
+    _tell_of_inside(found)
+    return found
 
 
-def _scene_of(given: Scene | Patches | Solution) -> Scene:
+def _one(scene, sensors: Sensors, budget: Budget, error_of: str, replicates, seed: int, device: str, progress) -> Measurement:
+    """Solve where there is no solution, and measure."""
+    if isinstance(scene, Solution):
+        return Run(scene, sensors, budget, error_of, replicates, seed, device, progress).measured()
+    rays, error = (None if value is None else value * SHARE for value in (budget.rays, budget.error))
+    solution = solve(scene, rays=rays, error=error, replicates=replicates, seed=seed, device=device, progress=progress)
+    if budget.rays is not None:
+        budget = replace(budget, rays=max(budget.rays - solution.rays, 1.0))
+    found = Run(solution, sensors, budget, error_of, replicates, seed, device, progress).measured()
+    return replace(found, status="interrupted") if solution.status == "interrupted" else found
+
+
+def _together(parts: dict[str, Measurement]) -> Measurement:
+    """Return the sum of the light of groups, which keeps each."""
+    found = list(parts.values())
+    statuses = {one.status for one in found}
+    return replace(
+        found[0],
+        values=sum((one.values for one in found[1:]), found[0].values),
+        inside=np.any([one.inside for one in found], axis=0),
+        rays=sum(one.rays for one in found),
+        status=next((status for status in ("interrupted", "not reached") if status in statuses), "complete"),
+        parts={name: one.values for name, one in parts.items()},
+    )
+
+
+def scene_of(given: Scene | Patches | Solution, caller: str = "measure") -> Scene:
     """Return the scene of what `measure` takes.
 
     Raises:
@@ -144,48 +144,15 @@ def _scene_of(given: Scene | Patches | Solution) -> Scene:
         return given.scene
     if isinstance(given, Solution):
         return given.patches.scene
-    raise MethodError(f"measure takes a Scene, Patches or a Solution, not {type(given).__name__}; load a file with load_scene")
+    raise MethodError(f"{caller} takes a Scene, Patches or a Solution, not {type(given).__name__}; load a file with load_scene")
 
 
-def _staged(tracing: Tracing, budget: Budget, problem: Problem, sensors: Sensors, teller: Teller, stop: Stop, error_of: str):
-    """Trace stage by stage. Return values of the last complete one, a status, and whether the target was reached."""
-    planes, values, each = tracing.receivers.receivers, None, float(FIRST)
-    replicates, before = tracing.receivers.replicates, np.inf
-    teller.begin(0)
-    if budget.rays is not None:
-        each = max(budget.rays / (planes * replicates), 2.0)
-    done = 0.0
-    while True:
-        step = max(AT_ONCE / (planes * replicates), 1.0)
-        while done < each:
-            done = min(done + step, each)
-            tracing.advance(done)
-            teller.lines = tracing.traced
-            teller.tell("measuring")
-            if stop.asked and values is not None:
-                return values, "interrupted", True
-        values = tracing.values()
-        if stop.asked:
-            return values, "interrupted", True
-        if budget.error is None:
-            return values, "complete", True
-        now = worst(values * problem.unit, sensors, error_of, tracing.behind() > BEHIND)
-        teller.complete(tracing.traced, max(int(each), 1), now)
-        if now <= budget.error:
-            return values, "complete", True
-        if each >= MOST or (now > 0.9 * before and each > 1 << 12):
-            return values, "complete", False
-        before, each = now, 2 * each
-
-
-def _inside(tracing: Tracing, sensors: Sensors) -> np.ndarray:
-    """Return which sensors see mostly backs, (n_sensors,) bool, and tell of them."""
-    inside = tracing.behind() > BEHIND
-    if inside.any():
-        where = np.flatnonzero(inside)
+def _tell_of_inside(found: Measurement) -> None:
+    """Name the sensors that see mostly backs."""
+    sensors, where = found.sensors, np.flatnonzero(found.inside)
+    if len(where):
         names = shown([f"{sensors.names[sensors.set[i]]} at {np.round(sensors.points[i], 3).tolist()}" for i in where], 5)
         warn(
             f"{len(where)} of {len(sensors)} sensors see mostly backs of surfaces: {names}; they seem to lie inside of "
             "something, or behind a wall, and are left out of minimum, mean and uniformity. Move them, or turn the faces"
         )
-    return inside

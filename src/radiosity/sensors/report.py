@@ -8,6 +8,17 @@ WIDE = 1000  # columns; names are never cut off
 MESH = "± holds what lines leave unknown, not the size of patches: finer ones (--cells, --patch-size) show what that is"
 
 
+def _groups(found) -> list[str]:
+    """Return a line for each set of sensors: what each group of lights gives in the mean."""
+    lines = []
+    for number, name in enumerate(found.sensors.names if found.parts else ()):
+        chosen = (found.sensors.set == number) & ~found.inside
+        means = {group: float(values[:, chosen].mean()) if chosen.any() else 0.0 for group, values in found.single_parts.items()}
+        shares = ", ".join(f"{printable(group)} {mean:.4g}" for group, mean in means.items())
+        lines.append(f"mean {found.unit} by group of lights, {printable(name)}: {shares}")
+    return lines
+
+
 def report(found) -> str:
     """Return a head, a row for each set of sensors, and what the figures mean; ± is half of the 95 % interval."""
     from rich.console import Console
@@ -37,7 +48,8 @@ def report(found) -> str:
     )
     head += "" if found.status == "complete" else f", {found.status}"
     lines = [line.rstrip() for line in text.getvalue().splitlines()]
-    notes = ["U0 = min / mean, U1 = min / max; sensor ±: of the least certain sensor", MESH]
+    notes = [*_groups(found)]
+    notes += ["U0 = min / mean, U1 = min / max; sensor ±: of the least certain sensor", MESH]
     if len(found.values) < 2:
         notes.append("errors are unknown: one replicate tells none")
     return "\n".join([head, *lines, *notes])

@@ -1,6 +1,6 @@
 """The lines of sensors: a gather at each of them, which reads a solution."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import drjit as dr
@@ -49,26 +49,36 @@ class Tracing:
 
     @staticmethod
     def of(
-        geometry: Geometry, problem: Problem, sensors: Sensors, reflected: np.ndarray, replicates: int, seed: Seed
+        geometry: Geometry,
+        problem: Problem,
+        sensors: Sensors,
+        reflected: np.ndarray,
+        replicates: int,
+        seed: Seed,
+        *,
+        direct: bool = True,
     ) -> "Tracing":
         """Run the pilot.
 
         Args:
             reflected: (replicates, n_patches, n_groups), see `sensors.reflected`.
+            direct: the light of lamps, suns and the sky counts; False: only what surfaces reflect.
         """
         geometry.prepare()
         types, method = geometry.device.types, PRESETS["gather"].method
         one = Receivers(geometry, 1, sensors=sensors, seed=seed)
         chances = Chances(Lamps(geometry, problem), one, Beams.of(geometry, problem))
         pilot = Lines.of(one, chances, problem, method, seed, (Purpose.SENSORS_PILOT, Purpose.SENSORS_PILOT_SHADOW))
+        pilot = pilot if direct else _without_direct(pilot)
         mean = [upload(types.Float, column.astype(np.float32)) for column in reflected.mean(axis=0).T]
         few, none = np.full(one.count, PILOT), np.zeros(one.count, np.int64)
         cosine, _ = pilot.cosine(none, few, read=mean, squares=True)
-        shadow = pilot.shadow(none, few, squares=True)
+        shadow = pilot.shadow(none, few if direct else none, squares=True)
         variance = np.stack([_variance(one, sums) for sums in (cosine, shadow)])
-        shares = _shares(variance, one.sizes, has_targets=chances.targets > 0)
+        shares = _shares(variance, one.sizes, has_targets=direct and chances.targets > 0)
         receivers = Receivers(geometry, replicates, sensors=sensors, seed=seed)
         lines = Lines.of(receivers, chances, problem, method, seed, (Purpose.SENSORS, Purpose.SENSORS_SHADOW))
+        lines = lines if direct else _without_direct(lines)
         whole = np.broadcast_to(reflected, (replicates, *reflected.shape[1:]))
         read = [upload(types.Float, whole[..., group].astype(np.float32)) for group in range(problem.groups.n_groups)]
         kinds: tuple[Any, ...] = (types.UInt64, types.Int64)
@@ -117,6 +127,12 @@ class Tracing:
         """Return means over the planes of each sensor, (replicates, n_sensors)."""
         starts = np.flatnonzero(np.diff(self.receivers.sensor, prepend=-1))
         return np.add.reduceat(planes, starts, axis=1) / np.diff(np.append(starts, planes.shape[1]))
+
+
+def _without_direct(lines: Lines) -> Lines:
+    """Return lines that see no lamp and no sky."""
+    nothing = [dr.zeros(lines.types.Float, dr.width(column)) for column in lines.emission]
+    return replace(lines, emission=nothing, sky=None)
 
 
 def _variance(receivers: Receivers, sums: list) -> np.ndarray:

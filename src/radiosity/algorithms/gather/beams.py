@@ -72,6 +72,7 @@ class Beams:
 
     def _arrive(self, points: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return cosines to the normals, distances and shares of the light of all lights, (k, points, n_lights) each."""
+        _ = self._ready
         types = self.geometry.device.types
         k, each, n = len(points), len(CORNERS), len(self)
         shape = (k, each, n)
@@ -90,8 +91,13 @@ class Beams:
 
     def prepare(self) -> None:
         """Make what kernels read."""
+        _ = self._ready, self.powers
+
+    @cached_property
+    def _ready(self) -> bool:
+        """The lights are on the device; a solution that is read asks for weights before any line."""
         self.lights.prepare(self.geometry)
-        _ = self.powers
+        return True
 
     @cached_property
     def powers(self) -> list:

@@ -101,8 +101,9 @@ class Chances:
 
     @cached_property
     def within(self) -> np.ndarray:
-        """The probability of each target once its group is chosen, (n_targets,) float64."""
-        return self.power / np.add.reduceat(self.power, self.groups[:-1])[self.group_of]
+        """The probability of each target once its group is chosen, (n_targets,) float64; zero where the group has no power."""
+        whole = np.add.reduceat(self.power, self.groups[:-1])[self.group_of]
+        return np.divide(self.power, whole, out=np.zeros_like(self.power), where=whole > 0)
 
     @cached_property
     def probability(self) -> np.ndarray:

@@ -41,4 +41,19 @@ class Luminaire:
     source: str = ""
     soft: bool = False
     disc: bool = False
+
+    def towards(self, direction: np.ndarray) -> np.ndarray:
+        """Return intensities, (n_bands,) cd or W/sr, in a direction from the luminaire, (3,) of unit length."""
+        x, y, z = self.axes @ direction
+        plane, gamma = (np.degrees([np.arctan2(*pair)]) for pair in ((y, x), (np.hypot(x, y), z)))
+        return self.power * float(self.web.at(plane, gamma)[0] / self.web.flux)
+
+    def projected(self, direction: np.ndarray) -> float:
+        """Return the luminous area as seen from a direction, (3,) of unit length, m²: its face, and sides of its height."""
+        x, y, z = np.abs(self.axes @ direction)
+        length, width, height = self.size
+        if self.disc:
+            return float(np.pi / 4 * length * width * z + height * np.hypot(width * x, length * y))
+        return float(length * width * z + height * (width * x + length * y))
+
     photometric: bool = True

@@ -43,6 +43,16 @@ class Web:
         parts = whole[:-1] * np.cos(low) - whole[1:] * np.cos(high) + slope * (np.sin(high) - np.sin(low))
         return float(2 * np.pi * parts.sum())
 
+    def at(self, plane: np.ndarray, gamma: np.ndarray) -> np.ndarray:
+        """Return intensities in directions, (n,) in the table's unit; C and gamma, (n,) degrees."""
+        rows = np.stack([np.interp(gamma, self.gamma, row, left=0, right=0) for row in self.intensity])
+        if len(self.planes) == 1:
+            return rows[0]
+        plane, each = plane % 360, np.arange(len(gamma))
+        low = np.clip(np.searchsorted(self.planes, plane, side="right") - 1, 0, len(self.planes) - 2)
+        part = (plane - self.planes[low]) / (self.planes[low + 1] - self.planes[low])
+        return (1 - part) * rows[low, each] + part * rows[low + 1, each]
+
     def _mean_over_planes(self) -> np.ndarray:
         if len(self.planes) == 1:
             return self.intensity[0]

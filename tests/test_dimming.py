@@ -1,0 +1,91 @@
+"""Lights that are dimmed after the run: sums of groups, with errors, against lights that were dimmed before it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from light_samples import bulb, lit, overcast
+
+import radiosity as rd
+from radiosity.scene.shapes import quad
+from radiosity.sensors.groups import parts_of
+from radiosity.sensors.measure import scene_of
+
+POINTS = rd.Sensors.of([[0, 0, 0.5], [2, 0, 0.5], [2, 1, 0]])
+
+
+def hall(first: float = 1.0, second: float = 1.0, panel: float = 1.0) -> rd.Scene:
+    """A grey floor, two luminaires of a group and one by itself, and a panel, dimmed before the run."""
+    lamps = (
+        bulb((0, 0, 2), first * 1000, name="a", group="row"),
+        bulb((1, 0, 2), first * 1000, name="b", group="row"),
+        bulb((2, 1, 2), second * 3000, name="row b"),
+    )
+    floor = ("floor", 0.5, 0.0, [quad((-3, -3, 0), (6, 0, 0), (0, 6, 0))])
+    wall = ("wall", 0.5, 0.0, [quad((3, -3, 0), (0, 0, 3), (0, 6, 0))])
+    return lit(floor, wall, ("panel", 0.0, panel * 200, [quad((-2, -2, 2.5), (0, 1, 0), (1, 0, 0))]), luminaires=lamps)
+
+
+def cut(scene: rd.Scene) -> rd.Patches:
+    return rd.subdivide(scene, cells=3)
+
+
+@pytest.fixture(scope="module")
+def grouped() -> rd.Measurement:
+    return rd.measure(cut(hall()), POINTS, groups=True, rays=1_500_000)
+
+
+def test_groups_are_those_of_luminaires_and_names(grouped):
+    assert sorted(grouped.parts) == ["panel", "row", "row b"]
+    assert np.allclose(sum(grouped.parts.values()), grouped.values)
+
+
+@pytest.mark.parametrize("levels", [(1, 1, 1), (0.5, 0, 1), (0, 0.25, 0), (1, 2, 0.1)])
+def test_a_dimming_is_that_of_the_lights(grouped, levels):
+    """Within both runs' errors, at alpha 1e-4; the run before has other lines."""
+    found = grouped.dimmed(dict(zip(("row", "row b", "panel"), levels, strict=True)))
+    before = rd.measure(cut(hall(*levels)), POINTS, rays=500_000, seed=9)
+    error = np.hypot(found.standard_error, before.standard_error)
+    assert (error < 0.01 * before.illuminance).all()
+    assert (np.abs(found.illuminance - before.illuminance) < 6 * error).all()
+
+
+def test_levels_that_make_no_sense(grouped):
+    for levels, words in (({"rows": 1}, "called 'rows'; there are .*'row'"), ({"row": -1}, "level of 'row' is -1")):
+        with pytest.raises(rd.MethodError, match=words):
+            grouped.dimmed(levels)
+    plain = rd.measure(cut(hall()), POINTS, rays=100_000)
+    with pytest.raises(rd.MethodError, match="groups=True"):
+        plain.dimmed({"row": 0.5})
+
+
+def test_groups_by_patterns_hold_every_light_once():
+    """What no group names is in others; a luminaire is known by its name and by its group."""
+    parts = parts_of(hall(), {"first": ["row"], "flat": ["pan*"]})
+    held = {name: [one.name for one in scene_of(part).lights.luminaires] for name, part in parts.items()}
+    assert held == {"first": ["a", "b"], "flat": [], "others": ["row b"]}
+    assert [bool(part.emission.any()) for part in parts.values()] == [False, True, False]
+    with pytest.raises(rd.SceneError, match="light 'a' is in the groups 'x', 'y'"):
+        parts_of(hall(), {"x": ["a"], "y": ["row"]})
+    with pytest.raises(rd.SceneError, match="group 'x': no light is called 'c'"):
+        parts_of(hall(), {"x": ["c"]})
+
+
+def test_a_name_like_another_group_is_no_member_of_it():
+    """The luminaire 'row b' is in the group 'a', and another one called 'a' is in 'row': each counts once."""
+    lamps = (bulb((0, 0, 2), name="a", group="row"), bulb((1, 0, 2), name="row", group="a"))
+    parts = parts_of(lit(luminaires=lamps, sky=overcast(1.0)), {})
+    assert {name: len(scene_of(part).lights.all) for name, part in parts.items()} == {"row": 1, "a": 1, "sky": 1}
+
+
+def test_own_emission_of_patches_is_grouped():
+    patches = cut(hall())
+    values = patches.emission * np.linspace(1, 2, len(patches))[:, None]
+    parts = parts_of(replace(patches, own_emission=values), {})
+    assert np.array_equal(sum(part.emission for part in parts.values()), values)
+
+
+def test_groups_of_a_solution_are_refused():
+    solution = rd.solve(cut(hall()), "gather", rays=50_000)
+    with pytest.raises(rd.MethodError, match="give the scene or its patches"):
+        rd.measure(solution, POINTS, groups=True)
