@@ -166,7 +166,8 @@ class AbstractMeanTally(AbstractBiasedTally[S]):
 
 
 def line_of_quanta(problem: Problem, quanta: int, group: int) -> float:
-    """Return the largest share that a group has in a quantum of N, W or lm."""
-    largest = problem.groups.emission.max(axis=1)
-    share = problem.groups.emission[:, group] / np.where(largest > 0, largest, 1)
+    """Return the largest share that a group has in a quantum of N of any row, a light's among them, W or lm."""
+    emission = problem.rows.emission
+    largest = emission.max(axis=1)
+    share = emission[:, group] / np.where(largest > 0, largest, 1)
     return float(share.max()) * problem.source.power / max(quanta, 1)
