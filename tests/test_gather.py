@@ -26,7 +26,7 @@ from radiosity.factors.polygons.matrix import exact
 from radiosity.problem.model import Problem
 from radiosity.scene.paint import Paint
 from radiosity.scene.sampler import Sampler
-from radiosity.scene.shapes import quad
+from radiosity.scene.shapes import box, quad
 from radiosity.tracing.geometry import Geometry
 
 pytestmark = pytest.mark.filterwarnings("ignore::radiosity.errors.RadiosityWarning")  # of few lines
@@ -299,3 +299,18 @@ def test_a_floor_that_stands_twice_does_not_darken_the_rest():
     first, second = (rd.solve(rd.subdivide(scene, cells=3), "gather", rays=300_000, seed=1) for scene in (one, twice))
     n = len(first.patches)
     assert second.irradiance[:n, 0].mean() == pytest.approx(first.irradiance[:, 0].mean(), rel=5e-3)
+
+
+def test_outsides_of_a_closed_room_are_left_out_of_tables():
+    """Their lines escape and say that they receive nothing; that is not light which came."""
+    walls = rd.Scene.from_arrays(*_closed(), 0.5, np.where(np.arange(6) == 1, 10.0, 0.0), surface=np.arange(6), two_sided=True)
+    walls = replace(walls, back_emission=walls.back_emission * 0)
+    rows = rd.solve(rd.subdivide(walls, cells=3), "gather", rays=100_000).surface_table()
+    assert len(rows) == 6
+    assert all(row["irradiance"] > 0 for row in rows)
+
+
+def _closed() -> tuple[np.ndarray, np.ndarray]:
+    """Corners and faces of a unit cube."""
+    corners = np.array([np.asarray(face) for face in box((0, 0, 0), (1, 1, 1), inward=True)])
+    return corners.reshape(-1, 3), np.arange(24).reshape(6, 4)

@@ -119,6 +119,11 @@ class Solution:
         return bool(self.provenance.get("choices", {}).get("control_variate"))
 
     @property
+    def by_own_lines(self) -> bool:
+        """True where each patch is measured by lines that leave it: `arrivals` says nothing of light that came."""
+        return self.provenance.get("choices", {}).get("order") == "gather"
+
+    @property
     def by_baseline(self) -> bool:
         """True where a method that forms the matrix solved it."""
         return "scheme" in self.provenance.get("choices", {})

@@ -48,7 +48,8 @@ def sides_of(solution) -> Sides:
     two, surface, place = scene.back == Back.RADIATES, scene.surface, (patches.face, patches.is_back.astype(int))
     received = (np.nan_to_num(solution.irradiance) > 0).any(axis=1)
     # baselines count no lines, and their `few` is False everywhere: there every patch that receives power is reached for certain
-    counts = np.where(solution.few | ~received, solution.arrivals, np.maximum(solution.arrivals, FEW))
+    hits = np.where(received, solution.arrivals, 0) if solution.by_own_lines else solution.arrivals
+    counts = np.where(solution.few | ~received, hits, np.maximum(hits, FEW))
     reached = np.zeros((scene.n_faces, 2))
     np.add.at(reached, place, counts)
     kind = lit_sides(scene, reached, FEW)
