@@ -333,5 +333,7 @@ class TestToml:
         sides = box((0, 0, 0), (2, 2, 2), inward=True)
         scene = join([("walls", 0.5, 0.0, sides)], source="box")
         lamps = [rd.read_luminaire("down.ies", position=(1, 1, z), name=f"at {z}") for z in (1.9, 2.0, 2.01)]
-        (finding,) = [one for one in rd.check(scene.with_lights(lamps)).findings if one.kind == "luminaires"]
+        lamps.append(rd.read_luminaire("down.ies", position=(1, 1, 0.02), name="at the floor"))
+        finding, close = [one for one in rd.check(scene.with_lights(lamps)).findings if one.kind == "luminaires"]
+        assert close.message.startswith("most of the light of 'at the floor' meets a surface within 5 cm")
         assert finding.message.startswith("most of the light of 'at 2.01' meets absorbing backs (100 %)")
