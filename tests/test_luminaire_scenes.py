@@ -203,6 +203,17 @@ def test_a_saved_solution_has_its_luminaires(files, tmp_path):
     assert [lamp.photometric for lamp in again.patches.scene.lights.luminaires] == [True, True]
 
 
+def test_line_sets_leave_lights_out_and_say_so(cube):
+    dark = replace(cube, emission=cube.emission * 0, photometric=True)
+    lines = rd.trace_lines(
+        rd.subdivide(dark.with_lights([rd.point_light(position=(0.5, 0.5, 0.5), lumens=9)]), cells=1), rays=5000
+    )
+    with pytest.warns(rd.RadiosityWarning, match="lights without area are left out .*'point'"):
+        solution = lines.solve(emission={"floor": 2.0})
+    assert solution.radiosity.sum() == pytest.approx(4)  # of one side of six, reflectance 1/2: twice what it emits
+    assert not solution.patches.scene.lights
+
+
 def test_the_hash_of_a_scene_does_not_depend_on_where_its_files_lie(files):
     one, other = (floor().with_lights([rd.read_luminaire(path, position=(1, 1, 1))]) for path in ("down.ies", files / "down.ies"))
     assert one.hash == other.hash
@@ -322,5 +333,7 @@ class TestToml:
         sides = box((0, 0, 0), (2, 2, 2), inward=True)
         scene = join([("walls", 0.5, 0.0, sides)], source="box")
         lamps = [rd.read_luminaire("down.ies", position=(1, 1, z), name=f"at {z}") for z in (1.9, 2.0, 2.01)]
-        (finding,) = [one for one in rd.check(scene.with_lights(lamps)).findings if one.kind == "luminaires"]
+        lamps.append(rd.read_luminaire("down.ies", position=(1, 1, 0.02), name="at the floor"))
+        finding, close = [one for one in rd.check(scene.with_lights(lamps)).findings if one.kind == "luminaires"]
+        assert close.message.startswith("most of the light of 'at the floor' meets a surface within 5 cm")
         assert finding.message.startswith("most of the light of 'at 2.01' meets absorbing backs (100 %)")

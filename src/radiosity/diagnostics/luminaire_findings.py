@@ -10,6 +10,8 @@ from .report import WARNING, Finding
 
 LINES = 256  # of each luminaire
 MOST_BEHIND, MOST_GONE = 0.5, 0.9  # of its lines: where more meet backs, or leave the scene, it is named
+NEAR = 0.05  # metres: what is closer may be a housing
+FRONT = "Move it in front, or leave that out"
 GRID = 360  # entries along each angle of the table that directions are drawn from
 
 
@@ -30,9 +32,12 @@ def first_light(scene: Scene, seed: int, device: str) -> tuple[np.ndarray, list[
     power = np.repeat([one.power.sum() / LINES for one in luminaires], LINES)
     np.add.at(received, ((~hits.front[seen]).astype(int), hits.face[seen]), power[seen])
     findings = []
+    behind, housing = "do they stand behind a ceiling, or inside a box? " + FRONT, "is it inside of its housing? " + FRONT
+    aimed = "are they aimed as they should be? -z is down by default"
     for gone, most, what, advice in (
-        (lost, MOST_BEHIND, "meets absorbing backs", "do they stand behind a ceiling, or inside a box? Move them in front of it"),
-        (hits.face < 0, MOST_GONE, "leaves the scene", "are they aimed as they should be? -z is down by default"),
+        (lost, MOST_BEHIND, "meets absorbing backs", behind),
+        (seen & (hits.distance < NEAR), MOST_BEHIND, f"meets a surface within {100 * NEAR:g} cm", housing),
+        (hits.face < 0, MOST_GONE, "leaves the scene", aimed),
     ):
         shares = gone.reshape(-1, LINES).mean(axis=1)
         named = [luminaires[i].name for i in np.flatnonzero(shares > most)]

@@ -22,6 +22,7 @@ from ..record import Record
 from ..shortfall import warn_of_few_ends
 from ..snapshot import Snapshot
 from .adding import fields_of_sum
+from .lights import without_lights
 from .saving import save_lines
 from .starved import warn_of_starved
 
@@ -92,7 +93,7 @@ class LineSet:
         return self._state(1).arrays()
 
     def solve(self, emission=None, reflectance=None, *, bands=None) -> Solution:
-        """Solve B = E + rho F B for any light. No line is traced.
+        """Solve B = E + rho F B for any emission. No line is traced. Lights without area are left out, with a warning.
 
         Args:
             emission, reflectance: None is what the scene says. Else one number; an array (n_patches,) or (n_patches, n_bands);
@@ -108,7 +109,7 @@ class LineSet:
         Raises:
             SceneError: nothing emits, other shapes, or values out of range. MethodError: no such surface.
         """
-        patches = relit(self.patches, emission, reflectance, bands)
+        patches = relit(without_lights(self.patches), emission, reflectance, bands)
         if not patches.emission.any():
             raise SceneError(
                 f"{patches.scene.source}: no surface emits; give an emission, such as "
