@@ -242,7 +242,7 @@ def test_the_power_of_a_line_is_that_of_the_sky_where_nothing_else_emits(geometr
     """It was 0, and with it the error of all patches where no line had hit any."""
     algorithm = run(under(plate(), sky=overcast(1.0)), geometry_of, 1 << 10)
     power = algorithm.tally.line(algorithm.problem, algorithm.capture(), 0)
-    assert power == pytest.approx(7 / 9 * np.pi * 12 / 7 * Ball.about(plate()).disc / 1024)
+    assert power == pytest.approx(4 / 3 * np.pi * Ball.about(plate()).disc / 1024)
 
 
 def test_rows_of_a_table_have_the_sines_of_their_elevations():
