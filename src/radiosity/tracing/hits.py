@@ -40,13 +40,17 @@ class Hit:
         return self.back(Back.PASSES) | (self.valid & ((self.packed >> BACK_BIT) == int(Back.OPEN)))
 
 
-def first_hit(geometry: Geometry, origin, direction, *, coherent: bool = False, active=True) -> Hit:
-    """Trace lines to the first side that does not let them pass."""
+def first_hit(geometry: Geometry, origin, direction, *, coherent: bool = False, active=True, own=()) -> Hit:
+    """Trace lines to the first side that does not let them pass.
+
+    Args:
+        own: two Floats of each line, for panes, where many lines have the same origin and direction (`Panes.words`).
+    """
     geometry.prepare_hits()
     panes = geometry.panes
     if panes is None and not geometry.some_backs_pass:
         return _hit(geometry, origin, direction, coherent, active)[0]
-    words = None if panes is None else panes.words(origin, direction)
+    words = None if panes is None else panes.words(origin, direction, own)
     types = geometry.device.types
     Float, Bool, UInt32 = types.Float, types.Bool, types.UInt32
 

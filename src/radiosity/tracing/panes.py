@@ -4,6 +4,9 @@ Every line has two words, hashed from the bits of its origin and direction in th
 face they give a number in [0, 1): the line goes on where that is below the transmittance. So what becomes of a line is a function
 of the line and the scene alone (contracts 2 and 17). It does not depend on the numbers that made the line, nor on the order in
 which lines are traced, and of several panes each decides for itself.
+
+All shadow rays from a sensor to a point lamp, or to a sun whose light is parallel, are the same line. They have one fate, which
+would be that of all its light. So shadow rays to lights give numbers of their own as well, which are hashed with the line.
 """
 
 from dataclasses import dataclass
@@ -35,11 +38,17 @@ class Panes:
         fixed = np.minimum(np.round(self.scene.transmittance * ONE), ONE - 1)
         return upload(self.device.types.UInt32, fixed.astype(np.uint32))
 
-    def words(self, origin, direction) -> tuple[Any, Any]:
-        """Return the two words of each line; called in a kernel."""
+    def words(self, origin, direction, own=()) -> tuple[Any, Any]:
+        """Return the two words of each line; called in a kernel.
+
+        Args:
+            own: two Floats that tell lines apart which have the same origin and direction.
+        """
         UInt32 = self.device.types.UInt32
-        bits = [dr.reinterpret_array(UInt32, value) for value in (*origin, *direction)]
-        first, second, *_ = philox(bits[:4], bits[4:])
+        bits = [dr.reinterpret_array(UInt32, value) for value in (*origin, *direction, *own)]
+        first, second, *_ = philox(bits[:4], bits[4:6])
+        if own:
+            first, second, *_ = philox([first, second, *bits[6:]], WORD)
         return first, second
 
     def passed(self, words, face, active):

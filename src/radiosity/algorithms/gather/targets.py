@@ -116,7 +116,8 @@ class Targets:
             above = dr.dot(towards, normal)
             faces = dr.select(aimed, (above > 0) & (share > 0), faces)
             arrival = aimed, light, distance, above * share / density, beams.powers
-        hit = first_hit(geometry, origin, direction, coherent=packets.coherent, active=faces)
+        own = () if beams is None else (u[0], u[1])  # rays of a sensor to a point lamp are all the same
+        hit = first_hit(geometry, origin, direction, coherent=packets.coherent, active=faces, own=own)
         met = patch_of(geometry, hit, packets.n + 1, packets.n)
         seen = faces & (met - first < cells)
         part = dr.select(seen, kernel / bound, 0)
