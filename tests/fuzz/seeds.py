@@ -49,6 +49,30 @@ LUMINAIRES = {
     "lamp.ies": ies(np.eye(37)[:3] + 1, horizontal=(0, 45, 90), tilt="TILT=INCLUDE\n1\n2\n0 90\n1 0.5", size=(-0.2, 0.4, 0)),
     "lamp.ldt": ldt(np.eye(37)[:5] + 1, range(0, 360, 45), symmetry=2, sets=((2, 3000.0), (-1, 500.0))),
 }
+RAD = b"""# a room
+void plastic wall 0 0 5 .5 .6 .5 0 0
+void colorpict print 7 red green blue a.hdr pic.cal u v 0 0
+print trans cloth 0 0 7 .4 .4 .4 .1 0 .5 .5
+void glass pane 0 0 3 .96 .96 .96
+void light lamp 0 0 3 10 10 10
+void alias lamps lamp
+wall polygon "hole.1" 0 0 30 0 0 0 4 0 0 4 4 0 0 4 0 0 0 0 1 1 0 1 2 0 2 2 0 2 1 0 1 1 0
+lamps sphere bulb 0 0 4 2 2 2 .1
+cloth cone hat 0 0 8 1 1 0 1 1 1 .5 0
+pane ring disk 0 0 8 1 1 1.5 0 0 -1 .1 .3
+wall tube pipe 0 0 7 3 3 0 3 3 1 .5
+void brightfunc skyfunc 2 skybr skybright.cal 0 3 2 41.6 6.5
+skyfunc glow glows 0 0 4 1 1 1 0
+glows source sky 0 0 4 0 0 1 180
+lamp source sun 0 0 4 0 .6 .8 .533
+"""
+HBJSON = b"""{"type": "Model", "units": "Feet", "rooms": [{"identifier": "r", "faces": [{"identifier": "s", "face_type": "Wall",
+"geometry": {"boundary": [[0, 0, 0], [4, 0, 0], [4, 0, 3], [0, 0, 3]], "holes": null}, "boundary_condition": {"type": "Outdoors"},
+"apertures": [{"identifier": "w", "geometry": {"boundary": [[1, 0, 1], [3, 0, 1], [3, 0, 2], [1, 0, 2]]}, "is_operable": false}],
+"doors": [], "properties": {"radiance": {"modifier": "paint"}}}]}], "shade_meshes": [{"identifier": "m", "geometry":
+{"vertices": [[0, 0, 9], [2, 0, 9], [2, 2, 9], [0, 2, 9]], "faces": [[0, 1, 2, 3], [0, 1, 2]]}}], "properties": {"radiance":
+{"modifiers": [{"type": "Plastic", "identifier": "paint", "r_reflectance": 0.3, "g_reflectance": 0.4, "b_reflectance": 0.3}],
+"modifier_sets": [], "global_modifier_set": {"aperture_set": {"window_modifier": null}}}}}"""
 PART = b"m wall =\n\tsides 1\n\trd .5\nv q =\n p 0 0 9\nv r =\n p 1 0 9\nv s =\n p 0 1 9\nf q r s\n"
 
 
@@ -238,6 +262,8 @@ FORMATS = {
     "stl-ascii": _one("scene.stl", lambda: stl_text({"a": TRIANGLES, "b": TRIANGLES + 1}).encode()),
     "stl-binary": _one("scene.stl", lambda: stl_bytes(TRIANGLES)),
     "vs3": _one("scene.vs3", lambda: VS3.encode()),
+    "rad": _one("scene.rad", lambda: RAD),
+    "hbjson": _one("scene.hbjson", lambda: HBJSON),
     "toml": _toml,
     "ies": _luminaire("lamp.ies"),
     "ldt": _luminaire("lamp.ldt"),

@@ -15,6 +15,55 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "scene/formats/radiance/materials.py",
+        "_color(numbers[:3] * (1 - numbers[3]))",
+        "_color(numbers[:3])",
+        ("test_formats_radiance.py",),
+        "the specular share of a plastic counts as diffuse",
+    ),
+    Mistake(
+        "scene/formats/radiance/sources.py",
+        "np.pi * np.sin(np.radians(angle) / 2) ** 2",
+        "np.pi * np.sin(np.radians(angle)) ** 2",
+        ("test_formats_radiance.py",),
+        "a source's angle is taken as its half angle",
+    ),
+    Mistake(
+        "scene/formats/curved.py",
+        "slant = (AROUND / np.pi * np.sin(np.pi / AROUND)) ** 2, np.cos(np.pi / AROUND) ** 2",
+        "slant = (AROUND / np.pi * np.sin(np.pi / AROUND)) ** 2, 1.0",
+        ("test_formats_radiance.py",),
+        "cones and rings have another area than they should",
+    ),
+    Mistake(
+        "scene/formats/glazing.py",
+        "** (1 / inside)",
+        "** 1.0",
+        ("test_formats_radiance.py", "test_formats_honeybee.py"),
+        "light that crosses glass aslant is absorbed as if it crossed it straight",
+    ),
+    Mistake(
+        "scene/formats/honeybee/reader.py",
+        "replace(one, back_reflectance=material.reflectance)",
+        "replace(one, reflectance=material.reflectance)",
+        ("test_formats_honeybee.py",),
+        "the reflectance of the second room's wall stands on the first room's side",
+    ),
+    Mistake(
+        "scene/formats/ifc/shells.py",
+        "cavity = outer is not None and volumes[i] * volumes[outer] < 0",
+        "cavity = False",
+        ("test_formats_ifc.py",),
+        "the wall of a cavity is turned",
+    ),
+    Mistake(
+        "scene/formats/ifc/__init__.py",
+        "transmittance=whole**0.5 if solid else whole",
+        "transmittance=whole",
+        ("test_formats_ifc.py",),
+        "light crosses a solid pane twice",
+    ),
+    Mistake(
         "image/through.py",
         "share[going] *= np.where(again, 1.0, t)",
         "share[going] *= np.where(again, 1.0, 1.0)",

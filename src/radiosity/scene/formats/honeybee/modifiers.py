@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from ....errors import SceneError
 from ..glazing import transmissivity_of
 from ..radiance.modifiers import Chain
 from ..radiance.primitives import Primitive
@@ -58,13 +59,14 @@ Role = tuple[str, str]  # a set, and a key of it
 class Modifiers:
     """The modifiers and sets of a model."""
 
-    def __init__(self, model: Model):
+    def __init__(self, model: Model, source: str):
+        self._source = source
         light = model.properties.radiance
         own = [] if light is None else light.modifiers
-        whole = (light and light.global_modifier_set) or {}
-        self._modifiers = {str(one.get("identifier")): one for one in [*whole.get("modifiers", []), *own]}
+        whole = None if light is None else light.global_modifier_set
+        self._modifiers = {str(one.get("identifier")): one for one in [*(whole.modifiers if whole else ()), *own]}
         self._sets = {str(one.get("identifier")): one for one in (light.modifier_sets if light else [])}
-        self._whole = whole
+        self._whole = whole.model_dump() if whole else None
 
     def of(self, own: Named, of_room: Named, role: Role) -> Chain:
         """The modifier of an object as Radiance has it.
@@ -73,12 +75,18 @@ class Modifiers:
             own: the object's.
             of_room: the set of its room.
             role: what to take from a set.
+
+        Raises:
+            SceneError: a set holds something else.
         """
         found = own or self._from(of_room, role) or self._from(self._whole, role) or GENERIC[role]
         if isinstance(found, str):
             if found not in self._modifiers:
                 return Chain(undefined=(found,))
             found = self._modifiers[found]
+        if not isinstance(found, dict):
+            place = f"{self._source}: a set of modifiers has {found!r} as its {role[0]} {role[1]}"
+            raise SceneError(f"{place}; give the identifier of a modifier, or the modifier itself")
         return _chain(found)
 
     def _from(self, given: Named, role: Role) -> Named:

@@ -30,7 +30,7 @@ class Reader:
     def __init__(self, source: str, model: Model):
         self.parts: list[Part] = []
         self._source, self._unit = source, UNITS[model.units]
-        self._modifiers = Modifiers(model)
+        self._modifiers = Modifiers(model, source)
         self._told = Told()
         self._finisher = Finisher(source, self._told, False, lambda _, what: self._faults.update({what: None}))
         # names, by what is told of them

@@ -27,7 +27,7 @@ class Mesh(_Table):
     """Vertices, and faces of three or four."""
 
     vertices: list[Point]
-    faces: list[Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=3, max_length=4)]]
+    faces: list[Annotated[list[Annotated[int, Field(ge=0, lt=2**31)]], Field(min_length=3, max_length=4)]]
 
 
 class Radiance(_Table):
@@ -116,12 +116,19 @@ class Room(Shaded):
     faces: list[Face]
 
 
+class WholeSet(BaseModel):
+    """The set of modifiers of a whole model, which brings modifiers of its own."""
+
+    model_config = ConfigDict(extra="allow")
+    modifiers: list[dict[str, Any]] = []
+
+
 class ModelRadiance(_Table):
     """Modifiers and sets of them, and what is for programs of honeybee alone."""
 
     modifiers: list[dict[str, Any]] = []
     modifier_sets: list[dict[str, Any]] = []
-    global_modifier_set: dict[str, Any] | None = None
+    global_modifier_set: "WholeSet | None" = None
     sensor_grids: list[Any] | None = None
     views: list[Any] | None = None
     luminaires: list[Any] | None = None
