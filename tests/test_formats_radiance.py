@@ -245,10 +245,14 @@ def test_names_stand_for_what_was_defined_last(load):
 def test_patterns_are_told_and_lights_under_patterns_are_dark(told):
     text = "void colorpict wood 7 red green blue wood.hdr pic.cal pu pv 0 0\nwood plastic oak 0 0 5 .4 .4 .4 0 0\n"
     text += "void brightdata web 4 flatcorr x.dat source.cal src_theta 0 1 1\nweb light lamp 0 0 3 9 9 9\n"
-    scene, said = told(text + TILE.format("oak", "a") + TILE.format("lamp", "b"))
+    text += "oak texfunc bumps 4 x y z . 0 0\n"
+    scene, said = told(text + TILE.format("bumps", "a") + TILE.format("lamp", "b"))
+    assert scene.names == ("a/oak", "b/lamp")
     np.testing.assert_allclose(scene.reflectance[:, 0], [0.4, 0])
     assert scene.emission.max() == 0
-    assert "patterns and textures are left out, and materials keep their own colour: 'wood (colorpict)'" in said
+    assert (
+        "patterns and textures are left out, and materials keep their own colour: 'bumps (texfunc)', 'wood (colorpict)'" in said
+    )
     assert re.search(r"lights whose distribution a pattern gives .*\[\[luminaire\]\].*lamp", said)
 
 

@@ -1,8 +1,8 @@
 """Read Radiance scene descriptions (.rad): surfaces, materials by their diffuse reflectance, lights, suns and skies.
 
-A surface is identifier x modifier, ``desk/wood``: a modifier says what a surface is made of, and an identifier which one it is.
-Numbers at the end of an identifier (``desk.1042``), by which generators tell faces apart, are left out. Radiance is taken as
-W/(m² sr); an emitter of radiance L has the exitance pi L. Surfaces have two sides that are alike, and emit from the front only.
+A surface is identifier x material, ``desk/wood``. The material is the first one among its modifiers. Numbers at the end of an
+identifier (``desk.1042``), by which generators tell faces apart, are left out. Radiance is taken as W/(m² sr); an emitter of radiance
+L has the exitance pi L. Surfaces have two sides that are alike, and emit from the front only.
 """
 
 import re
@@ -60,6 +60,7 @@ class Reader:
         self._source = source
         self._modifiers = Modifiers()
         self._polygons: dict[Found, list[np.ndarray]] = {}
+        self._materials: dict[Defined | str | None, str] = {}  # what a modifier's material is called
         self._curved: dict[Found, list[tuple[np.ndarray, np.ndarray]]] = {}
 
     def take(self, primitive: Primitive) -> None:
@@ -104,8 +105,12 @@ class Reader:
 
     def _shape(self, primitive: Primitive) -> None:
         thing = NUMBERED.sub("", primitive.name) or primitive.name
-        name = thing if thing == primitive.modifier else f"{thing}/{primitive.modifier}"
-        place = name, self._modifiers.find(primitive.modifier)
+        modifier = self._modifiers.find(primitive.modifier)
+        if modifier not in self._materials:
+            material = chain_of(modifier).material
+            self._materials[modifier] = primitive.modifier if material is None else material.name
+        made_of = self._materials[modifier]
+        place = thing if thing == made_of else f"{thing}/{made_of}", modifier
         if primitive.kind == "polygon":
             corners = corners_of(primitive)
             self._polygons.setdefault(place, []).append(corners)

@@ -31,7 +31,7 @@ TWO_SKIES = "skies that overlap one that comes before are left out"
 UNLIT = "sources that do not shine are left out"
 
 
-LEFT_OUT = (PATTERNS, DARK, VOID, UNDEFINED, UNKNOWN, MIST, SKIES, ANGLES, TWO_SKIES, UNLIT)  # errors where faults are errors
+LEFT_OUT = (PATTERNS, DARK, UNDEFINED, UNKNOWN, SKIES, ANGLES, TWO_SKIES, UNLIT)  # errors where faults are errors
 
 
 class Told:
