@@ -1,8 +1,8 @@
 """Read Radiance scene descriptions (.rad): surfaces, materials by their diffuse reflectance, lights, suns and skies.
 
 A surface is identifier x material, ``desk/wood``. The material is the first one among its modifiers. Numbers at the end of an
-identifier (``desk.1042``), by which generators tell faces apart, are left out. Radiance is taken as W/(m² sr); an emitter of radiance
-L has the exitance pi L. Surfaces have two sides that are alike, and emit from the front only.
+identifier (``desk.1042``), by which generators tell faces apart, are left out. Radiance is taken as W/(m² sr); an emitter of
+radiance L has the exitance pi L. Surfaces have two sides that are alike, and emit from the front only.
 """
 
 import re
