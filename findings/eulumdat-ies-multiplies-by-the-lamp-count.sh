@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# eulumdat-ies 1.1.0: a EULUMDAT file whose lamp set has two lamps becomes an IES file with twice its light. The flux of a lamp set
-# is that of all its lamps together, and the intensities are per 1000 lm of it. The planes of the IES file end before 360 degrees,
-# which LM-63 does not allow. Nothing is said.
+# eulumdat-ies 1.1.0: a EULUMDAT file whose lamp set has two lamps becomes an IES file with twice its light. The flux of a lamp
+# set is that of all its lamps together, and the intensities are per 1000 lm of it. The planes of the IES file end before 360
+# degrees, which LM-63 does not allow. Nothing is said.
 set -euo pipefail
 folder=$(mktemp -d); trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"

@@ -27,7 +27,8 @@ def received(planes):
     subprocess.run(["ies2rad", "-t", "default", "lamp.ies"], env=environment, check=True, capture_output=True)
     Path("lamp.oct").write_bytes(subprocess.run(["oconv", "lamp.rad"], env=environment, check=True, capture_output=True).stdout)
     points = b"0 1 -1 0 0 1\n0 -1 -1 0 0 1\n"
-    run = subprocess.run(["rtrace", "-h", "-I", "-ab", "0", "lamp.oct"], input=points, env=environment, check=True, capture_output=True)
+    words, options = ["rtrace", "-h", "-I", "-ab", "0", "lamp.oct"], {"check": True, "capture_output": True}
+    run = subprocess.run(words, input=points, env=environment, **options)
     return [float(line.split()[0]) for line in run.stdout.decode().splitlines()]
 
 
