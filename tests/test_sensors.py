@@ -191,10 +191,10 @@ def test_a_rough_solution_goes_on_until_the_sensors_are_reached(monkeypatch):
     room = join([("walls", 0.9, 0.0, walls[:5]), ("lamp", 0.0, 1.0, [walls[5]])], source="bright")
     asked = []
     monkeypatch.setattr(run, "solve", lambda *given, **options: asked.append(options["error"]) or rd.solve(*given, **options))
-    found = rd.measure(rd.subdivide(room, cells=1), rd.Sensors.of([[1, 1, 0.5]], [[0, 0, -1]]), error=0.002)
+    found = rd.measure(rd.subdivide(room, cells=3), rd.Sensors.of([[1, 1, 0.5]], [[0, 0, -1]]), error=0.0005)
     assert found.status == "complete"
-    assert asked[:2] == [0.02, 0.005]
-    assert half_width(found.values)[0, 0] <= 0.002 * found.illuminance[0, 0]
+    assert asked[:2] == [0.005, 0.00125]
+    assert half_width(found.values)[0, 0] <= 0.0005 * found.illuminance[0, 0]
 
 
 def test_errors_without_replicates(shaded):
