@@ -40,6 +40,14 @@ def test_the_tutorial_runs():
         drjit.set_thread_count(threads)
 
 
+def test_the_office_is_measured_as_the_page_shows(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names: dict = {"__name__": "lighting"}
+    for block in blocks(DOCS / "lighting.md"):
+        exec(compile(block, "lighting.md", "exec"), names)
+    assert (tmp_path / "office.png").exists()
+
+
 def test_parts_of_a_run_are_merged_as_the_page_shows(tmp_path, monkeypatch):
     """To the bits of one run."""
     monkeypatch.chdir(tmp_path)

@@ -9,6 +9,7 @@ from light_samples import bulb, lit, overcast, uniform
 import radiosity as rd
 from radiosity.factors.polygons import from_points
 from radiosity.scene.shapes import box, join, quad
+from radiosity.sensors import run
 from radiosity.sensors.target import half_width
 
 ALPHA = 1e-4  # of a test, all its sensors together
@@ -182,3 +183,29 @@ def test_sensors_on_a_large_tilted_floor_are_not_below_it():
     found = measured(scene, rd.Sensors.of(points, turned[:, 2]), 256)
     exact = 100 * from_points(points, np.tile(turned[:, 2], (300, 1)), lamp[None])
     assert agrees(found, exact, 0.05)
+
+
+def test_a_rough_solution_goes_on_until_the_sensors_are_reached(monkeypatch):
+    """Near a wall that lights most of what the sensor sees, the first solution errs too much."""
+    walls = box((0, 0, 0), (2, 2, 2), inward=True)
+    room = join([("walls", 0.9, 0.0, walls[:5]), ("lamp", 0.0, 1.0, [walls[5]])], source="bright")
+    asked = []
+    monkeypatch.setattr(run, "solve", lambda *given, **options: asked.append(options["error"]) or rd.solve(*given, **options))
+    found = rd.measure(rd.subdivide(room, cells=3), rd.Sensors.of([[1, 1, 0.5]], [[0, 0, -1]]), error=0.0005)
+    assert found.status == "complete"
+    assert asked[:2] == [0.005, 0.00125]
+    assert half_width(found.values)[0, 0] <= 0.0005 * found.illuminance[0, 0]
+
+
+def test_errors_without_replicates(shaded):
+    scene, _ = shaded
+    patches = rd.subdivide(scene, cells=1)
+    point = rd.Sensors.of([[0, 0, 1.0]])
+    alone = rd.solve(patches, "gather", rays=20_000, replicates=1)
+    with pytest.raises(rd.MethodError, match="give 2 or more"):
+        rd.measure(alone, point, error=0.01, replicates=1)
+    with pytest.warns(rd.RadiosityWarning, match="the solution has one replicate"):
+        found = rd.measure(alone, point, rays=20_000)
+    assert len(found.values) == 8
+    with pytest.raises(rd.MethodError, match="leave replicates out"):
+        rd.measure(rd.solve(patches, "gather", rays=20_000, replicates=4), point, rays=20_000, replicates=8)

@@ -13,7 +13,6 @@ from ..errors import MethodError, printable, shown
 from ..patches.model import Patches
 from ..run.budget import Budget
 from ..run.progress import Listener
-from ..run.solve import solve
 from ..run.whole_number import whole
 from ..scene.habits import warn
 from ..scene.model import Scene
@@ -23,7 +22,7 @@ from .glare_sources import Seen, photopic_of, refuse
 from .guth import position_index
 from .measure import scene_of
 from .model import Sensors
-from .run import Run
+from .run import traced
 from .target import half_width
 
 LARGE, SMALL = 0.1, 3e-4  # sr: beyond them the formula was not made for a source (CIE 117)
@@ -134,8 +133,7 @@ def unified_glare_rating(
     if steep.any():
         raise MethodError(f"observer {int(np.argmax(steep))} looks straight up or down; a position index needs another direction")
     with limited(memory), turn():
-        solution = scene if isinstance(scene, Solution) else _solved(scene, budget, replicates, number, device, progress)
-        background = Run(solution, observers, budget, "worst", replicates, number, device, progress, direct=False).measured()
+        solution, background = traced(scene, observers, budget, "worst", replicates, number, device, progress, direct=False)
         dark = photopic_of(background.values) / np.pi
         sums, rows = zip(
             *(_sum(solution.patches, *one, up, device) for one in zip(observers.points, observers.normals, strict=True)),
@@ -145,11 +143,6 @@ def unified_glare_rating(
         values = 8 * np.log10(0.25 / dark * np.array(sums))
     _tell_of_sizes(rows)
     return GlareRating(observers, values, dark, rows)
-
-
-def _solved(scene: Scene | Patches, budget: Budget, replicates, seed: int, device: str, progress) -> Solution:
-    rays, error = (None if value is None else value / 2 for value in (budget.rays, budget.error))
-    return solve(scene, rays=rays, error=error, replicates=replicates, seed=seed, device=device, progress=progress)
 
 
 def _sum(patches: Patches, point: np.ndarray, gaze: np.ndarray, up: np.ndarray, device: str) -> tuple[float, tuple[dict, ...]]:

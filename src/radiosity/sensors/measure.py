@@ -11,7 +11,6 @@ from ..errors import MethodError, shown
 from ..patches import Patches
 from ..run.budget import Budget
 from ..run.progress import Listener
-from ..run.solve import solve
 from ..run.whole_number import whole
 from ..scene.habits import warn
 from ..scene.model import Scene
@@ -19,11 +18,10 @@ from ..solution.model import Solution
 from .groups import parts_of
 from .model import Sensors
 from .result import Measurement
-from .run import Run
+from .run import traced
 from .target import OF
 
 HURRIED = 1e5  # lines of each group after one that was interrupted
-SHARE = 0.5  # of the lines or of the error goes to the solution, where there is none yet
 
 
 def measure(
@@ -47,7 +45,7 @@ def measure(
     sensors are near to its surfaces.
 
     Args:
-        scene: a `Solution`, or a scene or patches to solve first, which takes half of the lines or of the error.
+        scene: a `Solution`, or a scene or patches to solve first, which takes half of the lines, or as many as the error needs.
         sensors: where to measure; by default what the scene's file asks for (`Sensors.of_scene`).
         rays, error: one at most: lines in all, replicates together; or the relative error that the true one is below in 95 % of
             runs. The default is an error of 1 %.
@@ -87,7 +85,7 @@ def measure(
         begun = perf_counter()
 
         def one(part: Scene | Patches | Solution, budget: Budget) -> Measurement:
-            return _one(part, sensors, budget, error_of, replicates, number, device, progress)
+            return traced(part, sensors, budget, error_of, replicates, number, device, progress)[1]
 
         if groups is False:
             found = one(scene, Budget(rays=rays, error=error))
@@ -104,18 +102,6 @@ def measure(
         found = replace(found, seconds=perf_counter() - begun)
     _tell_of_inside(found)
     return found
-
-
-def _one(scene, sensors: Sensors, budget: Budget, error_of: str, replicates, seed: int, device: str, progress) -> Measurement:
-    """Solve where there is no solution, and measure."""
-    if isinstance(scene, Solution):
-        return Run(scene, sensors, budget, error_of, replicates, seed, device, progress).measured()
-    rays, error = (None if value is None else value * SHARE for value in (budget.rays, budget.error))
-    solution = solve(scene, rays=rays, error=error, replicates=replicates, seed=seed, device=device, progress=progress)
-    if budget.rays is not None:
-        budget = replace(budget, rays=max(budget.rays - solution.rays, 1.0))
-    found = Run(solution, sensors, budget, error_of, replicates, seed, device, progress).measured()
-    return replace(found, status="interrupted") if solution.status == "interrupted" else found
 
 
 def _together(parts: dict[str, Measurement]) -> Measurement:

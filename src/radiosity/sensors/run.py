@@ -2,16 +2,21 @@
 
 from dataclasses import dataclass, replace
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
 from ..device.backend import choose
 from ..errors import MethodError
+from ..method import Method
+from ..patches import Patches
 from ..problem.model import Problem
 from ..run.budget import Budget
 from ..run.progress import Listener, Stop, Teller
+from ..run.solve import solve
 from ..sampling.streams import Seed
 from ..scene.habits import warn
+from ..scene.model import Scene
 from ..solution.model import Solution
 from ..tracing.geometry import Geometry
 from .model import Sensors
@@ -23,6 +28,9 @@ from .tracing import Tracing
 FIRST = 32  # lines of a sensor in the first stage, in each replicate
 MOST = 1 << 20  # lines of a sensor in each replicate
 AT_ONCE = 1 << 24  # lines of a launch: between launches a run can be interrupted
+SHARE = 0.5  # of the lines goes to the solution, where there is none yet; and of the error, at the end
+ROUGH, ROUGHEST = 10.0, 0.2  # times the error of sensors, at most: the error of a solution of all patches, at first
+FINER = 0.25  # of its error is that of the next one
 BEHIND = 0.5  # share of lines that meet backs: a sensor is likely inside of something
 
 
@@ -50,13 +58,19 @@ class Run:
     direct: bool = True
 
     def measured(self) -> Measurement:
-        """Trace the lines. What is left of the error asked for is told."""
+        """Trace the lines; the status says whether the error was reached.
+
+        Raises:
+            MethodError: other replicates than the solution's, an error without replicates, or backs that let lines pass.
+        """
         solution, begun = self.solution, perf_counter()
         count = self.replicates or (solution.replicates if solution.replicates > 1 else 8)
         if solution.replicates > 1 and count != solution.replicates:
             raise MethodError(
                 f"the solution has {solution.replicates} replicates, and sensors are to have {count}: leave replicates out"
             )
+        if count < 2 and self.budget.error is not None:
+            raise MethodError("an error is found from replicates: give 2 or more, or rays in place of the error")
         geometry = Geometry(solution.patches.solid, choose(self.device))
         if geometry.some_backs_pass:
             raise MethodError(
@@ -71,14 +85,59 @@ class Run:
             values, status, reached = _staged(tracing, self.budget, problem, self.sensors, teller, stop, self.error_of)
         inside = tracing.behind() > BEHIND
         found = Measurement.of(solution, self.sensors, problem, values, inside, tracing.traced, perf_counter() - begun, status)
-        if reached or status != "complete":
-            return found
-        of, now = achieved(found, self.error_of)
-        warn(
-            f"the relative error of {of} is {now:.2g}, and {self.budget.error:.2g} was asked for; what is left is the error of "
-            "the solution: solve longer"
+        return found if reached or status != "complete" else replace(found, status="not reached")
+
+
+def traced(
+    given: Scene | Patches | Solution,
+    sensors: Sensors,
+    budget: Budget,
+    error_of: str,
+    replicates: int | None,
+    seed: int,
+    device: str,
+    progress: Listener | None,
+    *,
+    direct: bool = True,
+) -> tuple[Solution, Measurement]:
+    """Solve where there is no solution yet, and trace the lines of sensors.
+
+    Each sensor sees many patches, so that a rough solution is mostly enough. Where it is not, it goes on. An error that is not
+    reached is told.
+    """
+    options: dict[str, Any] = {"seed": seed, "device": device, "progress": progress}
+
+    def measured(solution: Solution) -> Measurement:
+        left = (
+            budget if budget.rays is None or isinstance(given, Solution) else Budget(rays=max(budget.rays - solution.rays, 1.0))
         )
-        return replace(found, status="not reached")
+        return Run(solution, sensors, left, error_of, replicates, seed, device, progress, direct).measured()
+
+    if isinstance(given, Solution):
+        solution, found = given, measured(given)
+        if given.replicates < 2 and len(found.values) > 1:
+            warn(f"{given.patches.scene.source}: the solution has one replicate, whose error is not in the errors of sensors")
+    elif budget.error is None:
+        solution = solve(given, rays=budget.rays and budget.rays * SHARE, replicates=replicates, **options)
+        found = measured(solution)
+    else:
+        error = min(ROUGH * budget.error, ROUGHEST)
+        solution = solve(given, error=error, replicates=replicates, **options)
+        found = measured(solution)
+        while found.status == "not reached" and solution.status == "complete" and error > SHARE * budget.error:
+            error = max(error * FINER, SHARE * budget.error)
+            method = Method(**solution.provenance["choices"])
+            solution = solve(solution.patches, method, error=error, replicates=replicates, resume=solution, **options)
+            found = measured(solution)
+    if solution.status == "interrupted":
+        found = replace(found, status="interrupted")
+    if found.status == "not reached" and budget.error is not None:
+        of, now = achieved(found, error_of)
+        warn(
+            f"the relative error of {of} is {now:.2g}, and {budget.error:.2g} was asked for; what is left is the error of the "
+            "solution: solve longer"
+        )
+    return solution, found
 
 
 def _staged(tracing: Tracing, budget: Budget, problem: Problem, sensors: Sensors, teller: Teller, stop: Stop, error_of: str):

@@ -131,8 +131,8 @@ class Tracing:
 
 def _without_direct(lines: Lines) -> Lines:
     """Return lines that see no lamp and no sky."""
-    nothing = [dr.zeros(lines.types.Float, dr.width(column)) for column in lines.emission]
-    return replace(lines, emission=nothing, sky=None)
+    nothing = [dr.zeros(lines.types.Float, dr.width(column)) for column in lines.targets.emission]
+    return replace(lines, targets=replace(lines.targets, emission=nothing, sky=None))
 
 
 def _variance(receivers: Receivers, sums: list) -> np.ndarray:
