@@ -179,6 +179,14 @@ def _obj(random: Random) -> dict[str, bytes]:
     return {**files, name: mutated(files[name], random)}
 
 
+def _daylight(random: Random) -> dict[str, bytes]:
+    """A scene under the sky of an hour of a weather file, or a plainer one, with an opening."""
+    sky = random.choice(("perez", "epw", "clear"))
+    files = {"scene.toml": (DAYLIGHT + SKIES[sky]).encode(), "room.ply": ply_text().encode(), "a.epw": EPW.encode()}
+    name = random.choice(("scene.toml", "a.epw" if sky == "epw" else "scene.toml"))
+    return {**files, name: mutated(files[name], random)}
+
+
 def _toml(random: Random) -> dict[str, bytes]:
     return {"scene.toml": mutated(TOML.encode(), random), "lamp.stl": stl_bytes(TRIANGLES), "room.ply": ply_text().encode()}
 
@@ -249,6 +257,33 @@ def _one(name: str, make):
     return lambda random: {name: mutated(make(), random)}
 
 
+DAYLIGHT = """geometry = "room.ply"
+[[surface]]
+name = "*"
+reflectance = 0.5
+[[opening]]
+corners = [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1.5]]
+"""
+SKIES = {
+    "perez": "[sky]\ntype = 'perez'\ndirect = 600\ndiffuse = 90.5\naltitude = 30.5\nazimuth = 99\nup = 'z'\nnorth = [1, 0, 0]\n",
+    "epw": "[sky]\ntype = 'epw'\nfile = 'a.epw'\nmonth = 6\nday = 21\nhour = 12\nground = 0.2\nopenings = ['*']\n",
+    "clear": """[sky]
+type = "cie-clear"
+horizontal = 9000
+[sun]
+illuminance = 60_000
+latitude = 52.5
+longitude = 13.4
+timezone = 1
+month = 6
+day = 21
+hour = 10.5
+""",
+}
+EPW = """LOCATION,Testville,-,DEU,Synthetic,000000,52.50,13.40,1.0,35.0
+DATA PERIODS,1,1,Data,Sunday,1/1,12/31
+2005,6,21,12,60,?9,20.1,14.0,50,101000,0,0,300,673,600,150,0,0,0,0,0,0,0,0
+"""
 COLORED = cache(lambda: ply_text([*SQUARE, [0, 0, 1]], MIXED, colors=np.arange(15).reshape(5, 3)).encode())
 FORMATS = {
     "mgf": _mgf,
@@ -265,6 +300,7 @@ FORMATS = {
     "rad": _one("scene.rad", lambda: RAD),
     "hbjson": _one("scene.hbjson", lambda: HBJSON),
     "toml": _toml,
+    "daylight": _daylight,
     "ies": _luminaire("lamp.ies"),
     "ldt": _luminaire("lamp.ldt"),
     "npz": _npz,

@@ -23,6 +23,7 @@ from .suns import Suns
 
 ROWS, COLUMNS = 91, 360  # at least, of the upper half of tables of radiance times cosine
 PLANES = 24  # most directions that openings face with a table each; all others share one, which does not know their direction
+ENTRIES = 1 << 24  # most entries of all these tables: a large image of a sky has fewer of them
 
 
 @dataclass(eq=False)
@@ -77,15 +78,27 @@ class SkyThrough(AbstractLights):
         order = np.argsort(-np.bincount(which.ravel(), self.openings.area), kind="stable")
         rank = np.empty(len(order), np.int64)
         rank[order] = np.arange(len(order))
-        return normal[first[order[:PLANES]]], np.minimum(rank[which.ravel()], PLANES)
+        half, columns = self._size
+        most = min(PLANES, ENTRIES // (2 * half * columns * len(self.sky.leaders)))
+        return normal[first[order[:most]]], np.minimum(rank[which.ravel()], most)
+
+    @property
+    def _finer(self) -> tuple[int, int]:
+        """How many cells stand in place of one of the sky, so that each lies within one: along elevation, and along azimuth."""
+        _, rows, columns = self.sky.fired.values.shape
+        return -(-(ROWS - 1) // (rows // 2 - 1)), -(-COLUMNS // columns)
+
+    @property
+    def _size(self) -> tuple[int, int]:
+        """Rows of half a table, and columns."""
+        _, rows, columns = self.sky.fired.values.shape
+        return self._finer[0] * (rows // 2 - 1) + 1, self._finer[1] * columns
 
     @cached_property
     def tables(self) -> Directions:
         """A table for each plane and each row of the sky; the common ones, where there are any, have a cosine of 1."""
         normals, which = self.planes
-        _, rows, columns = self.sky.fired.values.shape
-        finer = -(-(ROWS - 1) // (rows // 2 - 1)), -(-COLUMNS // columns)  # whole numbers: cells lie within those of the sky
-        radiance, axes = self.sky.fired.refined(*finer), self.sky.sky.axes
+        radiance, axes = self.sky.fired.refined(*self._finer), self.sky.sky.axes
         tables = [radiance * largest_cosine(radiance.shape[1], radiance.shape[2], axes, normal) for normal in normals]
         common = [radiance] if which.max() == len(normals) else []
         return Directions(np.concatenate(tables + common), axes)
