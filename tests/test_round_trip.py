@@ -18,6 +18,7 @@ from radiosity.scene.lights.model import Lights
 from radiosity.scene.lights.sun import Sun
 from radiosity.scene.paint import Paint
 from radiosity.scene.sampler import Sampler
+from radiosity.scene.sensor_request import SensorRequest
 
 
 def paint(random, n: int, limit: float) -> Paint:
@@ -59,7 +60,12 @@ def everything() -> rd.Scene:
     heat = Heat(known, np.where(isothermal, 5.0, np.nan), emissivity, isothermal, 290.0, (3.0,))
     paints = {"reflectance_paint": paint(random, n, 0.9), "emission_paint": paint(random, n, 7.0)}
     through = np.where((back == Back.RADIATES) | (back == Back.ABSORBS), (np.arange(n) % 4 + 1) / 16, 0.0)
-    return replace(scene, transmittance=through, patch_size=sizes, scale=0.01, heat=heat, assumed=room.names[:2], **paints)
+    asked = (
+        SensorRequest("plane", surface="floor", spacing=0.5),
+        SensorRequest("point", points=((1.0, 2, 3),), normals=((0.0, 0, 1),)),
+    )
+    plain = {"patch_size": sizes, "scale": 0.01, "heat": heat, "assumed": room.names[:2]}
+    return replace(scene, transmittance=through, sensors=asked, **plain, **paints)
 
 
 def same(one, other, name: str) -> None:
@@ -246,7 +252,7 @@ def test_a_scene_combined_with_nothing_or_with_itself_is_there_whole():
     assert twice.cameras == 2 * scene.cameras
 
 
-NO_LIGHT = ("cameras", "scale", "source", "patch_size", "heat", "assumed")  # light does not depend on them
+NO_LIGHT = ("cameras", "scale", "source", "patch_size", "heat", "assumed", "sensors")  # light does not depend on them
 
 
 @pytest.mark.parametrize("name", [f.name for f in fields(rd.Scene) if f.name not in NO_LIGHT])
