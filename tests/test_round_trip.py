@@ -60,7 +60,8 @@ def everything() -> rd.Scene:
     heat = Heat(known, np.where(isothermal, 5.0, np.nan), emissivity, isothermal, 290.0, (3.0,))
     paints = {"reflectance_paint": paint(random, n, 0.9), "emission_paint": paint(random, n, 7.0)}
     through = np.where((back == Back.RADIATES) | (back == Back.ABSORBS), (np.arange(n) % 4 + 1) / 16, 0.0)
-    asked = (
+    point = SensorRequest("point", points=((1.0, 2.0, 3.0),), normals=((0.0, 0.0, 1.0),))
+    asked = (SensorRequest("plane", surface="floor", spacing=0.5), point)
         SensorRequest("plane", surface="floor", spacing=0.5),
         SensorRequest("point", points=((1.0, 2, 3),), normals=((0.0, 0, 1),)),
     )
