@@ -62,9 +62,6 @@ def everything() -> rd.Scene:
     through = np.where((back == Back.RADIATES) | (back == Back.ABSORBS), (np.arange(n) % 4 + 1) / 16, 0.0)
     point = SensorRequest("point", points=((1.0, 2.0, 3.0),), normals=((0.0, 0.0, 1.0),))
     asked = (SensorRequest("plane", surface="floor", spacing=0.5), point)
-        SensorRequest("plane", surface="floor", spacing=0.5),
-        SensorRequest("point", points=((1.0, 2, 3),), normals=((0.0, 0, 1),)),
-    )
     plain = {"patch_size": sizes, "scale": 0.01, "heat": heat, "assumed": room.names[:2]}
     return replace(scene, transmittance=through, sensors=asked, **plain, **paints)
 
