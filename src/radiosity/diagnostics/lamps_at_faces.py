@@ -1,7 +1,7 @@
 """Luminaires so near to a face, or in it, that shadow rays from its patches hardly find their light.
 
-A lamp that hangs a millimetre below a ceiling lights a spot of a millimetre there. Shadow rays of gather begin at uniform points of
-a patch, so that they meet the spot by chance alone: what is missing is in no error bar. Random walks begin at the lamp.
+A lamp that hangs a millimetre below a ceiling lights a spot of a millimetre there. Shadow rays of gather begin at uniform points
+of a patch, so that they meet the spot by chance alone: what is missing is in no error bar. Random walks begin at the lamp.
 """
 
 from dataclasses import dataclass
@@ -57,7 +57,7 @@ def spots(patches: Patches) -> list[Spot]:
         reach = NEAR * sizes
         beside = np.linalg.norm(way, axis=1) <= np.linalg.norm(first, axis=1) + np.linalg.norm(second, axis=1) + reach
         for face in np.flatnonzero((np.abs(height) <= reach) & beside):
-            share = _share(one, scene, face)
+            share = _share(one, scene, int(face))
             if share > 0:
                 name, light = scene.names[scene.surface[face]], share * float(one.power.sum()) / power
                 found.append(Spot(one.name, name, float(abs(height[face])), float(sizes[face]), share, light))
@@ -69,13 +69,15 @@ def spots(patches: Patches) -> list[Spot]:
 def warn_of_spots(patches: Patches) -> None:
     """Warn where gather hardly finds light of luminaires that nearly touch faces."""
     found = spots(patches)
-    if found:
-        names = shown(list(dict.fromkeys(f"{one.luminaire} at {one.surface} ({one.distance:.3g} m)" for one in found)), 5)
-        warn(
-            f"{names}: luminaires that nearly touch a face send up to {100 * max(one.share for one in found):.0f} % of their light to a spot of it, "
-            f"and its patches are {max(one.size for one in found):.2g} m large: the shadow rays of gather hardly find that light, "
-            "and no error shows it; take --method random-walk, or move them away from the face"
-        )
+    if not found:
+        return
+    names = shown(list(dict.fromkeys(f"{one.luminaire} at {one.surface} ({one.distance:.3g} m)" for one in found)), 5)
+    most, size = 100 * max(one.share for one in found), max(one.size for one in found)
+    warn(
+        f"{names}: luminaires that nearly touch a face send up to {most:.0f} % of their light to a spot of it, and patches are "
+        f"{size:.2g} m large: the shadow rays of gather hardly find that light, and no error shows it; take --method "
+        "random-walk, or move them away from the face"
+    )
 
 
 def _share(one: Luminaire, scene, face: int) -> float:
