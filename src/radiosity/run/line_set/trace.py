@@ -130,6 +130,6 @@ def _tell_of_lights(patches: Patches) -> None:
     if patches.scene.lights:
         names = shown([one.name for one in patches.scene.lights.all])
         warn(
-            f"{patches.scene.source}: lines are counted between patches, so that lights without area are left out: {names}; what a "
-            "line set is solved for is without their light. For it, solve the scene by --method gather or --method random-walk"
+            f"{patches.scene.source}: lines are counted between patches, so that lights without area are left out: {names}; what "
+            "a line set is solved for is without their light. For it, solve the scene by --method gather or --method random-walk"
         )
