@@ -359,3 +359,66 @@ class TestToml:
         finding, close = [one for one in rd.check(scene.with_lights(lamps)).findings if one.kind == "luminaires"]
         assert close.message.startswith("most of the light of 'at the floor' meets a surface within 5 cm")
         assert finding.message.startswith("most of the light of 'at 2.01' meets absorbing backs (100 %)")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ({"luminaires": ["lamp"]}, "one of the luminaires is a str; make it with read_luminaire or point_light"),
+        ({"luminaires": rd.point_light(position=(0, 0, 1), lumens=1)}, "luminaires are a Luminaire; give a list"),
+        ({"suns": rd.sun(1, altitude=30, azimuth=0)}, "suns are a Sun; give a list"),
+        ({"suns": [rd.uniform_sky(1)]}, "one of the suns is a Sky; make it with sun"),
+        ({"sky": "overcast"}, "sky is a str; make one with cie_sky"),
+        ({"openings": 3}, "openings are a int"),
+        ({"openings": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}, r"opening 1: has the shape \(3,\)"),
+        ({"openings": [[[0, 0, np.nan], [1, 0, 0], [0, 1, 0]]]}, r"opening 1: \[0.0, 0.0, nan\] is no corner"),
+        ({"openings": [[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]]}, "opening 1: its corners lie on a line"),
+        ({"openings": [[[0, 0, 0], [1, 0, 0], [1, 1, 0.5], [0, 1, 0]]]}, "opening 1: its fourth corner lies off the plane"),
+        (
+            {"luminaires": [replace(rd.point_light(position=(0, 0, 1), lumens=1), power=np.array([np.nan]))]},
+            "its power cannot be",
+        ),
+    ],
+)
+def test_lights_that_make_no_sense_are_named(arguments, says):
+    """They were another program's errors before, or a total power of nan."""
+    with pytest.raises(rd.SceneError, match=says):
+        rd.load_scene("room").with_lights(**arguments)
+
+
+def test_openings_that_are_no_parallelogram_become_triangles():
+    scene = _wall().with_lights(sky=rd.uniform_sky(1), openings=[[[0, 0, 1], [3, 0, 1], [2, 1, 1], [1, 1, 1]]])
+    assert scene.lights.openings.shape == (2, 4, 3)
+
+
+@pytest.mark.parametrize("key", ["web_0_planes", "web_0_gamma", "web_0_intensity", "sky_radiance", "openings"])
+@pytest.mark.parametrize("damage", ["nan", "short", "missing"])
+def test_damaged_lights_of_a_file_are_refused(tmp_path, key, damage):
+    sky = rd.uniform_sky(1)
+    scene = _wall().with_lights(
+        [rd.point_light(position=(0, 0, 1), lumens=1)], sky=sky, openings=[[[0, 0, 1], [1, 0, 1], [0, 1, 1]]]
+    )
+    file = tmp_path / "lit.npz"
+    rd.solve(rd.subdivide(scene, cells=1), "gather", quanta=10, replicates=1).save(file)
+    assert len(rd.load_solution(file).patches.scene.lights.all) == 2
+    with np.load(file) as arrays:
+        kept = dict(arrays)
+    value = kept.pop(f"lights_{key}")
+    if damage != "missing":
+        kept[f"lights_{key}"] = value[:-1] if damage == "short" else np.full_like(value, np.nan)
+    np.savez(file, **kept)
+    with pytest.raises(rd.RadiosityError, match="no solution of this program, or damaged"):
+        rd.load_solution(file)
+
+
+def test_line_sets_leave_lights_out_and_tell():
+    scene = _wall().with_lights([rd.point_light(position=(0, 0, 1), lumens=1, name="globe")])
+    with pytest.warns(rd.RadiosityWarning, match="lights without area are left out: 'globe'"):
+        lines = rd.trace_lines(rd.subdivide(scene, cells=1), rays=100)
+    assert not lines.patches.scene.lights
+
+
+def _wall() -> rd.Scene:
+    """A square that faces up, and one that faces it."""
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 2], [0, 1, 2], [1, 1, 2], [1, 0, 2]]
+    return rd.Scene.from_arrays(corners, [[0, 1, 2, 3], [4, 5, 6, 7]], 0.5, 0.0)

@@ -13,6 +13,7 @@ import numpy as np
 from ..algorithms.gather import pilot
 from ..algorithms.gather.chances import CLUSTER, Chances
 from ..device.backend import choose
+from ..diagnostics.lamps_at_faces import spots
 from ..errors import MethodError
 from ..method import Method
 from ..method.auto import FALLBACK, NAME
@@ -75,6 +76,12 @@ def choice_for(patches: Patches, budget: Budget, part: Part, device: str, resume
     if reason:
         return _chosen(FALLBACK, reason, 0)
     if problem.lights is not None:
+        near = spots(patches)
+        if near:
+            why = (
+                f"luminaire '{near[0].luminaire}' is {near[0].distance:.3g} m from '{near[0].surface}', too near for shadow rays"
+            )
+            return _chosen(FALLBACK, why, 0)
         return _chosen("gather", "shadow rays go to lights without area", 0)
     geometry = Geometry(problem.patches, choose(device))
     geometry.prepare()

@@ -10,6 +10,7 @@ import numpy as np
 from ..device.memory import limited
 from ..device.turn import turn
 from ..diagnostics.contact_findings import tell
+from ..diagnostics.lamps_at_faces import warn_of_spots
 from ..diagnostics.narrow import warn_of_light
 from ..errors import MethodError, shown
 from ..method import Auto, Baseline, Method, resolve
@@ -187,6 +188,8 @@ def prepared(
     local = chosen.lines == "local" or chosen.first_shot if isinstance(chosen, Method) else chosen.factors == "lines"
     if local:
         warn_of_light(run.geometry, scene, stacklevel=3)
+    if isinstance(chosen, Method) and chosen.machine == "gather":
+        warn_of_spots(scene)
     return run
 
 

@@ -289,10 +289,11 @@ class Scene:
         Args:
             luminaires: from `radiosity.read_luminaire` and `radiosity.point_light`.
             suns, sky: lights from far away.
-            openings: (n, 4, 3) m, polygons through which the sky and the suns light most of what matters, such as windows.
+            openings: of each three or four corners, m, around a convex polygon through which the sky and the suns light most of
+                what matters, such as a window.
 
         Raises:
-            SceneError: some light of the scene is in W and other light in lm, or there are two skies.
+            SceneError: some light of the scene is in W and other light in lm, there are two skies, or a value makes no sense.
 
         Example:
             >>> floor = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]
@@ -302,9 +303,9 @@ class Scene:
             ('lm/m²', 1)
         """
         from .lights.add import with_lights
+        from .lights.given import given
 
-        corners = None if openings is None else np.asarray(openings, np.float64)
-        return with_lights(self, Lights(tuple(luminaires), tuple(suns), sky, corners))
+        return with_lights(self, given(luminaires, suns, sky, openings, self.source))
 
     def without_degenerate_faces(self) -> "Scene":
         """Leave out, with one warning, faces that single precision cannot tell from a line or a point where they lie.

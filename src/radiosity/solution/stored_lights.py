@@ -28,7 +28,7 @@ def stored(lights: Lights) -> tuple[dict[str, Any], dict[str, Any]]:
         arrays["lights_sky_radiance"] = lights.sky.radiance
         facts["sky"] = _facts(lights.sky, ("name", "kind", "photometric"), ("axes",))
     if lights.openings is not None:
-        arrays["lights_openings"] = lights.openings
+        arrays["lights_openings"], facts["openings"] = lights.openings, True
     return arrays, facts
 
 
@@ -38,7 +38,7 @@ def restored(arrays: dict[str, Any], facts: dict[str, Any]) -> Lights:
     luminaires = tuple(Luminaire(**(_made(one, PLACED) | {"web": webs[one["web"]]})) for one in facts["luminaires"])
     suns = tuple(Sun(**_made(one, ("direction", "irradiance"))) for one in facts["suns"])
     sky = Sky(radiance=arrays["lights_sky_radiance"], **_made(facts["sky"], ("axes",))) if "sky" in facts else None
-    return Lights(luminaires, suns, sky, arrays.get("lights_openings"))
+    return Lights(luminaires, suns, sky, arrays["lights_openings"] if facts.get("openings") else arrays.get("lights_openings"))
 
 
 def _facts(light: Any, plain: tuple[str, ...], as_lists: tuple[str, ...]) -> dict[str, Any]:

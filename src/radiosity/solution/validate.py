@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from ..patches.model import Patches
+from ..scene.lights.given import fault_of, light_bands
 from ..scene.model import Back, Scene
 from ..scene.paint import Paint
 from .books import Books
@@ -83,6 +84,9 @@ def _scene(scene: Scene) -> None:
         _array(name, value, "f", (n, bands))
         most = 1 if "reflectance" in name else MOST
         _that(((value >= 0) & (value < most)).all(), f"{name} out of range")
+    fault = fault_of(scene.lights)
+    _that(not fault, fault)
+    _that(all(light_bands(light) == bands for light in scene.lights.all), "lights of other bands")
     if scene.transmittance is not None:
         _array("transmittance", scene.transmittance, "f", (n,))
         _that(((scene.transmittance >= 0) & (scene.transmittance < 1)).all(), "transmittance out of range")

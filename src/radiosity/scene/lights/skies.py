@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import SceneError
+from ..habits import warn
 from .axes import check_place, place_of, radians, sky_axes, told
 from .cie import CLEAR, GENERAL, NO_SUN, general, intermediate, overcast
 from .sky import Sky
@@ -104,6 +105,8 @@ def cie_sky(
     if place is None:
         raise SceneError(f"sky '{name}': the CIE sky {kind!r} depends on the sun; give its altitude and azimuth, sun=(40, 180)")
     check_place(f"sky '{name}'", *place)
+    if place[0] < 0:
+        warn(f"sky '{name}': the sun is {-place[0]:.1f} degrees below the horizon, for which the CIE's formulas are not made")
     relative = intermediate(radians(place)) if kind == "intermediate" else general(int(number), radians(place))
     called = f"CIE {kind}" if kind in NAMED else f"CIE general, type {number}"
     return sky_of(name, relative, axes, horizontal, ground, suns, f"{called}, {told(place)}", photometric)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import SceneError
+from ..habits import warn
 from .axes import check_place, sky_axes, towards, unit
 
 DIAMETER = 0.533  # degrees, of the sun as seen from the Earth
@@ -76,4 +77,6 @@ def sun(
     if altitude is None or azimuth is None:
         raise SceneError(f"sun '{name}': give its direction, or its altitude and azimuth in degrees")
     check_place(f"sun '{name}'", altitude, azimuth)
+    if altitude < 0:
+        warn(f"sun '{name}': it is {-altitude:.1f} degrees below the horizon, and lights the scene from below; leave it out at night")
     return Sun(name, towards(sky_axes(up, north), altitude, azimuth), values, diameter, photometric)

@@ -9,6 +9,7 @@ import numpy as np
 from ....errors import SceneError, shown
 from ...assemble import warn
 from ...lights.model import Lights
+from ...lights.openings import opening
 from ...lights.perez import DEW_POINT
 from ...lights.skies import cie_sky, uniform_sky
 from ...lights.sky import Sky
@@ -20,8 +21,6 @@ from ...model import Scene
 from ...parts import ReadOptions
 from ...up import Z_UP, up_axis
 from ..beside import named_file
-
-FLAT = 1e-6  # of its size: so far the fourth corner of an opening may stand from the plane of the others
 
 
 def daylight_of(asked: Any, scene: Scene, factor: float, options: ReadOptions, source: Path) -> Lights:
@@ -43,7 +42,7 @@ def daylight_of(asked: Any, scene: Scene, factor: float, options: ReadOptions, s
         said = str(error)
         raise SceneError(said if said.startswith(str(source)) else f"{source}: {said}") from None
     named = [] if asked.sky is None else _of_surfaces(asked.sky.openings, scene, source)
-    own = [_polygons(entry.corners, f"{source}: opening {number}") for number, entry in enumerate(asked.opening, 1)]
+    own = [opening(entry.corners, f"{source}: opening {number}") for number, entry in enumerate(asked.opening, 1)]
     polygons = [*named, *(one * factor for one in own)]
     if polygons and not (sky or suns or scene.lights.sky or scene.lights.suns):
         raise SceneError(f"{source}: openings are for the light of a sky or a sun; add [sky], or leave them out")
@@ -145,22 +144,3 @@ def _of_surfaces(patterns: list[str], scene: Scene, source: Path) -> list[np.nda
         faces = scene.faces[np.isin(scene.surface, names)]
         found.append(scene.vertices[np.where(faces < 0, faces[:, 2:3], faces)])
     return found
-
-
-def _polygons(corners: list, what: str) -> np.ndarray:
-    """Return three or four corners around as openings, (n, 4, 3): a parallelogram, or triangles."""
-    points = np.array(corners, np.float64)
-    if len(points) == 3:
-        points = points[[0, 1, 2, 2]]
-    size = np.ptp(points, axis=0).max()
-    cross = np.cross(points[1] - points[0], points[2] - points[0])
-    if not np.linalg.norm(cross) > FLAT * size**2:
-        raise SceneError(f"{what}: its corners lie on a line; move one")
-    if abs((points[3] - points[0]) @ cross) / np.linalg.norm(cross) > FLAT * size:
-        raise SceneError(f"{what}: its fourth corner lies off the plane of the others; give two openings of three corners")
-    if (points[2] == points[3]).all() or np.abs(points[1] - points[0] + points[3] - points[2]).max() <= FLAT * size:
-        return points[None]
-    turns = [np.cross(points[i] - points[i - 1], points[(i + 1) % 4] - points[i]) @ cross for i in range(4)]
-    if min(turns) <= 0:
-        raise SceneError(f"{what}: its corners do not run around a convex polygon; give two openings of three corners")
-    return points[[[0, 1, 2, 2], [0, 2, 3, 3]]]
