@@ -104,7 +104,13 @@ def epw_sky(
         SceneError: the file cannot be read, or has no light in this hour.
 
     Example:
-        >>> sky, suns = rd.epw_sky("berlin.epw", 6, 21, 12)  # doctest: +SKIP
+        >>> import pathlib
+        >>> place = "LOCATION,Town,-,DEU,made,0,52.5,13.4,1,35"
+        >>> row = "2005,6,21,12,60,-,20,14,50,101000,0,0,300,673,600,150"
+        >>> _ = pathlib.Path("town.epw").write_text(f"{place}\\n{row}\\n")
+        >>> sky, suns = rd.epw_sky("town.epw", 6, 21, 12)
+        >>> print(f"{sky.horizontal[0]:.0f} lx by the sky, {suns[0].irradiance[0]:.0f} lx across the sun's light")
+        21482 lx by the sky, 60240 lx across the sun's light
     """
     found = read_hour(str(path), month, day, hour)
     where = f"{path}: month {month}, day {day}, hour {hour}"
