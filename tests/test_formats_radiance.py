@@ -305,7 +305,7 @@ def test_faults_are_left_out_with_their_line(told, load, line, message):
         ("grey polygon a 0 0 nine 0", r"scene\.rad:2: 'nine' stands where the number of numbers of polygon 'a'"),
         ("grey polygon a 0 0 9 0 0 0 1 0 0 0 one 0", r"scene\.rad:2: 'one' stands where a number of polygon 'a'"),
         ("grey polygon a 0 0 9 0 0 0", "the file ends where a number of polygon 'a' is expected"),
-        ("", "the file holds no faces"),
+        ("", r"scene\.rad: holds no surfaces; .*cat materials\.rad room\.rad > all\.rad"),
     ],
 )
 def test_text_that_is_no_scene_is_an_error(load, text, message):
