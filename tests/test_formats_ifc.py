@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.scene.formats.ifc import Reader, is_glass
+from radiosity.scene.formats.ifc import Reader, is_glass, run
 from radiosity.scene.formats.ifc.run import Product
 from radiosity.scene.formats.ifc.shells import mended
 
@@ -181,4 +181,29 @@ def test_a_file_that_is_no_ifc_is_an_error(tmp_path):
     pytest.importorskip("ifcopenshell", reason="ifcopenshell is not installed: pip install 'radiosity[ifc]'")
     (tmp_path / "m.ifc").write_text("no STEP file")
     with pytest.raises(rd.SceneError, match=r"m\.ifc: ifcopenshell (cannot read it|finds no shapes)"):
+        rd.load_scene(tmp_path / "m.ifc")
+
+
+def test_without_ifcopenshell_the_extra_is_named(tmp_path, monkeypatch):
+    monkeypatch.setattr(run, "find_spec", lambda name: None)
+    (tmp_path / "m.ifc").write_text("ISO-10303-21;")
+    with pytest.raises(rd.SceneError, match=r"needs 'ifcopenshell'; pip install 'radiosity\[ifc\]'"):
+        rd.load_scene(tmp_path / "m.ifc")
+
+
+@pytest.mark.parametrize(
+    ("program", "message"),
+    [
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "it was ended by signal 11; is the file damaged"),
+        ("raise OSError('no header')", "ifcopenshell cannot read it: OSError: no header"),
+        ("import time; time.sleep(60)", "did not finish in 1 s"),
+    ],
+)
+def test_a_geometry_library_that_fails_is_an_error(tmp_path, monkeypatch, program, message):
+    (tmp_path / "program.py").write_text(program)
+    monkeypatch.setattr(run, "find_spec", lambda name: name)
+    monkeypatch.setattr(run, "PROGRAM", tmp_path / "program.py")
+    monkeypatch.setattr(run, "SECONDS", 1 if "sleep" in program else 60)
+    (tmp_path / "m.ifc").write_text("ISO-10303-21;")
+    with pytest.raises(rd.SceneError, match=message):
         rd.load_scene(tmp_path / "m.ifc")

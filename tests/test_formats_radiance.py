@@ -8,6 +8,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.scene.formats.color import luminance_weights
+from radiosity.scene.lights.axes import place_of
 
 TILE = "{0} polygon {1} 0 0 12  0 0 0  2 0 0  2 1 0  0 1 0\n"
 GREY = "void plastic grey 0 0 5 .5 .5 .5 0 0\n"
@@ -211,6 +212,15 @@ def test_irradiance_in_a_room_with_a_lamp_and_a_window_is_that_of_rtrace(load):
     np.testing.assert_array_less(np.abs(ours.illuminance[:, 0] - theirs.mean(axis=1)), 4.2 * error)
 
 
+@pytest.mark.parametrize("towards", [(0, 0, -1), (0, 0.6, 0.8), (0, 0.6, -0.8), (1, 0, 0)])
+def test_one_half_of_a_sky_may_look_anywhere(load, towards):
+    text = f"void glow g 0 0 4 2 2 2 0\ng source half 0 0 4 {towards[0]} {towards[1]} {towards[2]} 180\n"
+    sky = load(GREY + TILE.format("grey", "a") + text).lights.sky
+    directions = np.random.default_rng(2).normal(size=(50, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    np.testing.assert_allclose(sky.at(directions)[:, 0], np.where(directions @ towards > 0, 2, 0))
+
+
 SKY = "skyfunc glow g 0 0 4 1 1 1 0\ng source sky 0 0 4 0 0 1 180\n"
 SKY += "skyfunc glow h 0 0 4 1 .8 .6 0\nh source ground 0 0 4 0 0 -1 180\n"
 
@@ -230,6 +240,7 @@ def test_skies_of_gensky_and_gendaylit_are_those_that_rtrace_sees(load, tmp_path
     rays = np.column_stack([np.zeros((400, 3)), directions])
     theirs = program("rtrace", "-h", "-fdf", "-ab", "0", "-oV", str(tmp_path / "octree"), given=rays.tobytes())
     apart = np.all([directions @ sun.direction < 0.999 for sun in scene.lights.suns], axis=0) & (directions[:, 2] > -0.99)
+    assert [place_of(scene.lights.sky.axes, np.array([0.0, 1, 0]))[1], *scene.lights.sky.axes[2]] == [0, 0, 0, 1]  # y is north
     ours = np.broadcast_to(scene.lights.sky.at(directions), (400, 3))
     np.testing.assert_allclose(ours[apart], np.frombuffer(theirs, np.float32).reshape(-1, 3)[apart], rtol=0.005)
 
@@ -305,7 +316,7 @@ def test_faults_are_left_out_with_their_line(told, load, line, message):
         ("grey polygon a 0 0 nine 0", r"scene\.rad:2: 'nine' stands where the number of numbers of polygon 'a'"),
         ("grey polygon a 0 0 9 0 0 0 1 0 0 0 one 0", r"scene\.rad:2: 'one' stands where a number of polygon 'a'"),
         ("grey polygon a 0 0 9 0 0 0", "the file ends where a number of polygon 'a' is expected"),
-        ("", "the file holds no faces"),
+        ("", r"scene\.rad: holds no surfaces; .*cat materials\.rad room\.rad > all\.rad"),
     ],
 )
 def test_text_that_is_no_scene_is_an_error(load, text, message):

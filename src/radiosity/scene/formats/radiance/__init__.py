@@ -43,6 +43,9 @@ def read(path: Path, options: ReadOptions) -> Scene:
     parts = reader.parts()
     reader.faults.warn()
     reader.told.warn(str(path), options.strict)
+    if not parts:
+        text = "Radiance reads several files as one, and here they must be one: cat materials.rad room.rad > all.rad"
+        raise SceneError(f"{path}: holds no surfaces; {text}")
     return with_lights(assemble(parts, str(path), options), reader.sources.lights())
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ...lights.axes import sky_axes
 from ...lights.sky import row_sines
 from .primitives import Primitive
 
@@ -16,7 +17,7 @@ ROWS, COLUMNS = 182, 180  # of a table: a degree of elevation, two of azimuth
 def factors(pattern: Primitive) -> np.ndarray | None:
     """The factors by which a pattern multiplies the light of directions, (ROWS, COLUMNS); None where it is no sky known here.
 
-    Azimuths begin at x and turn to y; z is up.
+    Azimuths begin in the north, y, and turn to the east, x; z is up.
     """
     if pattern.kind != "brightfunc" or len(pattern.words) != 2:
         return None
@@ -33,7 +34,7 @@ def factors(pattern: Primitive) -> np.ndarray | None:
     z = row_sines(ROWS)[:, None]
     angle = 2 * np.pi * np.arange(COLUMNS) / COLUMNS
     level = np.sqrt(1 - z**2)
-    directions = np.stack(np.broadcast_arrays(level * np.cos(angle), level * np.sin(angle), z), axis=-1)
+    directions = np.stack(np.broadcast_arrays(level * np.cos(angle), level * np.sin(angle), z), axis=-1) @ sky_axes()
     return np.maximum(function(directions), 0)
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...lights.axes import sky_axes
 from ...lights.model import Lights
 from ...lights.sky import Sky
 from ...lights.sun import Sun
@@ -18,6 +19,7 @@ SHINING = {"light": 3, "glow": 4}  # how many numbers materials of sources have
 MOST_SUN = 90.0  # degrees: larger discs are no suns
 NEAR = 0.5  # degrees by which a half or the whole of the sphere may be missed
 OPPOSITE = 1e-6  # cosine
+UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,19 +93,19 @@ class Sources:
         return Lights(suns=tuple(self.suns), sky=self._sky())
 
     def _sky(self) -> Sky | None:
-        """The half that is nearest to the zenith as the sky, the other one as the ground."""
+        """One half as the sky, and the other one as the ground; up is z unless they are halves of another axis."""
         if not self.halves:
             return None
-        halves = sorted(self.halves, key=lambda half: np.inf if half.towards is None else -half.towards[2])
-        above, below = halves[0], halves[-1]
-        patterned = any(half.pattern is not None for half in halves)
+        first = self.halves[0].towards
+        up = UP if first is None or abs(first[2]) > 1 - OPPOSITE else first * np.copysign(1, first[2])
+        above = next((half for half in self.halves if half.towards is None or half.towards @ up > 0), None)
+        below = next((half for half in self.halves if half.towards is None or half.towards @ up < 0), None)
+        patterned = any(half.pattern is not None for half in self.halves)
         rows = ROWS if patterned else 4
-        upper, lower = above.table(rows), below.table(rows)
-        if above is below and above.towards is not None:
-            lower = np.zeros_like(lower)
+        lower, upper = (np.zeros((rows, 1, 1)) if half is None else half.table(rows) for half in (below, above))
         shape = np.broadcast_shapes(upper.shape, lower.shape)
         radiance = np.concatenate([np.broadcast_to(lower, shape)[: rows // 2], np.broadcast_to(upper, shape)[rows // 2 :]])
-        up = np.array([0.0, 0.0, 1.0]) if patterned or above.towards is None else above.towards
-        axes = np.eye(3) if patterned else np.array([*perpendicular(up), up])
+        axes = sky_axes() if up is UP else sky_axes(up, perpendicular(up)[0])
         kind = "of gensky or gendaylit" if patterned else "uniform"
-        return Sky(above.name, radiance, axes, kind, photometric=False)
+        name = next(half.name for half in (above, below) if half is not None)
+        return Sky(name, radiance, axes, kind, photometric=False)
