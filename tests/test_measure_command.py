@@ -8,7 +8,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli import main
-from radiosity.cli.measure import grid_of
+from radiosity.cli.places import grid_of
 
 PLY = """ply
 format ascii 1.0
