@@ -89,3 +89,15 @@ def test_groups_of_a_solution_are_refused():
     solution = rd.solve(cut(hall()), "gather", rays=50_000)
     with pytest.raises(rd.MethodError, match="give the scene or its patches"):
         rd.measure(solution, POINTS, groups=True)
+
+
+def test_a_daylight_factor_is_of_the_sky_alone():
+    """Whatever its level; a plane that sees the whole sky has 1."""
+    scene = lit(luminaires=(bulb((0, 0, 2)),), sky=overcast(100.0))
+    found = rd.measure(cut(scene), rd.Sensors.of([0, 0, 1.0]), groups=True, rays=200_000)
+    with pytest.raises(rd.MethodError, match="of the sky's light alone"):
+        _ = found.daylight_factor
+    for level in (1.0, 0.5):
+        assert found.dimmed({"bulb": 0, "sky": level}).daylight_factor[0] == pytest.approx(1, rel=0.01)
+    with pytest.raises(rd.MethodError, match="of the sky's light alone"):
+        _ = found.dimmed({"sky": 0}).daylight_factor

@@ -1,6 +1,7 @@
 """``radiosity measure``, and the [[sensors]] of .toml scenes."""
 
 import csv
+import json
 import re
 
 import numpy as np
@@ -8,7 +9,8 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli import main
-from radiosity.cli.measure import grid_of
+from radiosity.cli.places import grid_of
+from radiosity.scene.sensor_request import SensorRequest
 
 PLY = """ply
 format ascii 1.0
@@ -110,6 +112,19 @@ def test_sensors_that_make_no_sense(folder, text, words):
 
 
 @pytest.mark.parametrize(
+    "change",
+    [{"name": 5}, {"surface": 3}, {"points": [[1, 2]]}, {"points": 1}, {"height": "z"}, {"direction": [1]}, {"evil": 1}],
+    ids=str,
+)
+def test_damaged_requests_are_told_from_whole_ones(change):
+    """Readers of files turn these into one error of a damaged file."""
+    whole = SensorRequest("a", points=((1.0, 2.0, 3.0),), normals=((0.0, 0.0, 1.0),), direction=(0.0, 1.0, 0.0))
+    assert SensorRequest.of(json.loads(json.dumps(whole.facts()))) == whole
+    with pytest.raises((ValueError, TypeError)):
+        SensorRequest.of(whole.facts() | change)
+
+
+@pytest.mark.parametrize(
     ("text", "wanted"),
     [
         ("floor", ("floor", 0.0, None)),
@@ -199,3 +214,17 @@ def test_the_command_dims_lights(folder, capsys):
         assert all(row["illuminance_lx"] == row["illuminance_by_lamp_lx"] for row in rows)
     assert means[1] == pytest.approx(0.25 * means[0])
     assert "by group of lights, floor: lamp" in capsys.readouterr().out
+
+
+def test_up_is_that_of_the_scene(tmp_path):
+    """Points of a scene whose y is up look along y, and a floor of two sides that is drawn upside down counts from above."""
+    corners = "v 0 0 0\nv 4 0 0\nv 4 0 3\nv 0 0 3\n"
+    (tmp_path / "floor.obj").write_text(corners + "o floor\nf 1 2 3 4\n")
+    text = 'geometry = "floor.obj"\n[[surface]]\nname = "floor"\nreflectance = 0.5\nsides = 2\nemission = 1\n'
+    text += '[[sensors]]\nsurface = "floor"\nheight = 0.8\nspacing = 1\n[[sensors]]\npoints = [[1, 1, 1]]\n'
+    (tmp_path / "a.toml").write_text(text)
+    loaded = rd.load_scene(tmp_path / "a.toml")
+    assert loaded.normal.round(6).tolist() == [[0, -1, 0]]
+    sensors = rd.Sensors.of_scene(loaded)
+    assert np.allclose(sensors.points[:-1, 1], 0.8)
+    assert np.allclose(sensors.normals, [0, 1, 0])

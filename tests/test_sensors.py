@@ -94,6 +94,8 @@ def test_a_round_hole_in_a_roof(angle):
     found = measured(scene, rd.Sensors.of([[0, 0, 0]]), each=1 << 14)
     share = 3 / 7 * (np.sin(t) ** 2 + 4 / 3 * (1 - np.cos(t) ** 3))
     assert agrees(found, 1000 * share, 0.03)
+    assert found.daylight_factor[0] == pytest.approx(share, rel=0.02)
+    assert "daylight factor, sensors: mean" in found.report()
     assert not agrees(found, 1000 * np.sin(t) ** 2, 0.03)  # a uniform sky
 
 

@@ -33,7 +33,21 @@ class SensorRequest:
 
     @staticmethod
     def of(facts: dict) -> "SensorRequest":
-        """Make the request that `facts` gave."""
-        known: dict[str, Any] = {key: tuple(tuple(row) for row in facts[key]) for key in ("points", "normals")}
-        known["direction"] = None if facts["direction"] is None else tuple(facts["direction"])
+        """Make the request that `facts` gave.
+
+        Raises:
+            KeyError, TypeError, ValueError: something else is in their place.
+        """
+        known: dict[str, Any] = {key: tuple(_three(row) for row in facts[key]) for key in ("points", "normals")}
+        known |= {key: float(facts[key]) for key in ("height", "margin")}
+        known["spacing"] = None if facts["spacing"] is None else float(facts["spacing"])
+        known["direction"] = None if facts["direction"] is None else _three(facts["direction"])
+        words = [facts[key] for key in ("name", "kind")] + ([] if facts["surface"] is None else [facts["surface"]])
+        if not all(isinstance(word, str) for word in words):
+            raise ValueError("sensors have words in their name, kind and surface")
         return SensorRequest(**facts | known)
+
+
+def _three(row) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in row)
+    return x, y, z

@@ -115,6 +115,8 @@ def _together(parts: dict[str, Measurement]) -> Measurement:
         rays=sum(one.rays for one in found),
         status=next((status for status in ("interrupted", "not reached") if status in statuses), "complete"),
         parts={name: one.values for name, one in parts.items()},
+        outside=found[0].outside if len(found) == 1 else None,
+        outsides={name: one.outside for name, one in parts.items() if one.outside is not None},
     )
 
 

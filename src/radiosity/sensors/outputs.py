@@ -54,6 +54,8 @@ def _table(found, path: Path) -> None:
         columns[f"half_width_95{band}_{unit}"] = half_width(found.values[..., number])
     for group, values in found.single_parts.items():
         columns[f"{what}_by_{group}_{unit}"] = values.mean(axis=0)
+    if found.outside is not None:
+        columns["daylight_factor_percent"] = 100 * found.daylight_factor
     sensors, text = found.sensors, io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(["set", "x_m", "y_m", "z_m", "nx", "ny", "nz", "kind", "inside", *columns])

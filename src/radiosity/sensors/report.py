@@ -2,6 +2,8 @@
 
 import io
 
+import numpy as np
+
 from ..errors import printable
 
 WIDE = 1000  # columns; names are never cut off
@@ -16,6 +18,17 @@ def _groups(found) -> list[str]:
         means = {group: float(values[:, chosen].mean()) if chosen.any() else 0.0 for group, values in found.single_parts.items()}
         shares = ", ".join(f"{printable(group)} {mean:.4g}" for group, mean in means.items())
         lines.append(f"mean {found.unit} by group of lights, {printable(name)}: {shares}")
+    return lines
+
+
+def _daylight(found) -> list[str]:
+    """Return a line for each set of sensors: its share of what the sky gives outside, where there is no other light."""
+    lines = []
+    for number, name in enumerate(found.sensors.names if found.outside is not None else ()):
+        factor = found.daylight_factor[(found.sensors.set == number) & ~found.inside]
+        if len(factor):
+            least, middle, mean = (f"{value:.2%}" for value in (factor.min(), np.median(factor), factor.mean()))
+            lines.append(f"daylight factor, {printable(name)}: mean {mean}, median {middle}, min {least}")
     return lines
 
 
@@ -48,7 +61,7 @@ def report(found) -> str:
     )
     head += "" if found.status == "complete" else f", {found.status}"
     lines = [line.rstrip() for line in text.getvalue().splitlines()]
-    notes = [*_groups(found)]
+    notes = [*_groups(found), *_daylight(found)]
     notes += ["U0 = min / mean, U1 = min / max; sensor ±: of the least certain sensor", MESH]
     if len(found.values) < 2:
         notes.append("errors are unknown: one replicate tells none")

@@ -31,6 +31,8 @@ class Measurement:
         status: "complete", "interrupted" or "not reached".
         source: of the scene.
         parts: what each group of lights gives, as ``values``; empty where groups were not asked for.
+        outside: what the sky gives a horizontal plane outside, all bands together, where it is the only light; else None.
+        outsides: the same of each group that is the sky alone.
 
     Example:
         >>> patches = rd.subdivide(rd.load_scene("room"), cells=4)
@@ -51,6 +53,8 @@ class Measurement:
     status: str
     source: str
     parts: dict[str, np.ndarray] = field(default_factory=dict)
+    outside: float | None = None
+    outsides: dict[str, float] = field(default_factory=dict)
 
     @staticmethod
     def of(
@@ -66,7 +70,12 @@ class Measurement:
         """Make it from (replicates, n_sensors, n_groups) shares of the unit of light."""
         groups, scene = problem.groups, solution.patches.scene
         values = (shares * problem.unit)[..., groups.index] * groups.scale
-        return Measurement(sensors, values, inside, scene.bands, scene.photometric, rays, seconds, status, scene.source)
+        found = Measurement(sensors, values, inside, scene.bands, scene.photometric, rays, seconds, status, scene.source)
+        sky = scene.lights.sky
+        if sky is None or scene.lights.suns or scene.lights.luminaires or solution.patches.emission.any():
+            return found
+        outside = float(found._single(np.broadcast_to(sky.horizontal, (1, 1, len(scene.bands))))[0, 0])
+        return replace(found, outside=outside if outside > 0 else None)
 
     @property
     def unit(self) -> str:
@@ -116,7 +125,25 @@ class Measurement:
             raise MethodError("groups of lights were not measured apart; call measure with groups=True")
         check_levels(levels, list(self.parts))
         parts = {name: values * levels.get(name, 1.0) for name, values in self.parts.items()}
-        return replace(self, values=np.sum(list(parts.values()), axis=0), parts=parts)
+        outsides = {name: value * levels.get(name, 1.0) for name, value in self.outsides.items()}
+        shining = [name for name in parts if levels.get(name, 1.0) > 0]
+        outside = outsides.get(shining[0]) if len(shining) == 1 else None
+        values = np.sum(list(parts.values()), axis=0)
+        return replace(self, values=values, parts=parts, outside=outside, outsides=outsides)
+
+    @property
+    def daylight_factor(self) -> np.ndarray:
+        """What sensors get over what the sky gives a horizontal plane outside, (n_sensors,); of CIE's overcast sky it is the
+        daylight factor.
+
+        Raises:
+            MethodError: there is other light than the sky's; measure with groups=True, and dim it to 0.
+        """
+        if self.outside is None:
+            raise MethodError(
+                "a daylight factor is of the sky's light alone; measure with groups=True, and dim all other groups to 0"
+            )
+        return self.single.mean(axis=0) / self.outside
 
     @cached_property
     def single(self) -> np.ndarray:
