@@ -37,7 +37,7 @@ def reference(room, plates):
 
     def get(name, equation):
         if (name, equation) not in known:
-            solution = rd.solve(scenes[name], REFERENCES[equation], rays=40_000_000, replicates=REPLICATES, seed=77)
+            solution = rd.solve(scenes[name], REFERENCES[equation], rays=16_000_000, replicates=REPLICATES, seed=77)
             known[name, equation] = powers(solution)
         return known[name, equation]
 
