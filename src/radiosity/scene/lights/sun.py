@@ -78,6 +78,5 @@ def sun(
         raise SceneError(f"sun '{name}': give its direction, or its altitude and azimuth in degrees")
     check_place(f"sun '{name}'", altitude, azimuth)
     if altitude < 0:
-        text = f"it is {-altitude:.1f} degrees below the horizon, and lights the scene from below; leave it out at night"
-        warn(f"sun '{name}': {text}")
+        warn(f"sun '{name}': it is {-altitude:.1f} degrees below the horizon, and its light comes from below; leave it out")
     return Sun(name, towards(sky_axes(up, north), altitude, azimuth), values, diameter, photometric)
