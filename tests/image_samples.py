@@ -28,6 +28,7 @@ def solution(patches, radiosity=None, *, unit="W/m²"):
         bands=bands,
         unit=unit,
         irradiance_unit=unit,
+        by_own_lines=False,
         surface_table=lambda: table,
         quanta=1,
         few=np.arange(n) < 30,

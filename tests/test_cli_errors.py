@@ -134,6 +134,7 @@ def test_version_and_help(capsys):
     listed = [command for command in commands if command in app.app]
     assert listed == [
         "solve",
+        "measure",
         "methods",
         "lines",
         "relight",
@@ -147,7 +148,7 @@ def test_version_and_help(capsys):
     ]
 
 
-@pytest.mark.parametrize("command", ["solve", "render", "check", "experiment", "doctor"])
+@pytest.mark.parametrize("command", ["solve", "measure", "render", "check", "experiment", "doctor"])
 def test_help_of_each_command_explains_each_option(capsys, command):
     status, out, _ = run(capsys, command, "--help")
     assert status == 0
