@@ -28,8 +28,8 @@ class Places:
         dim: Levels of groups of lights, such as "row 1=0.5" window=0, of which each is measured by itself: luminaires by group or
             name, suns, the sky, and surfaces that emit by name. Others stay at 1.
         kind: plane, or cylindrical: the mean of all planes that contain the axis, as on an upright cylinder.
-        ugr: Observers whose unified glare rating is found, as X,Y,Z,DX,DY,DZ: the eye in metres, and the line of sight; --ugr
-            again for another one.
+        ugr: Observers whose unified glare rating is found, as X,Y,Z,DX,DY,DZ: the eye in metres, and the line of sight.
+            Give the option again for another one.
     """
 
     grid: Texts = ()
