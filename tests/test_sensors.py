@@ -211,3 +211,16 @@ def test_errors_without_replicates(shaded):
     assert len(found.values) == 8
     with pytest.raises(rd.MethodError, match="leave replicates out"):
         rd.measure(rd.solve(patches, "gather", rays=20_000, replicates=4), point, rays=20_000, replicates=8)
+
+
+def test_light_through_a_pane():
+    """Of a lamp, a surface and the sky: the share that the pane lets through."""
+    pane = rd.Scene.from_arrays(
+        quad((-5, -5, 0.5), (10, 0, 0), (0, 10, 0)), [[0, 1, 2, 3]], 0.0, 0.0, transmittance=0.6, photometric=True, names=["pane"]
+    )
+    scene = replace(pane, lights=lit(luminaires=(bulb((0, 0, 2), power=400 * np.pi),)).lights)
+    assert agrees(measured(scene, rd.Sensors.of([[0, 0, 0]]), 1 << 14), 0.6 * 100 / 4, 0.05)
+    under = replace(pane, lights=lit(sky=uniform(100.0)).lights)
+    seen = from_points(np.zeros((1, 3)), np.array([[0, 0, 1.0]]), pane.vertices[None, ::-1])[0]
+    assert agrees(measured(under, rd.Sensors.of([[0, 0, 0]]), 1 << 14), 100 * np.pi * (1 - 0.4 * seen), 0.03)
+    assert not agrees(measured(under, rd.Sensors.of([[0, 0, 0]]), 1 << 14), 100 * np.pi * 0.9 * (1 - 0.4 * seen), 0.03)
