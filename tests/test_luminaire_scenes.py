@@ -411,13 +411,6 @@ def test_damaged_lights_of_a_file_are_refused(tmp_path, key, damage):
         rd.load_solution(file)
 
 
-def test_line_sets_leave_lights_out_and_tell():
-    scene = _wall().with_lights([rd.point_light(position=(0, 0, 1), lumens=1, name="globe")])
-    with pytest.warns(rd.RadiosityWarning, match="lights without area are left out: 'globe'"):
-        lines = rd.trace_lines(rd.subdivide(scene, cells=1), rays=100)
-    assert not lines.patches.scene.lights
-
-
 def _wall() -> rd.Scene:
     """A square that faces up, and one that faces it."""
     corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 2], [0, 1, 2], [1, 1, 2], [1, 0, 2]]

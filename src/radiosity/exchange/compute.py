@@ -110,7 +110,7 @@ def view_factors(
         few = LEAST * replicates * len(patches)
         few = max(min(work // PILOT, 4 * few), few)
         if method == "auto" and few <= work // 2 and (choice := Choice.of(geometry, work, replicates, number)):
-            pilot = trace_lines(patches.without_lights, rays=few, progress=progress, **arguments)
+            pilot = trace_lines(patches, rays=few, progress=progress, **arguments)
             some = from_lines(pilot.pairs, groups, pilot.rays, {"line_set": pilot.provenance}, pilot.status)
             if pilot.status == "interrupted":
                 return some
@@ -119,7 +119,7 @@ def view_factors(
             if predicted["polygons"] < predicted["lines"]:
                 return _polygons(FacingPairs.of(geometry, replicates), groups, choice.spent, replicates, number, facts)
         warn_of_narrow(geometry, groups)
-        lines = trace_lines(patches.without_lights, rays=work, progress=progress, resume=pilot, **arguments)
+        lines = trace_lines(patches, rays=work, progress=progress, resume=pilot, **arguments)
         return from_lines(lines.pairs, groups, lines.rays, facts | {"line_set": lines.provenance}, lines.status)
 
 

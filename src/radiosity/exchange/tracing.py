@@ -19,4 +19,4 @@ def sources(patches: Patches, conditions: Conditions) -> list[str]:
 
 def trace(patches: Patches, conditions: Conditions, rays: float, before: LineSet | None, **options) -> LineSet:
     """Trace lines, or go on from those ``before``; options are those of `trace_lines`."""
-    return trace_lines(patches.without_lights, rays=rays, sources=sources(patches, conditions) or None, resume=before, **options)
+    return trace_lines(patches, rays=rays, sources=sources(patches, conditions) or None, resume=before, **options)

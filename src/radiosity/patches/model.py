@@ -41,12 +41,6 @@ class Patches:
         return int(self.first[-1])
 
     @property
-    def without_lights(self) -> "Patches":
-        """The same patches, of a scene without lights that are no surfaces."""
-        lights = self.scene.lights
-        return replace(self, scene=replace(self.scene, lights=type(lights)())) if lights else self
-
-    @property
     def cut_hash(self) -> str:
         """SHA-256 of the way in which the scene is cut."""
         return self._cut().hexdigest()

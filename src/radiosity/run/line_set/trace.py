@@ -8,11 +8,10 @@ from pathlib import Path
 from ...device.memory import limited
 from ...device.turn import turn
 from ...diagnostics.contact_findings import tell
-from ...errors import MethodError, RadiosityWarning, result_kept, shown
+from ...errors import MethodError, RadiosityWarning, result_kept
 from ...method import Method
 from ...patches import Patches
 from ...sampling.streams import Seed
-from ...scene.habits import warn
 from ...scene.model import Scene
 from ..budget import Budget
 from ..checkpoint import Checkpoint
@@ -101,8 +100,6 @@ def trace_lines(
             )
         refuse_open(patches.scene, method)
         refuse_panes(patches.scene, method)
-        _tell_of_lights(patches)
-        patches = patches.without_lights
         chosen = Sources.of(patches, sources)
         if chosen.names and lines != "local":
             raise MethodError(f"sources get more local lines, and lines '{lines}' begin at no surface; leave one of the two out")
@@ -123,13 +120,3 @@ def trace_lines(
         if found.status not in ENDED:
             warnings.warn(f"{found.rays:,} lines were traced, and no more: {found.status}", RadiosityWarning, stacklevel=2)
     return found
-
-
-def _tell_of_lights(patches: Patches) -> None:
-    """Warn where a scene has lights that are no surfaces: a line set has lines from patches alone."""
-    if patches.scene.lights:
-        names = shown([one.name for one in patches.scene.lights.all])
-        warn(
-            f"{patches.scene.source}: lines are counted between patches, so that lights without area are left out: {names}; what "
-            "a line set is solved for is without their light. For it, solve the scene by --method gather or --method random-walk"
-        )

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import SceneError
+from ...errors import SceneError, shown
 from ..habits import warn
 from .sun_position import sun_position
 
@@ -71,32 +71,51 @@ def read_hour(path: str | Path, month: int, day: int, hour: int) -> EpwHour:
     latitude, longitude, timezone = (
         _number(path, 1, what, first[at]) for at, what in ((6, "latitude"), (7, "longitude"), (8, "time zone"))
     )
-    for number, line in enumerate(lines[1:], 2):
-        row = line.split(",")
-        if _whole(row[1:4]) != [month, day, hour]:
-            continue
-        if len(row) <= DIFFUSE:
-            raise SceneError(f"{path}: line {number} is cut short; it has {len(row)} columns of 35")
-        values = {column: _number(path, number, NAMES[column], row[column]) for column in MISSING}
-        for column in (DIRECT, DIFFUSE):
-            if values[column] >= MISSING[column] or values[column] < 0:
-                raise SceneError(f"{path}: line {number}: {NAMES[column]} irradiance is missing (it is {values[column]:g})")
-        known = values[DEW_POINT] < MISSING[DEW_POINT]
-        found = EpwHour(
-            first[1].strip(),
-            latitude,
-            longitude,
-            timezone,
-            month,
-            day,
-            hour,
-            values[DIRECT],
-            values[DIFFUSE],
-            values[DEW_POINT] if known else None,
-        )
-        _compare(path, number, found, values[GLOBAL])
-        return found
-    raise SceneError(f"{path}: has no row for month {month}, day {day}, hour {hour}; hours are 1 to 24, and end at that number")
+    number, row = _row(path, lines, month, day, hour)
+    if len(row) <= DIFFUSE:
+        raise SceneError(f"{path}: line {number} is cut short; it has {len(row)} columns of 35")
+    values = {column: _number(path, number, NAMES[column], row[column]) for column in MISSING}
+    for column in (DIRECT, DIFFUSE):
+        if values[column] >= MISSING[column] or values[column] < 0:
+            raise SceneError(f"{path}: line {number}: {NAMES[column]} irradiance is missing (it is {values[column]:g})")
+    known = values[DEW_POINT] < MISSING[DEW_POINT]
+    found = EpwHour(
+        first[1].strip(),
+        latitude,
+        longitude,
+        timezone,
+        month,
+        day,
+        hour,
+        values[DIRECT],
+        values[DIFFUSE],
+        values[DEW_POINT] if known else None,
+    )
+    _compare(path, number, found, values[GLOBAL])
+    return found
+
+
+def _row(path: str | Path, lines: list[str], month: int, day: int, hour: int) -> tuple[int, list[str]]:
+    """Return the line of an hour and its cells; the first one where several years have it, which is told."""
+    found, rows = [], [(number, line.split(",")) for number, line in enumerate(lines[1:], 2)]
+    for number, row in rows:
+        date = _whole(row[1:4])
+        if date is not None and len(date) == 3 and row[0].strip().isdecimal() and not 1 <= date[2] <= 24:
+            raise SceneError(
+                f"{path}: line {number}: hour is {date[2]}; hours of a weather file are 1 to 24, and end at that number"
+            )
+        if date == [month, day, hour]:
+            found.append((number, row))
+    where = f"month {month}, day {day}, hour {hour}"
+    if not found:
+        raise SceneError(f"{path}: has no row for {where}; hours are 1 to 24, and end at that number")
+    if len(found) > 1:
+        numbers, years = [number for number, _ in found], [row[0].strip() for _, row in found]
+        what = f"{path}: has {len(found)} rows for {where}, in lines {shown(numbers, 4)}"
+        if len(set(years)) < len(years):
+            raise SceneError(f"{what}; several rows an hour are not read: keep one for each hour, of its means")
+        warn(f"{what}, of the years {shown(years, 4)}; the first is taken")
+    return found[0]
 
 
 def _compare(path: str | Path, number: int, hour: EpwHour, measured: float) -> None:
