@@ -98,9 +98,9 @@ def test_extras_have_one_name(monkeypatch, tmp_path):
         line
         for path in [*ROOT.glob("src/**/*.py"), *ROOT.glob("docs/*.md"), ROOT / "README.md"]
         for line in path.read_text(encoding="utf-8").splitlines()
-        if re.search(r"install.*radiosity\[(?!all\])", line)
+        if re.search(r"install.*radiosity\[(?!all\]|ifc\]|\{extra\})", line)
     ]
-    assert not others
+    assert not others  # but for IFC, whose 40 MB few need
 
 
 # ---- the study -----------------------------------------------------------------------------------------------------------
