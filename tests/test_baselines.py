@@ -24,15 +24,15 @@ SCHEMES = ("full-matrix", "progressive")
 
 @pytest.fixture(scope="module")
 def room():
-    """324 patches, and their solution by random walks (0.07 %)."""
+    """324 patches, and their solution by random walks (0.2 %)."""
     patches = rd.subdivide(rd.load_scene("room"), cells=3)
-    return patches, rd.solve(patches, "random-walk", rays=60_000_000, seed=99)
+    return patches, rd.solve(patches, "random-walk", rays=8_000_000, seed=99)
 
 
 @pytest.fixture(scope="module")
 def box():
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=4)
-    return patches, rd.solve(patches, "random-walk", rays=60_000_000, seed=99)
+    return patches, rd.solve(patches, "random-walk", rays=8_000_000, seed=99)
 
 
 def error(solution: rd.Solution, reference: rd.Solution) -> float:
@@ -168,7 +168,7 @@ def test_backs_that_let_light_pass():
     scene = rd.load_scene("room")
     scene = replace(scene, back=np.full_like(scene.back, int(rd.Back.PASSES)))
     patches = rd.subdivide(scene, cells=3)
-    reference = rd.solve(patches, "random-walk", rays=20_000_000)
+    reference = rd.solve(patches, "random-walk", rays=4_000_000)
     assert error(rd.solve(patches, rd.Baseline("progressive", samples=64)), reference) < 0.04
     assert error(rd.solve(patches, rd.Baseline(samples=64)), reference) < 0.04
     with pytest.raises(rd.MethodError, match="no reciprocity to restore"):
@@ -361,7 +361,7 @@ def cove():
     walls = box((0, 0, 0), (1, 1, 1), inward=True)
     scene = join([("walls", 0.6, 0.0, walls), ("lamp", 0.3, 10.0, lamp)], source="cove", backs={"lamp": 0.3})
     patches = rd.subdivide(scene, cells=8)
-    return patches, rd.solve(patches, "random-walk", rays=20_000_000)
+    return patches, rd.solve(patches, "random-walk", rays=4_000_000)
 
 
 @pytest.mark.parametrize("name", ["hierarchical", "hierarchical-error-control", "full-matrix"])
