@@ -58,7 +58,14 @@ def _export(solution, path, **options) -> None:
     export(solution, path, **options)
 
 
+def _gather(*of, **options):
+    from .sensors.pixels import Gather
+
+    return Gather.of(*of, **options)
+
+
 HOOKS["export"] = _export  # of `Solution.export`
+HOOKS["gather"] = _gather  # of pictures with a final gather
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {

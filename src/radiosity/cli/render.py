@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from ..errors import OutputError, SceneError, printable
 from . import amounts, outputs
-from .options import Count, Flag, Outputs, Pair, Point, Stops
+from .options import Count, Flag, Outputs, Pair, Point, Seed, Stops
 from .streams import tell
 
 
@@ -49,6 +49,9 @@ class Picture:
         log: Of false colours: a logarithmic legend.
         color_map: Of false colours: one of matplotlib's. Default: viridis.
         samples: Lines of sight for each pixel, 1 to 1024; more of them make smoother edges. Default: 4.
+        final_gather: Lines for each pixel, such as 256, that find the light at the points that are seen: shadow rays go to lamps,
+            and others read the solution. Shadows are sharp then, whatever the size of patches. Default: no such lines.
+        seed: Of the final gather. Equal seeds give equal pictures.
     """
 
     width: int | None = None
@@ -62,6 +65,8 @@ class Picture:
     log: Flag = False
     color_map: str | None = None
     samples: Count = None
+    final_gather: Count = None
+    seed: Seed = 0
 
     @property
     def range(self) -> tuple[float, float] | None:
@@ -112,27 +117,32 @@ def render(
     import radiosity as rd
 
     from ..image import render as draw
+    from .progress import bar
 
     loaded = rd.load_solution(solution)
     view = _view(loaded.patches.scene, viewpoint)
 
     def written(path: Path) -> None:
-        draw(
-            loaded,
-            path,
-            camera=view,
-            width=picture.width,
-            height=picture.height,
-            exposure=picture.exposure,
-            smooth=picture.smooth,
-            quantity=picture.quantity,
-            band=picture.band,
-            false_color=picture.false_color,
-            range=interval,
-            log=picture.log,
-            color_map=picture.color_map or "viridis",
-            samples=4 if picture.samples is None else picture.samples,
-        )
+        with bar() as progress:
+            draw(
+                loaded,
+                path,
+                camera=view,
+                width=picture.width,
+                height=picture.height,
+                exposure=picture.exposure,
+                smooth=picture.smooth,
+                quantity=picture.quantity,
+                band=picture.band,
+                false_color=picture.false_color,
+                range=interval,
+                log=picture.log,
+                color_map=picture.color_map or "viridis",
+                samples=4 if picture.samples is None else picture.samples,
+                final_gather=picture.final_gather,
+                seed=picture.seed,
+                progress=progress if picture.final_gather else None,
+            )
         tell(f"wrote {printable(path)}")
 
     failures = outputs.attempt((path, partial(written, path)) for path in output)

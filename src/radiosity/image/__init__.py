@@ -3,6 +3,8 @@
 from importlib import import_module
 from pathlib import Path
 
+from ..errors import OutputError
+from . import still
 from .look import Look
 from .output import check_writable as _check
 from .output import require, require_results
@@ -13,10 +15,9 @@ FORMATS = {
     ".ply": "ply",
     ".vtp": "vtp",
     ".csv": "tables",
-    ".png": "still",
-    ".exr": "still",
 }
-SUFFIXES = (".npz", *FORMATS)  # a solution saves itself as .npz
+PICTURES = (".png", ".exr")
+SUFFIXES = (".npz", *FORMATS, *PICTURES)  # a solution saves itself as .npz
 
 __all__ = ["Look", "check_writable", "export", "files_of", "render"]
 
@@ -46,7 +47,19 @@ def files_of(path) -> tuple[Path, ...]:
     return path, surfaces_path(path)
 
 
-def export(solution, path, *, smooth=True, quantity="radiosity", band=None, exposure=None, scale=None) -> Path:
+def export(
+    solution,
+    path,
+    *,
+    smooth=True,
+    quantity="radiosity",
+    band=None,
+    exposure=None,
+    scale=None,
+    final_gather=None,
+    seed=0,
+    progress=None,
+) -> Path:
     """Write a solution in the format that the suffix names.
 
     .glb, .ply: coloured meshes. .vtp: mesh with all quantities. .csv: all quantities of the patches, and beside it
@@ -57,6 +70,7 @@ def export(solution, path, *, smooth=True, quantity="radiosity", band=None, expo
         path: of the file, which appears whole or not at all.
         smooth: values are smoothed within surfaces where the format has colours; otherwise one value a patch.
         quantity, band, exposure, scale: of the colours, see `radiosity.image.look.Look`; .vtp, .csv and .npz hold everything.
+        final_gather, seed, progress: of pictures, see `radiosity.image.render`.
 
     Returns:
         The path.
@@ -65,10 +79,16 @@ def export(solution, path, *, smooth=True, quantity="radiosity", band=None, expo
         OutputError: the file cannot be written, or an option makes no sense.
     """
     path = check_writable(path)
-    if path.suffix.lower() == ".npz":
+    look, suffix = Look(quantity, band, smooth, exposure, scale), path.suffix.lower()
+    if suffix in PICTURES:
+        still.write(solution, path, look, final_gather=final_gather, seed=seed, progress=progress)
+        return path
+    if final_gather is not None:
+        raise OutputError(f"{path}: a final gather is of pictures ({', '.join(PICTURES)}); leave it out")
+    if suffix == ".npz":
         solution.save(path)
     else:
         require_results(solution)
-        module = import_module(f".{FORMATS[path.suffix.lower()]}", __package__)
-        module.write(solution, path, Look(quantity, band, smooth, exposure, scale))
+        module = import_module(f".{FORMATS[suffix]}", __package__)
+        module.write(solution, path, look)
     return path

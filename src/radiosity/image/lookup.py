@@ -26,6 +26,11 @@ class Lookup:
     def at_vertices(self) -> np.ndarray:
         return self.mesh.smoothed(self.values)
 
+    @property
+    def columns(self) -> int:
+        """The number of values of a patch."""
+        return self.values.shape[1]
+
     def __call__(self, hits) -> tuple[np.ndarray, np.ndarray]:
         """Return values, (m, n), and patches, (m,): zeros and -1 where a line meets nothing or an absorbing back."""
         patch = self.patch(hits)

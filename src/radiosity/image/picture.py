@@ -8,6 +8,7 @@ from ..errors import OutputError
 from ..scene import Back, Camera
 from . import tone
 from .fit import fitted
+from .gathered import Gathered
 from .lookup import Lookup
 from .quantity import Quantity
 from .through import Sight
@@ -41,12 +42,15 @@ class Picture:
         return self.values[on & ~self.own_light] if (on & ~self.own_light).any() else self.values[on]
 
 
-def take(solution, shown: Quantity, camera: Camera, *, smooth=True, samples=4, hits=None) -> Picture:
-    """Take a picture with ``samples`` lines of sight a pixel, at the points of a Hammersley set (each row and column once)."""
-    if isinstance(samples, bool) or int(samples) != samples or not 1 <= samples <= 1024:
-        raise OutputError(f"samples is {samples}; it must be a whole number from 1 to 1024")
-    hits, camera, samples = hits or first_hits, check(camera), int(samples)
-    sight = Sight(solution.patches.scene, Lookup(solution.patches, shown.values, smooth), hits, shown.adds)
+def take(solution, shown: Quantity, camera: Camera, *, look: Lookup | Gathered, samples=4, hits=None) -> Picture:
+    """Take a picture with ``samples`` lines of sight a pixel, at the points of a Hammersley set (each row and column once).
+
+    Args:
+        look: finds values from hits.
+    """
+    samples = checked_samples(samples)
+    hits, camera = hits or first_hits, check(camera)
+    sight = Sight(solution.patches.scene, look, hits, shown.adds)
     width, n = int(camera.width), int(camera.width) * int(camera.height)
     total, count, own = np.zeros((n, shown.values.shape[1])), np.zeros(n), np.zeros(n)
     offsets = np.stack([(np.arange(samples) + 0.5) / samples, _bits_reversed(samples)], axis=1)
@@ -62,6 +66,17 @@ def take(solution, shown: Quantity, camera: Camera, *, smooth=True, samples=4, h
     shape = (int(camera.height), width)
     values = total / np.maximum(count, 1)[:, None]
     return Picture(values.reshape(*shape, -1), (count / samples).reshape(shape), (own > 0).reshape(shape), camera)
+
+
+def checked_samples(samples) -> int:
+    """Return the number of lines of sight a pixel.
+
+    Raises:
+        OutputError: it is no number of them.
+    """
+    if isinstance(samples, bool) or int(samples) != samples or not 1 <= samples <= 1024:
+        raise OutputError(f"samples is {samples}; it must be a whole number from 1 to 1024")
+    return int(samples)
 
 
 def choose_camera(solution, camera: Camera | int | None, width, height, hits) -> Camera:

@@ -56,9 +56,7 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
     if name not in NAMES:
         raise OutputError(f"quantity '{name}' does not exist; known are {', '.join(NAMES)}")
     names = [str(b) for b in solution.bands]
-    rows, title = slice(None), NAMES[name]
-    if band is not None:
-        rows = slice(_index(band, names), _index(band, names) + 1)
+    rows, title = _columns(band, names), NAMES[name]
     names, several = names[rows], len(names) > 1
     own = (solution.patches.emission[:, rows] > 0).any(axis=1)
     if name == "luminance" and not solution.patches.scene.photometric:
@@ -75,6 +73,17 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         return Quantity(values, title, _unit(solution, name), tuple(names), own, name in ("radiosity", *OF_DIRECTIONS))
     ratio = np.divide(values, base, out=np.full(values.shape, np.nan), where=base > 0)
     return Quantity(100 * ratio, title, "%", tuple(names), own)
+
+
+def in_columns(solution, values: np.ndarray, band: str | int | None, *, single: bool) -> np.ndarray:
+    """Return the columns that `choose` makes of values in all bands, (m, n_bands) to (m, n)."""
+    names = [str(b) for b in solution.bands]
+    values = values[:, _columns(band, names)]
+    return tone.luminance(values)[:, None] if single and len(names) > 1 and band is None else values
+
+
+def _columns(band: str | int | None, names: list[str]) -> slice:
+    return slice(None) if band is None else slice(_index(band, names), _index(band, names) + 1)
 
 
 def _values(solution, name: str) -> np.ndarray:

@@ -9,10 +9,13 @@ from ..errors import OutputError, RadiosityWarning, result_kept
 from ..scene import Camera
 from . import bitmap, tone
 from . import false_color as maps
+from .gathered import Gathered, lines_of
 from .look import Look
+from .lookup import Lookup
 from .output import check_writable, require, require_results
-from .picture import choose_camera, first_hits, take
+from .picture import checked_samples, choose_camera, first_hits, take
 from .quantity import choose
+from .view import check
 
 SUFFIXES = (".png", ".exr")
 
@@ -34,6 +37,9 @@ def render(
     log: bool = False,
     color_map: str = "viridis",
     samples: int = 4,
+    final_gather: int | None = None,
+    seed: int = 0,
+    progress=None,
     hits=None,
 ) -> np.ndarray:
     """Make a picture of a solution with a pinhole camera. What radiates nothing (absorbing backs, empty space) is black.
@@ -48,6 +54,10 @@ def render(
         false_color: colours of a map, one for each value, with a legend; several bands are shown by their luminance.
         range, log, color_map: of the false colours; see `radiosity.image.false_color.colour`.
         samples: lines of sight a pixel.
+        final_gather: lines a pixel, that find the light at the points that are seen: shadow rays go to lamps, and others read
+            the solution. So shadows and images are sharp, whatever the size of patches. ``smooth`` then means nothing. For
+            radiosity, irradiance, radiance and luminance.
+        seed, progress: of the final gather; see `radiosity.solve`.
         hits: ``hits(scene, origins, directions)`` with the result of `radiosity.tracing.first_hits.first_hits`, the default.
 
     Returns:
@@ -57,6 +67,7 @@ def render(
     Raises:
         OutputError: the file cannot be written, or an option makes no sense.
         SceneError: the camera is not one that can take a picture.
+        MethodError: a final gather of a scene whose backs let lines pass.
         DeviceError: rays cannot be traced here.
     """
     path = None if path is None else check_writable(path, SUFFIXES)
@@ -68,11 +79,18 @@ def render(
     if false_color:
         require("matplotlib", "the legend of false colours")
     require_results(solution)
-    hits = hits or first_hits
+    hits, samples = hits or first_hits, checked_samples(samples)
+    lines = None if final_gather is None else lines_of(final_gather, samples)
     shown = choose(solution, quantity, band, single=false_color)
     view = choose_camera(solution, camera, width, height, hits)
-    picture = take(solution, shown, view, smooth=smooth, samples=samples, hits=hits)
+    look: Lookup | Gathered = Lookup(solution.patches, shown.values, smooth)
+    if lines is not None:
+        of_gather = {"lines": lines, "points": check(view).width * view.height * samples, "seed": seed, "progress": progress}
+        look = Gathered.of(solution, look, quantity, band, single=false_color, **of_gather)
+    picture = take(solution, shown, view, look=look, samples=samples, hits=hits)
     facts = {"quantity": shown.title, "unit": shown.unit, "bands": ", ".join(shown.bands), "camera": repr(view)}
+    if final_gather is not None:
+        facts |= {"final gather": f"{final_gather} lines a pixel", "seed": str(seed)}
     if false_color:
         pixels = maps.colour(picture, title=shown.title, unit=shown.unit, limits=range, log=log, color_map=color_map)
     else:
@@ -80,8 +98,8 @@ def render(
         if linear:
             pixels = values.astype(np.float32)
         else:
-            look = Look(quantity, band, smooth, exposure, scale)
-            factor = tone.chosen_scale(look, lambda: tone.automatic_scale(picture.counted))
+            scaled = Look(quantity, band, smooth, exposure, scale)
+            factor = tone.chosen_scale(scaled, lambda: tone.automatic_scale(picture.counted))
             facts |= {"scale": repr(factor), "colour": "sRGB of value x scale, clipped to 1"}
             pixels = tone.eight_bits(tone.srgb(tone.colours(values) * factor))
     if path is not None:

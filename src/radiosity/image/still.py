@@ -4,6 +4,17 @@ from .look import Look
 from .render import render
 
 
-def write(solution, path, look: Look) -> None:
+def write(solution, path, look: Look, *, final_gather=None, seed=0, progress=None) -> None:
     """Write a picture; see `radiosity.image.render`."""
-    render(solution, path, smooth=look.smooth, quantity=look.quantity, band=look.band, exposure=look.exposure, scale=look.scale)
+    render(
+        solution,
+        path,
+        smooth=look.smooth,
+        quantity=look.quantity,
+        band=look.band,
+        exposure=look.exposure,
+        scale=look.scale,
+        final_gather=final_gather,
+        seed=seed,
+        progress=progress,
+    )

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..scene.model import Scene
+from .gathered import Gathered
 from .lookup import Lookup
 
 MOST = 64  # panes behind each other
@@ -31,7 +32,7 @@ class Sight:
     """
 
     scene: Scene
-    look: Lookup
+    look: Lookup | Gathered
     hits: Callable[..., Any]
     adds: bool
 
@@ -53,7 +54,7 @@ class Sight:
         step = STEP * max(self.scene.reach, float(np.abs(origins - self.scene.centre).max(initial=0.0)))
         rays = rays / np.linalg.norm(rays, axis=1, keepdims=True)
         going, share, last = np.arange(len(rays)), np.ones(len(rays)), np.full(len(rays), -1)
-        total = np.zeros((len(rays), self.look.values.shape[1]))
+        total = np.zeros((len(rays), self.look.columns))
         seen, own = np.zeros((2, len(rays)), bool)
         for _ in range(MOST):
             met = self.hits(self._opaque, origins, rays[going])

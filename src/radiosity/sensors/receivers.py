@@ -27,10 +27,12 @@ class Receivers(Packets):
     Attributes:
         sensors: the points.
         seed: that the angles follow from.
+        faces: (n_sensors,) the face that each sensor lies on, where that is known of all.
     """
 
     sensors: Sensors
     seed: Seed | int
+    faces: np.ndarray | None = None
 
     @cached_property
     def sensor(self) -> np.ndarray:
@@ -99,9 +101,14 @@ class Receivers(Packets):
         first = np.cross(normals, np.where(np.abs(normals[:, :1]) < 0.5, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]))
         first /= np.linalg.norm(first, axis=1, keepdims=True)
         points, nothing = np.tile(self.placed, (self.replicates, 1)), np.zeros((len(normals), 6))
-        least = clearance(self.geometry.faces, points, normals)[:, None]
-        rows = np.concatenate([points, nothing, normals, first, least], axis=1)
+        rows = np.concatenate([points, nothing, normals, first, self._clearance(points, normals)[:, None]], axis=1)
         return upload(self.types.Float, rows.astype(np.float32))
+
+    def _clearance(self, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
+        faces = self.geometry.faces
+        if self.faces is None:
+            return clearance(faces, points, normals)
+        return np.tile(faces.plane_offsets[self.faces[self.sensor]], self.replicates)
 
     def record(self, patch):
         return self.types.Array2u(patch, self.types.UInt32(0))

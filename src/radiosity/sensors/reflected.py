@@ -17,8 +17,7 @@ def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.nd
     """
     rho, unit = problem.groups.reflectance, np.maximum(problem.unit, 1e-300)
     if solution.by_baseline or solution.replicates < 2:
-        leaders = problem.groups.leaders
-        return (rho * solution.irradiance[:, leaders] / unit)[None]
+        return mean_reflected(solution, problem)[None]
     facts = solution.provenance
     seed = Seed(facts["seed"], facts.get("first_replicate", 0))
     algorithm = make(geometry, problem, Method(**facts["choices"]), seed, solution.replicates)
@@ -28,3 +27,9 @@ def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.nd
         power, scale = algorithm.tally.irradiance(problem, state, group)
         found.append(np.asarray(power, np.float64) * (scale / unit[group]) / problem.patches.area)
     return rho * np.stack(found, axis=-1)
+
+
+def mean_reflected(solution: Solution, problem: Problem) -> np.ndarray:
+    """Return B - E of the solution, (n_patches, n_groups) float64, in shares of `Problem.unit`."""
+    unit = np.maximum(problem.unit, 1e-300)
+    return problem.groups.reflectance * solution.irradiance[:, problem.groups.leaders] / unit

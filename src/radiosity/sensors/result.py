@@ -68,8 +68,7 @@ class Measurement:
         status: str,
     ) -> "Measurement":
         """Make it from (replicates, n_sensors, n_groups) shares of the unit of light."""
-        groups, scene = problem.groups, solution.patches.scene
-        values = (shares * problem.unit)[..., groups.index] * groups.scale
+        scene, values = solution.patches.scene, in_bands(problem, shares)
         found = Measurement(sensors, values, inside, scene.bands, scene.photometric, rays, seconds, status, scene.source)
         sky = scene.lights.sky
         if sky is None or scene.lights.suns or scene.lights.luminaires or solution.patches.emission.any():
@@ -203,3 +202,8 @@ class Measurement:
         from .outputs import write
 
         write(self, Path(path))
+
+
+def in_bands(problem: Problem, shares: np.ndarray) -> np.ndarray:
+    """Return irradiances, (..., n_bands), from shares of the unit of light, (..., n_groups)."""
+    return (shares * problem.unit)[..., problem.groups.index] * problem.groups.scale

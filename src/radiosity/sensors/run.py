@@ -72,11 +72,7 @@ class Run:
         if count < 2 and self.budget.error is not None:
             raise MethodError("an error is found from replicates: give 2 or more, or rays in place of the error")
         geometry = Geometry(solution.patches.solid, choose(self.device))
-        if geometry.some_backs_pass:
-            raise MethodError(
-                f"{solution.patches.scene.source}: some backs let lines pass, so what a sensor sees is not what sees the sensor; "
-                "sensors need both to be equal: make these surfaces radiate or absorb on both sides"
-            )
+        refuse_passing(geometry, "sensors")
         problem, stop = Problem.of(solution.patches), Stop()
         teller = Teller(self.budget, self.progress)
         with stop.listening():
@@ -86,6 +82,22 @@ class Run:
         inside = tracing.behind() > BEHIND
         found = Measurement.of(solution, self.sensors, problem, values, inside, tracing.traced, perf_counter() - begun, status)
         return found if reached or status != "complete" else replace(found, status="not reached")
+
+
+def refuse_passing(geometry: Geometry, what: str) -> None:
+    """Refuse scenes with backs that let lines pass.
+
+    Args:
+        what: points whose light is asked for.
+
+    Raises:
+        MethodError: there are such backs.
+    """
+    if geometry.some_backs_pass:
+        raise MethodError(
+            f"{geometry.scene.source}: some backs let lines pass, so what a point sees is not what sees the point; "
+            f"{what} need both to be equal: make these surfaces radiate or absorb on both sides"
+        )
 
 
 def traced(

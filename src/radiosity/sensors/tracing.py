@@ -57,26 +57,32 @@ class Tracing:
         seed: Seed,
         *,
         direct: bool = True,
+        faces: np.ndarray | None = None,
+        pilot: int = PILOT,
     ) -> "Tracing":
         """Run the pilot.
 
         Args:
             reflected: (replicates, n_patches, n_groups), see `sensors.reflected`.
             direct: the light of lamps, suns and the sky counts; False: only what surfaces reflect.
+            faces: that sensors lie on, see `Receivers`.
+            pilot: its lines of each kind of each plane, 2 or more; 0: without it, both kinds have half of the lines.
         """
         geometry.prepare()
         types, method = geometry.device.types, PRESETS["gather"].method
-        one = Receivers(geometry, 1, sensors=sensors, seed=seed)
+        one = Receivers(geometry, 1, sensors=sensors, seed=seed, faces=faces)
         chances = Chances(Lamps(geometry, problem), one, Beams.of(geometry, problem))
-        pilot = Lines.of(one, chances, problem, method, seed, (Purpose.SENSORS_PILOT, Purpose.SENSORS_PILOT_SHADOW))
-        pilot = pilot if direct else _without_direct(pilot)
-        mean = [upload(types.Float, column.astype(np.float32)) for column in reflected.mean(axis=0).T]
-        few, none = np.full(one.count, PILOT), np.zeros(one.count, np.int64)
-        cosine, _ = pilot.cosine(none, few, read=mean, squares=True)
-        shadow = pilot.shadow(none, few if direct else none, squares=True)
-        variance = np.stack([_variance(one, sums) for sums in (cosine, shadow)])
+        variance = np.zeros((2, one.count))
+        if pilot:
+            trial = Lines.of(one, chances, problem, method, seed, (Purpose.SENSORS_PILOT, Purpose.SENSORS_PILOT_SHADOW))
+            trial = trial if direct else _without_direct(trial)
+            mean = [upload(types.Float, column.astype(np.float32)) for column in reflected.mean(axis=0).T]
+            few, none = np.full(one.count, pilot), np.zeros(one.count, np.int64)
+            cosine, _ = trial.cosine(none, few, read=mean, squares=True)
+            shadow = trial.shadow(none, few if direct else none, squares=True)
+            variance = np.stack([_variance(one, sums, pilot) for sums in (cosine, shadow)])
         shares = _shares(variance, one.sizes, has_targets=direct and chances.targets > 0)
-        receivers = Receivers(geometry, replicates, sensors=sensors, seed=seed)
+        receivers = Receivers(geometry, replicates, sensors=sensors, seed=seed, faces=faces)
         lines = Lines.of(receivers, chances, problem, method, seed, (Purpose.SENSORS, Purpose.SENSORS_SHADOW))
         lines = lines if direct else _without_direct(lines)
         whole = np.broadcast_to(reflected, (replicates, *reflected.shape[1:]))
@@ -84,7 +90,7 @@ class Tracing:
         kinds: tuple[Any, ...] = (types.UInt64, types.Int64)
         brought, met = ([dr.zeros(kind, receivers.lanes) for _ in read] for kind in kinds)
         missed = [dr.zeros(types.UInt32, receivers.lanes) for _ in range(2)]
-        traced = 2 * PILOT * one.receivers
+        traced = 2 * pilot * one.receivers
         return Tracing(receivers, lines, read, shares, np.zeros((2, one.count), np.int64), brought, met, missed, traced)
 
     def advance(self, each: float) -> None:
@@ -135,11 +141,11 @@ def _without_direct(lines: Lines) -> Lines:
     return replace(lines, targets=replace(lines.targets, emission=nothing, sky=None))
 
 
-def _variance(receivers: Receivers, sums: list) -> np.ndarray:
+def _variance(receivers: Receivers, sums: list, lines: int) -> np.ndarray:
     """Return the variance of a line of each packet, (count,), the largest of the groups, relative to the light that comes."""
     half, found = len(sums) // 2, []
     for total, square in zip(sums[:half], sums[half:], strict=True):
-        mean, of_squares = (receivers.patch_values(np.array(one, np.float64))[0] / PILOT for one in (total, square))
+        mean, of_squares = (receivers.patch_values(np.array(one, np.float64))[0] / lines for one in (total, square))
         found.append(np.maximum(of_squares - mean**2, 0))
     return receivers.by_packet(np.max(found, axis=0)) / receivers.sizes
 

@@ -1,0 +1,166 @@
+"""Pictures with a final gather: closed forms, sensors at the points that are seen, shadows where boxes stand, refusals."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from light_samples import bulb, lit
+
+import radiosity as rd
+from radiosity.cli import main
+from radiosity.image import export, render
+from radiosity.image.picture import first_hits
+from radiosity.image.view import directions
+from radiosity.scene.paint import Paint
+from radiosity.scene.sampler import Sampler
+from radiosity.scene.shapes import box, join, quad
+
+ABOVE = rd.Camera((0.1, 0.2, 2.5), (0.1, 0.2, 0), (0, 1, 0), 60.0, 9, 7)
+
+
+def solved(scene, cells=1, rays=20_000, **options):
+    return rd.solve(rd.subdivide(scene, cells=cells), method="gather", rays=rays, replicates=2, **options)
+
+
+def values(solution, folder, **options):
+    """Linear values of a picture, (height, width, n_bands)."""
+    return render(solution, folder / "a.exr", **{"final_gather": 64, "samples": 1, **options}).astype(float)
+
+
+def seen(scene, camera) -> np.ndarray:
+    """The points that the middles of pixels see, (height, width, 3)."""
+    x, y = (a.ravel() + 0.5 for a in np.meshgrid(np.arange(camera.width), np.arange(camera.height)))
+    rays = directions(camera, x, y)
+    origins = np.broadcast_to(camera.origin, rays.shape)
+    return (origins + rays * first_hits(scene, origins, rays).distance[:, None]).reshape(camera.height, camera.width, 3)
+
+
+def test_a_furnace_is_even(tmp_path):
+    """All walls emit 1 and reflect rho: 1 / (1 - rho) everywhere, at edges too."""
+    room = join([("walls", 0.6, 1.0, box((0, 0, 0), (2, 1, 3), inward=True))], source="furnace")
+    camera = rd.Camera((0.2, 0.3, 0.4), (2, 0.9, 3), (0, 0, 1), 80.0, 12, 9)
+    found = values(solved(room, 2, 200_000), tmp_path, camera=camera, final_gather=1024, samples=4)
+    np.testing.assert_allclose(found, 2.5, rtol=0.03)
+    assert abs(found.mean() - 2.5) < 0.01
+
+
+def test_a_point_lamp_over_a_floor(tmp_path):
+    """rho I cos / d^2, to single precision, in every quantity; the pebble is out of sight."""
+    scene = lit(("floor", 0.5, 0.0, [quad((-2, -2, 0), (4, 0, 0), (0, 4, 0))]), luminaires=(bulb((0, 0, 2), 400 * np.pi),))
+    solution, points = solved(scene), seen(scene, ABOVE)
+    irradiance = 100 * 2 / np.linalg.norm(points - [0, 0, 2], axis=-1) ** 3
+    for quantity, factor in (("radiosity", 0.5), ("irradiance", 1.0), ("luminance", 0.5 / np.pi)):
+        found = values(solution, tmp_path, camera=ABOVE, quantity=quantity)[..., 0]
+        np.testing.assert_allclose(found, factor * irradiance, rtol=1e-4, err_msg=quantity)
+    assert np.ptp(values(solution, tmp_path, camera=ABOVE, final_gather=None)) == 0  # the floor is one patch
+
+
+def test_a_pixel_is_what_a_sensor_measures_there(tmp_path):
+    """Light of a lamp and of walls, on floor and box. Each pixel and sensor has about 0.5 % of noise."""
+    parts = [
+        ("walls", 0.6, 0.0, box((-2, -2, 0), (2, 2, 3), inward=True)),
+        ("box", 0.3, 0.0, box((-0.5, -0.5, 0), (0.5, 0.4, 0.7))),
+        ("lamp", 0.0, 100.0, [quad((-0.5, -0.5, 2.99), (0, 1, 0), (1, 0, 0))]),
+    ]
+    scene = join(parts, source="room")
+    camera = rd.Camera((1.5, 0.2, 1.5), (0.3, 0.1, 0.4), (0, 0, 1), 70.0, 6, 5)
+    solution, points = solved(scene, 3, 200_000), seen(scene, camera).reshape(-1, 3)
+    x, y = (a.ravel() + 0.5 for a in np.meshgrid(np.arange(6), np.arange(5)))
+    hits = first_hits(scene, np.broadcast_to(camera.origin, points.shape), directions(camera, x, y))
+    found = values(solution, tmp_path, camera=camera, final_gather=16384, quantity="irradiance")[..., 0].ravel()
+    measured = rd.measure(solution, rd.Sensors.of(points, scene.normal[hits.face]), rays=16384 * len(points)).illuminance[:, 0]
+    np.testing.assert_allclose(found, measured, rtol=0.05)
+    assert np.sqrt(np.mean((found / measured - 1) ** 2)) < 0.015
+    assert np.ptp(found) > found.mean() / 2
+
+
+@pytest.fixture(scope="module")
+def standing():
+    """A box that stands on a floor, a lamp above it, patches of a metre."""
+    lamp = quad((-0.5, -0.5, 3), (0, 1, 0), (1, 0, 0))
+    parts = [("floor", 0.5, 0.0, [quad((-2, -2, 0), (4, 0, 0), (0, 4, 0))]), ("lamp", 0.0, 100.0, [lamp])]
+    return join([*parts, ("box", 0.0, 0.0, box((0.1, -0.6, 0), (0.9, 0.6, 1)))], source="standing")
+
+
+def test_a_shadow_begins_at_the_box(tmp_path, standing):
+    """Beside a black box all of the lamp is hidden; the picture of patches has the light of what is far away there."""
+    scene = standing
+    camera = rd.Camera((1.5, 0.01, 0.5), (0.93, 0.01, 0), (0, 1, 0), 2.0, 3, 3)
+    solution, points = solved(scene, 4), seen(scene, camera).reshape(-1, 3)
+    assert (points[:, 2] < 1e-6).all()
+    assert (points[:, 0] > 0.9).all()
+    assert (points[:, 0] < 0.96).all()
+    assert ((0.9 - points[:, 0]) * 3 + points[:, 0] > 0.5).all()  # the box's upper edge hides all of the lamp
+    found = values(solution, tmp_path, camera=camera, final_gather=64).ravel()
+    patches = values(solution, tmp_path, camera=camera, final_gather=None).ravel()
+    assert (found == 0).all()
+    assert (patches > 0.5).all()
+
+
+def test_images_are_seen_as_they_are(tmp_path):
+    """Reflectance is that of the image at each point, where a picture of patches has the patch's mean."""
+    image = np.linspace(0, 1, 16, dtype=np.float32).reshape(4, 4, 1)
+    corners = np.broadcast_to(np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32), (2, 4, 2))
+    paint = Paint((image,), np.array([-1, 0]), corners, np.ones((2, 4, 1), np.float32), 0.7, (Sampler(filter="nearest"),))
+    floor = ("floor", 0.8, 0.0, [quad((-2, -2, 0), (4, 0, 0), (0, 4, 0))])
+    scene = replace(lit(floor, luminaires=(bulb((0, 0, 2), 400 * np.pi),)), reflectance_paint=paint)
+    points = seen(scene, ABOVE)
+    column, row = ((points[..., i] + 2).astype(int) for i in (0, 1))
+    reflectance = np.minimum(0.8 * image[3 - row, column, 0], 0.7)
+    found = values(solved(scene), tmp_path, camera=ABOVE)[..., 0]
+    np.testing.assert_allclose(found, reflectance * 200 / np.linalg.norm(points - [0, 0, 2], axis=-1) ** 3, rtol=1e-4)
+    assert len(np.unique(reflectance)) > 8
+
+
+def test_equal_seeds_give_equal_bits(standing):
+    solution = solved(standing, 2)
+    one, again, other = (render(solution, camera=ABOVE, final_gather=32, seed=seed) for seed in (3, 3, 4))
+    assert np.array_equal(one, again)
+    assert not np.array_equal(one, other)
+
+
+def test_progress_is_told(standing):
+    told = []
+    render(solved(standing), camera=ABOVE, final_gather=64, progress=told.append)
+    assert told[-1].message == "gathering"
+    assert 0.3 < told[-1].fraction <= 1
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"final_gather": 15}, "final_gather is 15; it must be a whole number of lines a pixel, from 16 "),
+        ({"final_gather": 99.5}, "final_gather is 99.5"),
+        ({"final_gather": True}, "final_gather is True"),
+        ({"quantity": "standard_error"}, "a final gather finds radiosity, irradiance, luminance, radiance, not 'standard_error'"),
+    ],
+)
+def test_refusals(standing, options, message):
+    with pytest.raises(rd.OutputError, match=message):
+        render(solved(standing, rays=2000), camera=ABOVE, **{"final_gather": 64, **options})
+
+
+def test_meshes_have_no_final_gather(standing, tmp_path):
+    with pytest.raises(rd.OutputError, match="a final gather is of pictures"):
+        export(solved(standing, rays=2000), tmp_path / "a.glb", final_gather=64)
+
+
+def test_backs_that_let_lines_pass_are_refused(standing):
+    scene = standing
+    passing = replace(scene, back=np.full_like(scene.back, rd.Back.PASSES))
+    solution = rd.solve(rd.subdivide(passing, cells=1), "random-walk", rays=2000, replicates=2)
+    with pytest.raises(rd.MethodError, match=r"some backs let lines pass.*final gather"):
+        render(solution, camera=ABOVE, final_gather=64)
+
+
+def test_the_command(tmp_path, standing):
+    solved(standing, rays=2000).save(tmp_path / "a.npz")
+    options = [tmp_path / "a.npz", "-o", tmp_path / "a.png", "--width", 8, "--height", 6, "--final-gather", 32, "--seed", 5]
+    assert main([str(word) for word in ("render", *options)]) == 0
+    from PIL import Image
+
+    with Image.open(tmp_path / "a.png") as picture:
+        assert (picture.text["final gather"], picture.text["seed"]) == ("32 lines a pixel", "5")
+        shown = np.asarray(picture)
+    wanted = render(rd.load_solution(tmp_path / "a.npz"), width=8, height=6, final_gather=32, seed=5)
+    assert np.array_equal(shown, wanted)
