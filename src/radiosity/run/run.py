@@ -17,6 +17,7 @@ from ..method import Baseline, Method
 from ..patches import Patches
 from ..problem.model import Problem
 from ..sampling.streams import Seed
+from ..scene.habits import warn
 from ..solution.status import NOT_REACHED
 from ..tally import unmet
 from ..tracing.geometry import Geometry
@@ -25,7 +26,7 @@ from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .choice import Choice
-from .error_target import Target, nothing_before_lights
+from .error_target import DARK, Target, nothing_before_lights
 from .part import Part, check_stages
 from .pilot import few_quanta
 from .progress import Listener, Stop, Teller
@@ -176,6 +177,12 @@ class Run(Generic[R]):
             self.checkpoint.end(solution)
         if solution.quanta == 0:
             raise KeyboardInterrupt
+        if self.snapshot is not None and self._no_light(self.snapshot) and self.snapshot.lines >= DARK:
+            with result_kept():
+                warn(
+                    f"{self.patches.scene.source}: no light reached any patch in {self.snapshot.lines:,.0f} lines, so that there "
+                    "is no error to reach; do lamps face the scene, and does a window let the sky in?"
+                )
         return solution
 
     def merged(self, quanta: int, parts: list[tuple[dict, Part]]) -> R:
@@ -243,8 +250,9 @@ class Run(Generic[R]):
         return self.target.margin(snapshot) if self.target.judged(snapshot) else math.nan
 
     def _no_light(self, snapshot: Snapshot) -> bool:
-        """Return whether there is an error target, but no patch can receive anything."""
-        return self.budget.error is not None and not snapshot.irradiance[0].any() and nothing_before_lights(self.patches)
+        """Return whether there is an error target, but no patch can receive anything, or none did in very many lines."""
+        dark = self.budget.error is not None and not snapshot.irradiance[0].any()
+        return dark and (snapshot.lines >= DARK or nothing_before_lights(self.patches))
 
     def _algorithm(self, problem: Problem, part: Part) -> AbstractAlgorithm:
         return make(self.geometry, problem, self.method, part.seed, part.replicates)
