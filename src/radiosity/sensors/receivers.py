@@ -9,12 +9,14 @@ import numpy as np
 from ..algorithms.gather.packets import ESCAPED, LOST, Packets, curve
 from ..device.backend import upload
 from ..sampling.streams import Purpose, Seed, stream
-from ..tracing.ray_generation import Frame
+from ..tracing.faces import COLUMN_BITS
+from ..tracing.ray_generation import MASK, Frame
 from .clearance import clearance
 from .model import Sensors
 
 # Upright planes of a cylindrical sensor in each replicate. The clamped cosine has no odd harmonics above the first, so that an
 # odd number of planes errs as twice as many would: by 0.2 % of the light of a point lamp, at most, in one replicate.
+PLACES = MASK | MASK << COLUMN_BITS  # bits of a record that are column and row
 PLANES = 15
 
 
@@ -111,7 +113,13 @@ class Receivers(Packets):
         return np.tile(faces.plane_offsets[self.faces[self.sensor]], self.replicates)
 
     def record(self, patch):
-        return self.types.Array2u(patch, self.types.UInt32(0))
+        """Return each plane's number, and a place that moves its numbers: those of pixels are mixed, so noise has no pattern."""
+        UInt32 = self.types.UInt32
+        if self.faces is None:
+            return self.types.Array2u(patch, UInt32(0))
+        mixed = (patch ^ (patch >> 16)) * UInt32(0x7FEB352D)
+        mixed = (mixed ^ (mixed >> 15)) * UInt32(0x846CA68B)
+        return self.types.Array2u(patch, (mixed ^ (mixed >> 16)) & PLACES)
 
     def frame(self, record):
         frame = Frame.read(self.types, self._records, record[0])
