@@ -71,7 +71,7 @@ def same(solution, reference):
         assert book["emitted"] + book["rounding"] == pytest.approx(book["absorbed"] + book["escaped"] + book["lost"])
 
 
-@pytest.mark.parametrize("mean", [0.5, 0.9])
+@pytest.mark.parametrize("mean", [pytest.param(0.5, marks=pytest.mark.slow), 0.9])
 @some
 def test_labyrinth_furnace_is_one_everywhere(method, mean):
     patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean}"), cells=1)

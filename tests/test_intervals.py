@@ -64,7 +64,7 @@ def test_coverage_of_four_scenes(name, lines):
 def dim():
     """The room with many small patches and few lines."""
     patches = rd.subdivide(rd.load_scene("room"), cells=12)
-    return rd.solve(patches, "random-walk", rays=60_000), rd.solve(patches, "random-walk", rays=40_000_000, seed=5).irradiance
+    return rd.solve(patches, "random-walk", rays=60_000), rd.solve(patches, "random-walk", rays=10_000_000, seed=5).irradiance
 
 
 def test_no_line_is_no_certain_zero(dim):

@@ -19,7 +19,7 @@ COLORS = [[0.8, 0.5, 0.1], [0.2, 0.5, 0.7], [0.6, 0.3, 0.3], [0.1, 0.7, 0.2], [0
 LIGHT = [[1.0, 1.0, 1.0], [0.0, 0.0, 0.0], [0.5, 0.1, 0.0], [0.0, 0.0, 0.0], [0.0, 0.2, 0.9], [0.0, 0.0, 0.0]]
 
 
-@pytest.mark.parametrize("mean_reflectance", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("mean_reflectance", [0.1, pytest.param(0.5, marks=pytest.mark.slow), 0.9])
 @pytest.mark.parametrize("name", VARIANTS)
 def test_labyrinth_furnace_is_one_everywhere(name, mean_reflectance):
     patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean_reflectance}"), cells=1)

@@ -198,7 +198,7 @@ def test_the_page_of_baselines_compares_runs_in_processes_of_their_own(tmp_path,
 def test_a_baseline_that_does_not_fit_has_a_row_that_says_so():
     from radiosity.lab.footprint import footprints
 
-    found = footprints("room", 3_000_000, "full-matrix-hemicube", [("64 pixels", {})], warm=False)
+    found = footprints("room", 1_000_000, "full-matrix-hemicube", [("64 pixels", {})], warm=False)
     assert isinstance(found, str)
     assert "GiB are free" in found
 

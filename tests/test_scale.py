@@ -7,6 +7,7 @@ that `check` names, since the box is not turned with the scene.
 import re
 import warnings
 from dataclasses import replace
+from functools import cache
 from itertools import zip_longest
 
 import numpy as np
@@ -37,6 +38,12 @@ def load(strangers_or_none):
             return rd.load_scene(strangers_or_none / "renderpark" / name)
 
     return one
+
+
+@pytest.fixture(scope="module")
+def solved(load):
+    """Solutions of the scenes as they are."""
+    return cache(lambda name: rd.solve(load(name), "random-walk", rays=LINES))
 
 
 def rotation(seed: int) -> np.ndarray:
@@ -79,10 +86,10 @@ def metres(report: Report) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("name", "exponent"), [(name, (-13, 20)[i % 2]) for i, name in enumerate(SCENES)])
-def test_powers_of_two_leave_every_bit(load, name, exponent):
+def test_powers_of_two_leave_every_bit(load, solved, name, exponent):
     scene, scale = load(name), 2.0**exponent
     other = placed(scene, scale)
-    one, two = rd.solve(scene, "random-walk", rays=LINES), rd.solve(other, "random-walk", rays=LINES)
+    one, two = solved(name), rd.solve(other, "random-walk", rays=LINES)
     for field in ("radiosity", "standard_error", "irradiance", "irradiance_standard_error", "arrivals"):
         assert np.array_equal(getattr(one, field), getattr(two, field), equal_nan=True), field
     assert (one.rays, one.quanta, one.error) == (two.rays, two.quanta, two.error)
@@ -104,10 +111,10 @@ def test_powers_of_two_leave_every_bit(load, name, exponent):
 @pytest.mark.parametrize(
     ("scale", "move"), [(1e-4, (3, -2, 5)), (1e6, (-3, 0.2, 4)), (1.0, (900, -400, 100))], ids=["small", "large", "far"]
 )
-def test_scaled_turned_and_moved(load, name, scale, move):
+def test_scaled_turned_and_moved(load, solved, name, scale, move):
     scene = load(name)
     other = placed(scene, scale, rotation(int(abs(move[0]))), move)
-    one, two = rd.solve(scene, "random-walk", rays=LINES), rd.solve(other, "random-walk", rays=LINES)
+    one, two = solved(name), rd.solve(other, "random-walk", rays=LINES)
     assert np.array_equal(one.patches.columns, two.patches.columns)
     assert np.array_equal(one.patches.rows, two.patches.rows)
     assert two.patches.area.sum() == pytest.approx(scale**2 * one.patches.area.sum(), rel=1e-9)

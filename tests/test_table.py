@@ -7,11 +7,13 @@ of a test together, so that a false alarm among its some hundred cases has a cha
 
 import numpy as np
 import pytest
-from methods import METHODS, critical
+from members import varied
+from methods import COMBINATIONS, METHODS, critical
 from replicates import difference, powers
 
 import radiosity as rd
 from radiosity.lab import cases
+from radiosity.method.model import CHOICES
 
 RAYS, REPLICATES = 1_500_000, 16
 START_UP = 1e-4  # of the light, that iterations may leave out as they begin (docs/iterations.md); some have no variance here
@@ -47,11 +49,16 @@ def reference(room, plates):
 SLOW = pytest.mark.slow
 
 
+# combinations that test_axis_estimator.py puts into a furnace of its own
+VARIED = {method for axis in ("estimator", "absorption") for value in CHOICES[axis] for method in varied(axis, value)}
+ELSEWHERE = {name for name, method in COMBINATIONS.items() if method in VARIED}
+
+
 @pytest.mark.parametrize("mean_reflectance", [pytest.param(0.1, marks=SLOW), pytest.param(0.5, marks=SLOW), 0.9])
-@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
-def test_furnace(method, mean_reflectance):
+@pytest.mark.parametrize("name", [pytest.param(name, marks=SLOW) if name in ELSEWHERE else name for name in METHODS])
+def test_furnace(name, mean_reflectance):
     patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean_reflectance}"), cells=1)
-    solution = rd.solve(patches, method, rays=RAYS, replicates=REPLICATES)
+    solution = rd.solve(patches, METHODS[name], rays=RAYS, replicates=REPLICATES)
     exact = np.bincount(patches.surface, patches.area)
     power = powers(solution)
     error = np.maximum(power.std(axis=0, ddof=1) / REPLICATES**0.5, START_UP * exact)
