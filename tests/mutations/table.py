@@ -2339,4 +2339,25 @@ MISTAKES = (
         ("test_gather_lights.py",),
         "many luminaires are chosen by clusters that are too large",
     ),
+    Mistake(
+        "tracing/panes.py",
+        "        if own:\n",
+        "        if own and False:\n",
+        ("test_light_referees.py",),
+        "all rays from a sensor to a point lamp go through a pane, or none",
+    ),
+    Mistake(
+        "diagnostics/lamps_at_faces.py",
+        "down * height < 0",
+        "down * height > 0",
+        ("test_lamps_at_faces.py",),
+        "luminaires that send light away from a face that they touch are named, and others are not",
+    ),
+    Mistake(
+        "scene/lights/epw.py",
+        "if len(set(years)) < len(years):",
+        "if False:",
+        ("test_light_reports.py",),
+        "of several rows an hour the first is taken",
+    ),
 )
