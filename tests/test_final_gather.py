@@ -150,6 +150,34 @@ def test_equal_seeds_give_equal_bits(standing):
     assert not np.array_equal(one, other)
 
 
+def test_pieces_have_numbers_of_their_own(monkeypatch, standing, tmp_path):
+    """The same point twice, in two pieces: other noise, the same light within it."""
+    from radiosity.sensors import pixels
+
+    gather = pixels.Gather.of(solved(standing, 2), 64.0, 2)
+    floor = np.zeros(1, int), np.full(1, 0.1), np.full(1, 0.1)
+    whole = gather.irradiance(*floor), gather.irradiance(*floor)
+    assert whole[0] != whole[1]
+    np.testing.assert_allclose(*whole, rtol=0.3)
+    monkeypatch.setattr(pixels, "PIECE", 7)
+    pieces = [values(solved(standing, 2), tmp_path, camera=ABOVE, seed=seed) for seed in (1, 1)]
+    assert np.array_equal(*pieces)
+
+
+def test_backs_have_light_of_their_own(tmp_path):
+    """A lamp over a floor that radiates on both sides: nothing arrives below."""
+    floor = quad((-2, -2, 0), (4, 0, 0), (0, 4, 0))
+    scene = join(
+        [("floor", 0.5, 0.0, [floor]), ("lamp", 0.0, 100.0, [quad((-0.5, -0.5, 3), (0, 1, 0), (1, 0, 0))])],
+        source="sheet",
+        backs={"floor": 0.5},
+    )
+    below = replace(ABOVE, origin=(0.1, 0.2, -2.5))
+    solution = solved(scene, 2)
+    assert (values(solution, tmp_path, camera=below, quantity="irradiance") == 0).all()
+    assert (values(solution, tmp_path, camera=ABOVE, quantity="irradiance") > 1).all()
+
+
 def test_progress_is_told(standing):
     told = []
     render(solved(standing), camera=ABOVE, final_gather=64, progress=told.append)
