@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from image_samples import far_room
 from light_samples import bulb, lit
+from test_panes import two_rooms
 
 import radiosity as rd
 from radiosity.cli import main
@@ -112,11 +114,68 @@ def test_images_are_seen_as_they_are(tmp_path):
     assert len(np.unique(reflectance)) > 8
 
 
+def test_panes_show_what_is_behind_them(tmp_path):
+    """A closed furnace with E = 1 - rho - t: the walls behind a pane of t = 0.4 are seen as bright as those before it."""
+    scene = two_rooms(0.5 - 0.15 * (np.arange(11) == 10))
+    camera = rd.Camera((0.1, 0.4, 0.5), (2, 0.5, 0.5), (0, 0, 1), 80.0, 12, 9)
+    found = values(solved(scene, 2, 200_000), tmp_path, camera=camera, final_gather=1024, samples=4)
+    np.testing.assert_allclose(found, 1.0, rtol=0.05)
+    assert abs(found.mean() - 1) < 0.01
+
+
+def test_bands_and_false_colours(tmp_path):
+    """A band is a column of all of them, and what false colours show is the luminance."""
+    solution = solved(rd.load_scene("cornell-box"), 3, 50_000)
+    every = values(solution, tmp_path, width=6)
+    assert np.array_equal(values(solution, tmp_path, width=6, band="green"), every[..., 1:2])
+    assert render(solution, width=6, final_gather=64, false_color=True).shape[0] >= 6
+
+
+def test_scenes_far_away(tmp_path):
+    """Metres of a map: the same picture as near the origin."""
+    near, far = rd.load_scene("room"), far_room()
+    found = []
+    for scene in (near, far):
+        corner = scene.bounds[0]
+        camera = rd.Camera(tuple(np.add(corner, (0.3, 0.3, 1.9))), tuple(np.add(corner, (4, 2.6, 0.8))), (0, 0, 1), 60.0, 8, 6)
+        found.append(values(solved(scene, 2, 50_000), tmp_path, camera=camera))
+    np.testing.assert_allclose(*found, rtol=0.05)
+    assert np.ptp(found[0]) > 0.1
+
+
 def test_equal_seeds_give_equal_bits(standing):
     solution = solved(standing, 2)
     one, again, other = (render(solution, camera=ABOVE, final_gather=32, seed=seed) for seed in (3, 3, 4))
     assert np.array_equal(one, again)
     assert not np.array_equal(one, other)
+
+
+def test_pieces_have_numbers_of_their_own(monkeypatch, standing, tmp_path):
+    """The same point twice, in two pieces: other noise, the same light within it."""
+    from radiosity.sensors import pixels
+
+    gather = pixels.Gather.of(solved(standing, 2), 64.0, 2)
+    floor = np.zeros(1, int), np.full(1, 0.1), np.full(1, 0.1)
+    whole = gather.irradiance(*floor), gather.irradiance(*floor)
+    assert whole[0] != whole[1]
+    np.testing.assert_allclose(*whole, rtol=0.3)
+    monkeypatch.setattr(pixels, "PIECE", 7)
+    pieces = [values(solved(standing, 2), tmp_path, camera=ABOVE, seed=seed) for seed in (1, 1)]
+    assert np.array_equal(*pieces)
+
+
+def test_backs_have_light_of_their_own(tmp_path):
+    """A lamp over a floor that radiates on both sides: nothing arrives below."""
+    floor = quad((-2, -2, 0), (4, 0, 0), (0, 4, 0))
+    scene = join(
+        [("floor", 0.5, 0.0, [floor]), ("lamp", 0.0, 100.0, [quad((-0.5, -0.5, 3), (0, 1, 0), (1, 0, 0))])],
+        source="sheet",
+        backs={"floor": 0.5},
+    )
+    below = replace(ABOVE, origin=(0.1, 0.2, -2.5))
+    solution = solved(scene, 2)
+    assert (values(solution, tmp_path, camera=below, quantity="irradiance") == 0).all()
+    assert (values(solution, tmp_path, camera=ABOVE, quantity="irradiance") > 1).all()
 
 
 def test_progress_is_told(standing):

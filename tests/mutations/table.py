@@ -15,6 +15,34 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "image/gathered.py",
+        "found[lit] += reflectance[lit] * self",
+        "found[lit] = reflectance[lit] * self",
+        ("test_final_gather.py",),
+        "pixels of lamps that reflect lose their own light",
+    ),
+    Mistake(
+        "sensors/pixels.py",
+        "_sensors(places, patches.normal[patch])",
+        "_sensors(places, patches.scene.normal[face])",
+        ("test_final_gather.py",),
+        "the back of a face has the light of its front",
+    ),
+    Mistake(
+        "sensors/pixels.py",
+        "Seed(self.seed, first_replicate=self.pieces)",
+        "Seed(self.seed)",
+        ("test_final_gather.py",),
+        "all pieces of a picture have the same noise",
+    ),
+    Mistake(
+        "patches/at_points.py",
+        "base * paint.factor(some, u[rows], v[rows], scene.is_quad[some]), paint.limit",
+        "base * paint.factor(some, u[rows], v[rows], scene.is_quad[some]), np.inf",
+        ("test_final_gather.py",),
+        "a reflectance is above its limit",
+    ),
+    Mistake(
         "scene/formats/radiance/materials.py",
         "_color(numbers[:3] * (1 - numbers[3]))",
         "_color(numbers[:3])",

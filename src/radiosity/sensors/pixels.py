@@ -93,7 +93,7 @@ class Gather:
         tracing = Tracing.of(
             self.geometry,
             self.problem,
-            Sensors.of(places, patches.normal[patch], name="points"),
+            _sensors(places, patches.normal[patch]),
             self.light[None],
             1,
             seed,
@@ -108,3 +108,9 @@ class Gather:
             self.teller.tell("gathering")
         self.pieces += 1
         return in_bands(self.problem, tracing.values()[0])
+
+
+def _sensors(points: np.ndarray, normals: np.ndarray) -> Sensors:
+    """Return points of surfaces as sensors, however far away a scene lies."""
+    n = len(points)
+    return Sensors(points, normals, np.zeros(n, np.int64), ("points",), np.full((n, 2), -1), np.zeros(n, bool))
