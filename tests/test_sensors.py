@@ -224,3 +224,13 @@ def test_light_through_a_pane():
     seen = from_points(np.zeros((1, 3)), np.array([[0, 0, 1.0]]), pane.vertices[None, ::-1])[0]
     assert agrees(measured(under, rd.Sensors.of([[0, 0, 0]]), 1 << 14), 100 * np.pi * (1 - 0.4 * seen), 0.03)
     assert not agrees(measured(under, rd.Sensors.of([[0, 0, 0]]), 1 << 14), 100 * np.pi * 0.9 * (1 - 0.4 * seen), 0.03)
+
+
+def test_sensors_in_the_coordinates_of_a_map():
+    """Eastings and northings of some 1e6 m, in which a building keeps its lux, to the bit; they were refused above 1e6 m."""
+    found = []
+    for away in (np.zeros(3), np.array([400_000, 5_000_000, 100.0])):
+        walls = ("walls", 0.5, 0.0, [face + away for face in box((0, 0, 0), (4, 4, 3), inward=True)])
+        scene = join([walls], source="map").with_lights([rd.point_light(position=away + [2, 2, 2.5], lumens=1000)])
+        found.append(measured(scene, rd.Sensors.of(away + [[2, 2, 1], [1, 3, 0]]), 256).illuminance)
+    assert np.array_equal(*found)

@@ -1,3 +1,3 @@
 """Limits of what sensors may be."""
 
-LARGEST = 1e6  # m: farther points are errors of units
+LARGEST = 1e9  # m: maps have coordinates of some 1e6 m; farther points are errors of units
