@@ -231,6 +231,6 @@ def test_sensors_in_the_coordinates_of_a_map():
     found = []
     for away in (np.zeros(3), np.array([400_000, 5_000_000, 100.0])):
         walls = ("walls", 0.5, 0.0, [face + away for face in box((0, 0, 0), (4, 4, 3), inward=True)])
-        scene = join([walls], source="map").with_lights([rd.point_light(position=away + [2, 2, 2.5], lumens=1000)])
-        found.append(measured(scene, rd.Sensors.of(away + [[2, 2, 1], [1, 3, 0]]), 256).illuminance)
+        scene = join([walls], source="map").with_lights([rd.point_light(position=np.add(away, [2, 2, 2.5]), lumens=1000)])
+        found.append(measured(scene, rd.Sensors.of(np.add(away, [[2, 2, 1], [1, 3, 0]])), 256).illuminance)
     assert np.array_equal(*found)
