@@ -8,7 +8,7 @@ from radiosity.algorithms.firing import counters as firing
 from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.device.backend import choose, upload
 from radiosity.problem.quanta import Source, phases, target_counts
-from radiosity.run.budget import first_stage
+from radiosity.run import budget as budgets
 from radiosity.tracing import lanes
 
 QUANTA = 40_000
@@ -59,15 +59,16 @@ def test_replicates_and_patches_have_independent_phases():
     assert np.abs([np.corrcoef(row[1:], row[:-1])[0, 1] for row in phase]).max() < 0.05
 
 
-def test_quanta_replay_a_run_bit_for_bit():
+def test_quanta_replay_a_run_bit_for_bit(monkeypatch):
+    monkeypatch.setattr(budgets, "FIRST_STAGE", 1 << 17)
     for scene in ("room", "cornell-box"):
         patches = rd.subdivide(rd.load_scene(scene), cells=5)
-        for budget in ({"seconds": 0.5}, {"error": 0.02}, {"rays": 14_000_000}):
+        for budget in ({"seconds": 0.5}, {"error": 0.02}, {"rays": 2_000_000}):
             first = rd.solve(patches, replicates=2, **budget)
             again = rd.solve(patches, replicates=2, quanta=first.quanta)
             assert np.array_equal(first.irradiance, again.irradiance)
             assert np.array_equal(first.irradiance_standard_error, again.irradiance_standard_error)
-    assert first.quanta > first_stage(2, len(patches))  # several stages were replayed
+    assert first.quanta > budgets.first_stage(2, len(patches))  # several stages were replayed
 
 
 def test_coherent_firing_traces_the_same_lines():

@@ -1,4 +1,5 @@
-"""The paper's claims, as tests over what ``radiosity experiment all --quick`` computes; and the machinery of the study.
+"""The paper's claims, as tests over what ``radiosity experiment all --quick`` computes, with half its lines and a shorter
+reference; and the machinery of the study.
 
 Slopes have five replicates; an interval at alpha = 1e-3 (Student, 4 degrees of freedom) is 3.1 times the 95 % one printed.
 """
@@ -17,8 +18,9 @@ from radiosity.lab.discretisation import discretisation
 from radiosity.lab.experiments import EXPERIMENTS, module
 from radiosity.lab.run import run
 from radiosity.lab.start import starts
-from radiosity.lab.study import QUICK, Arm, Protocol
+from radiosity.lab.study import Arm, Protocol
 
+SHORT = Protocol(last=16, reference=20)
 WIDER = 8.61 / 2.776
 SCENES = ("labyrinth-0.1", "labyrinth-0.5", "labyrinth-0.9", "room")
 
@@ -34,7 +36,7 @@ def study(folder):
 
     def get(number):
         if number not in known:
-            known[number] = run(number, QUICK, folder / "series", lambda what, done, total: None)
+            known[number] = run(number, SHORT, folder / "series", lambda what, done, total: None)
         return known[number]
 
     return get
@@ -90,8 +92,8 @@ def test_every_claim_has_a_verdict_and_figures(study, number):
 
 def test_lines_are_met_and_errors_have_every_replicate(study):
     for series in study(3).series.values():
-        assert series.lines == pytest.approx(QUICK.rungs, rel=0.1)
-        assert series.area_weighted.shape == (QUICK.replicates, len(QUICK.rungs))
+        assert series.lines == pytest.approx(SHORT.rungs, rel=0.1)
+        assert series.area_weighted.shape == (SHORT.replicates, len(SHORT.rungs))
         assert (series.area_weighted > 0).all()
         assert (np.diff(series.seconds) > 0).all()
 
@@ -156,10 +158,12 @@ def test_discretisation_error_falls_with_the_mesh_and_is_less_for_continuous_wal
     ("number", "text"),
     [(2, "first shot"), pytest.param(5, "All runs of one seed end in the same bits", marks=pytest.mark.slow)],
 )
-def test_the_command_writes_a_report_that_stands_alone(study, folder, capsys, number, text):
+def test_the_command_writes_a_report_that_stands_alone(study, folder, capsys, monkeypatch, number, text):
     """That of experiment 2 from series that the tests above have made."""
     from radiosity.cli.app import run as command
 
+    for name in ("study", "make"):
+        monkeypatch.setattr(f"radiosity.lab.{name}.QUICK", SHORT)
     if number == 2:
         study(2)
     assert command(["experiment", str(number), "--quick", "-o", str(folder)]) == 0
@@ -183,7 +187,7 @@ def test_the_page_of_baselines_compares_runs_in_processes_of_their_own(tmp_path,
     monkeypatch.setattr(contest, "ARMS", arms)
     monkeypatch.setattr(baselines, "ARMS", arms)
     monkeypatch.setattr(baselines, "QUICK_REFERENCE", 3_000_000)
-    figure, *_, verdict, table = baselines.extras(QUICK, tmp_path)
+    figure, *_, verdict, table = baselines.extras(SHORT, tmp_path)
     assert "<svg" in figure
     assert "random walk has" in verdict
     assert "not run: it would take too long with more than 10 patches" in table
