@@ -10,6 +10,7 @@ import radiosity as rd
 from radiosity.factors.polygons import exchange
 from radiosity.image import gltf, mesh, picture, quantity
 from radiosity.image.look import Look
+from radiosity.image.lookup import Lookup
 from radiosity.scene.back import Back
 from radiosity.scene.combine import combine
 from radiosity.scene.lights.model import Lights
@@ -198,11 +199,13 @@ def test_pictures_see_through_panes():
     scene = glazed(0.3, 0.7, transmittance=np.array([0, 0, 0.5, 0.6]), emission=[0, 8, 1, 2])
     solution = rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=1e4, seed=1)
     camera = rd.Camera(origin=(0.5, 0.5, 0.1), target=(0.5, 0.5, 1.0), up=(0, 1, 0), fov=5, width=4, height=3)
-    shot = picture.take(solution, quantity.choose(solution), camera)
+    shown = quantity.choose(solution)
+    shot = picture.take(solution, shown, camera, look=Lookup(solution.patches, shown.values))
     assert shot.values == pytest.approx(np.full((3, 4, 1), 1 + 0.5 * 2 + 0.5 * 0.6 * 8))
     assert shot.cover.min() == 1
     assert shot.own_light.all()
-    behind = picture.take(solution, quantity.choose(solution, "irradiance"), camera)
+    fallen = quantity.choose(solution, "irradiance")
+    behind = picture.take(solution, fallen, camera, look=Lookup(solution.patches, fallen.values))
     assert behind.values == pytest.approx(np.full((3, 4, 1), solution.irradiance[1, 0]))
 
 

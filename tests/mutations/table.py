@@ -2257,8 +2257,8 @@ MISTAKES = (
     ),
     Mistake(
         "sensors/receivers.py",
-        "least = clearance(self.geometry.faces, points, normals)[:, None]",
-        "least = np.zeros((len(normals), 1))",
+        "return clearance(faces, points, normals)",
+        "return np.zeros(len(normals))",
         ("test_sensors.py",),
         "sensors on a large tilted floor are below it",
     ),

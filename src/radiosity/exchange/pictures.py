@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import printable
 from ..image import bitmap, false_color
+from ..image.lookup import Lookup
 from ..image.picture import choose_camera, first_hits, take
 from ..image.quantity import Quantity
 from ..solution.replacing import replacing
@@ -22,7 +23,7 @@ def heat(found, path: Path) -> None:
     shown = Quantity(net[:, None], "net heat given off", "W/m²", ("heat",), np.zeros(len(net), bool))
     stage = SimpleNamespace(patches=found.patches, radiosity=np.abs(net)[:, None] + 1e-300)
     camera = choose_camera(stage, None, None, None, first_hits)
-    picture = take(stage, shown, camera, smooth=False)
+    picture = take(stage, shown, camera, look=Lookup(stage.patches, shown.values, smooth=False))
     size = float(np.percentile(np.abs(net), 99)) or 1.0
     pixels = false_color.colour(picture, title=shown.title, unit=shown.unit, limits=(-size, size), color_map=COLORS)
     bitmap.write_png(pixels, path, {"quantity": shown.title, "unit": shown.unit, "sign": SIGN, "camera": repr(camera)})
