@@ -23,8 +23,12 @@ RUN = ("solve", "room", "--method", "random-walk", "--cells", "2", "--quanta", "
 PROGRAM = """
 import resource, sys
 from radiosity.cli import checkpoints, main
+from radiosity.device.backend import choose
 from radiosity.run import checkpoint
 checkpoint.TIMES = checkpoint.EVERY = checkpoints.MINUTE = 0
+choose("cpu")
+import drjit
+drjit.set_thread_count(1)
 sys.exit(main())
 """
 
