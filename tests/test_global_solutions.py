@@ -4,6 +4,8 @@ Bounds are in standard errors that replicates state, with fixed seeds: SIGMAS fo
 p = 4e-4, about 40 comparisons), LARGEST for the largest of some hundred patches.
 """
 
+from functools import cache
+
 import numpy as np
 import pytest
 from enclosures import cube
@@ -88,15 +90,23 @@ def test_labyrinth_furnace_is_one_everywhere(method, mean):
 @pytest.fixture(scope="module")
 def references():
     """Solutions by local lines, an order of magnitude more exact."""
-    cut = {"room": rd.subdivide(rd.load_scene("room"), cells=3)}
-    cut |= {back.name: rd.subdivide(opening(back), cells=2) for back in (rd.Back.RADIATES, rd.Back.PASSES)}
-    return {name: rd.solve(patches, "random-walk", rays=8_000_000, replicates=16, seed=9) for name, patches in cut.items()}
+
+    @cache
+    def solved(name):
+        patches = (
+            rd.subdivide(rd.load_scene("room"), cells=3) if name == "room" else rd.subdivide(opening(rd.Back[name]), cells=2)
+        )
+        return rd.solve(patches, "random-walk", rays=8_000_000, replicates=16, seed=9)
+
+    return solved
 
 
-@pytest.mark.parametrize("name", ["room", "RADIATES", "PASSES"])
+# rooms are compared in test_table.py, too
+@pytest.mark.parametrize("name", [pytest.param("room", marks=pytest.mark.slow), "RADIATES", "PASSES"])
 @some
 def test_like_local_lines(references, method, name):
-    same(rd.solve(references[name].patches, method, rays=600_000, replicates=16), references[name])
+    reference = references(name)
+    same(rd.solve(reference.patches, method, rays=600_000, replicates=16), reference)
 
 
 def test_light_goes_one_way_through_a_back_that_lets_it_pass():
