@@ -30,7 +30,13 @@ METHODS = [
     for shot in (0.0, 0.25)
     if (lines, order) != ("bundles", "multipath")
 ]
-some = pytest.mark.parametrize("method", METHODS, ids=lambda method: str(method).removeprefix("discrete/"))
+
+
+def shown(method: rd.Method) -> str:
+    return str(method).removeprefix("discrete/")
+
+
+some = pytest.mark.parametrize("method", METHODS, ids=shown)
 
 
 def opening(back: rd.Back = rd.Back.RADIATES) -> rd.Scene:
@@ -101,9 +107,17 @@ def references():
     return solved
 
 
-# rooms are compared in test_table.py, too
-@pytest.mark.parametrize("name", [pytest.param("room", marks=pytest.mark.slow), "RADIATES", "PASSES"])
-@some
+ELSEWHERE = [method for method in METHODS if method.order == "multipath"]  # whose room is in test_table.py, too
+CASES = [
+    pytest.param(
+        method, name, marks=[pytest.mark.slow] if name == "room" and method in ELSEWHERE else [], id=f"{shown(method)}-{name}"
+    )
+    for name in ("room", "RADIATES", "PASSES")
+    for method in METHODS
+]
+
+
+@pytest.mark.parametrize(("method", "name"), CASES)
 def test_like_local_lines(references, method, name):
     reference = references(name)
     same(rd.solve(reference.patches, method, rays=600_000, replicates=16), reference)
