@@ -1,6 +1,9 @@
-"""Variants of the iterations, for the tests."""
+"""Variants of the iterations for the tests, and what their solutions are compared with."""
+
+from functools import cache
 
 import numpy as np
+from replicates import powers
 
 import radiosity as rd
 
@@ -33,3 +36,11 @@ def open_room(*, two_sided: bool = False) -> rd.Scene:
         surface=scene.surface,
         names=scene.names,
     )
+
+
+@cache
+def walked() -> dict[str, tuple[rd.Patches, np.ndarray]]:
+    """Patches of three scenes, and the power that their surfaces receive from random walks, (replicates, n_surfaces)."""
+    scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
+    cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
+    return {name: (p, powers(rd.solve(p, "random-walk", rays=8_000_000, replicates=16))) for name, p in cut.items()}

@@ -4,6 +4,8 @@ Bounds are in standard errors that replicates state, with fixed seeds: SIGMAS fo
 p = 4e-4, about 40 comparisons), LARGEST for the largest of some hundred patches.
 """
 
+from functools import cache
+
 import numpy as np
 import pytest
 from enclosures import cube
@@ -28,7 +30,13 @@ METHODS = [
     for shot in (0.0, 0.25)
     if (lines, order) != ("bundles", "multipath")
 ]
-some = pytest.mark.parametrize("method", METHODS, ids=lambda method: str(method).removeprefix("discrete/"))
+
+
+def shown(method: rd.Method) -> str:
+    return str(method).removeprefix("discrete/")
+
+
+some = pytest.mark.parametrize("method", METHODS, ids=shown)
 
 
 def opening(back: rd.Back = rd.Back.RADIATES) -> rd.Scene:
@@ -88,15 +96,31 @@ def test_labyrinth_furnace_is_one_everywhere(method, mean):
 @pytest.fixture(scope="module")
 def references():
     """Solutions by local lines, an order of magnitude more exact."""
-    cut = {"room": rd.subdivide(rd.load_scene("room"), cells=3)}
-    cut |= {back.name: rd.subdivide(opening(back), cells=2) for back in (rd.Back.RADIATES, rd.Back.PASSES)}
-    return {name: rd.solve(patches, "random-walk", rays=8_000_000, replicates=16, seed=9) for name, patches in cut.items()}
+
+    @cache
+    def solved(name):
+        patches = (
+            rd.subdivide(rd.load_scene("room"), cells=3) if name == "room" else rd.subdivide(opening(rd.Back[name]), cells=2)
+        )
+        return rd.solve(patches, "random-walk", rays=8_000_000, replicates=16, seed=9)
+
+    return solved
 
 
-@pytest.mark.parametrize("name", ["room", "RADIATES", "PASSES"])
-@some
+ELSEWHERE = [method for method in METHODS if method.order == "multipath"]  # whose room is in test_table.py, too
+CASES = [
+    pytest.param(
+        method, name, marks=[pytest.mark.slow] if name == "room" and method in ELSEWHERE else [], id=f"{shown(method)}-{name}"
+    )
+    for name in ("room", "RADIATES", "PASSES")
+    for method in METHODS
+]
+
+
+@pytest.mark.parametrize(("method", "name"), CASES)
 def test_like_local_lines(references, method, name):
-    same(rd.solve(references[name].patches, method, rays=600_000, replicates=16), references[name])
+    reference = references(name)
+    same(rd.solve(reference.patches, method, rays=600_000, replicates=16), reference)
 
 
 def test_light_goes_one_way_through_a_back_that_lets_it_pass():

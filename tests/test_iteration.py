@@ -7,7 +7,7 @@ degrees of freedom: p = 3e-6) leave a chance of less than 1e-3 for a false alarm
 import numpy as np
 import pytest
 from enclosures import cube
-from iterations import VARIANTS, open_room
+from iterations import VARIANTS, walked
 from replicates import difference, powers
 
 import radiosity as rd
@@ -53,10 +53,7 @@ def test_surfaces_receive_what_the_firing_engine_says(reference, name, scene):
 
 @pytest.fixture(scope="module")
 def reference():
-    """Patches and the power that their surfaces receive, (replicates, n_surfaces)."""
-    scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
-    cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
-    return {name: (p, powers(rd.solve(p, "random-walk", rays=8_000_000, replicates=16))) for name, p in cut.items()}
+    return walked()
 
 
 @pytest.mark.parametrize("name", VARIANTS)

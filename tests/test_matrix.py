@@ -7,7 +7,7 @@ about 1 % for a false alarm, and seeds are fixed.
 import numpy as np
 import pytest
 from enclosures import coaxial_discs, cube, parallel_squares, sphere_in_box
-from iterations import open_room
+from iterations import walked
 from replicates import difference, powers
 
 import radiosity as rd
@@ -78,10 +78,7 @@ def test_surfaces_receive_what_the_firing_engine_says(reference, scene, lines):
 
 @pytest.fixture(scope="module")
 def reference():
-    """Patches and the power that their surfaces receive, (replicates, n_surfaces)."""
-    scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
-    cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
-    return {name: (p, powers(rd.solve(p, "random-walk", rays=8_000_000, replicates=16))) for name, p in cut.items()}
+    return walked()
 
 
 def test_both_ways_is_reciprocal_and_better():
