@@ -47,14 +47,15 @@ class Picture:
         return self.values[on & ~self.own_light] if (on & ~self.own_light).any() else self.values[on]
 
 
-def take(solution, shown: Quantity, camera: Camera, *, look: Lookup | Gathered, samples=4, hits=None) -> Picture:
+def take(solution, shown: Quantity, camera: Camera, *, look: Lookup | Gathered | None = None, samples=4, hits=None) -> Picture:
     """Take a picture with ``samples`` lines of sight a pixel, at the points of a Hammersley set (each row and column once).
 
     Args:
-        look: finds values from hits.
+        look: finds values from hits; by default those that are shown, smoothed.
     """
     samples = checked_samples(samples)
     hits, camera = hits or first_hits, check(camera)
+    look = look or Lookup(solution.patches, shown.values)
     sight = Sight(solution.patches.scene, look, hits, shown.adds)
     width, n = int(camera.width), int(camera.width) * int(camera.height)
     total, count, own = np.zeros((n, shown.values.shape[1])), np.zeros(n), np.zeros(n)
