@@ -11,7 +11,8 @@ from test_panes import two_rooms
 import radiosity as rd
 from radiosity.cli import main
 from radiosity.image import export, render
-from radiosity.image.picture import first_hits
+from radiosity.image.denoise import denoised
+from radiosity.image.picture import Picture, first_hits
 from radiosity.image.view import directions
 from radiosity.scene.paint import Paint
 from radiosity.scene.sampler import Sampler
@@ -178,6 +179,35 @@ def test_backs_have_light_of_their_own(tmp_path):
     assert (values(solution, tmp_path, camera=ABOVE, quantity="irradiance") > 1).all()
 
 
+def test_noise_is_filtered_and_edges_are_kept():
+    """Two even planes of noise beside each other: each keeps its mean, and 0.05 of noise becomes a third or less."""
+    noise = 0.05 * np.random.default_rng(1).standard_normal((24, 24, 1))
+    flat = np.repeat([[0, 1]], 12, axis=1).repeat(24, axis=0)
+    flat[:, 11] = -1  # an edge, half of each
+    true = np.where(flat == 0, 1.0, np.where(flat == 1, 1.1, 1.05))[..., None]
+    every = np.ones((24, 24))
+    picture = Picture(true + noise, every, every < 0, np.full(noise.shape, 0.05**2), flat, ABOVE)
+    found = denoised(picture)
+    assert np.array_equal(found[:, 11], picture.values[:, 11])
+    for plane in (0, 1):
+        left = (found - true)[flat == plane]
+        assert left.std() < 0.05 / 3
+        assert abs(left.mean()) < 0.005
+    exact = replace(picture, values=true + np.eye(24)[..., None], variance=np.zeros(noise.shape))
+    np.testing.assert_allclose(denoised(exact), exact.values, atol=1e-6)  # without noise there is nothing to filter
+
+
+def test_denoised_pictures_are_nearer_to_the_truth(tmp_path, standing):
+    solution = solved(standing, 4)
+    camera = rd.Camera((0.1, 3, 2.5), (0.1, 0.2, 0), (0, 0, 1), 60.0, 40, 30)
+    truth = values(solution, tmp_path, camera=camera, final_gather=4096, samples=4)
+    plain, clean = (
+        np.sqrt(np.square(values(solution, tmp_path, camera=camera, final_gather=32, samples=4, denoise=on) - truth).mean())
+        for on in (False, True)
+    )
+    assert clean < 0.8 * plain
+
+
 def test_progress_is_told(standing):
     told = []
     render(solved(standing), camera=ABOVE, final_gather=64, progress=told.append)
@@ -191,6 +221,8 @@ def test_progress_is_told(standing):
         ({"final_gather": 15}, "final_gather is 15; it must be a whole number of lines a pixel, from 16 "),
         ({"final_gather": 99.5}, "final_gather is 99.5"),
         ({"final_gather": True}, "final_gather is True"),
+        ({"denoise": True, "final_gather": None}, "denoise is of a final gather"),
+        ({"denoise": True, "samples": 1}, "denoise is of a final gather with 2 samples"),
         ({"quantity": "standard_error"}, "a final gather finds radiosity, irradiance, luminance, radiance, not 'standard_error'"),
     ],
 )

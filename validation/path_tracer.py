@@ -32,7 +32,7 @@ def irradiance(patches: rd.Patches, paths: int, batches: int = SEEDS, seed: int 
     with entered(device) as mi:
         import drjit as dr
 
-        world = _world(mi, patches.scene, upload, types)
+        world = world_of(mi, patches.scene, upload, types)
         integrator = mi.load_dict({"type": "path", "max_depth": -1, "rr_depth": 16})
         for batch in range(batches):
             point = on_patches(patches, paths, generator).reshape(-1, 3) + lift * normal
@@ -84,7 +84,8 @@ def _arriving(mi, dr, world, integrator, sampler, origin, normal):
     return dr.select(light.pdf > 0, direct, 0) + dr.pi * (radiance - emitted + straight)
 
 
-def _world(mi, scene: rd.Scene, upload, types):
+def world_of(mi, scene: rd.Scene, upload, types):
+    """Return a scene of Mitsuba's: a sheet for each radiating or absorbing side."""
     apart = APART * float(np.ptp(scene.bounds, axis=0).max())
     parts: dict = {"type": "scene"}
     for face in range(scene.n_faces):

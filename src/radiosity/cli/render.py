@@ -52,6 +52,7 @@ class Picture:
         final_gather: Lines for each pixel, such as 256, that find the light at the points that are seen: shadow rays go to lamps,
             and others read the solution. Shadows are sharp then, whatever the size of patches. Default: no such lines.
         seed: Of the final gather. Equal seeds give equal pictures.
+        denoise: Of the final gather: filter its noise within surfaces.
     """
 
     width: int | None = None
@@ -67,6 +68,7 @@ class Picture:
     samples: Count = None
     final_gather: Count = None
     seed: Seed = 0
+    denoise: Flag = False
 
     @property
     def range(self) -> tuple[float, float] | None:
@@ -141,6 +143,7 @@ def render(
                 samples=4 if picture.samples is None else picture.samples,
                 final_gather=picture.final_gather,
                 seed=picture.seed,
+                denoise=picture.denoise,
                 progress=progress if picture.final_gather else None,
             )
         tell(f"wrote {printable(path)}")

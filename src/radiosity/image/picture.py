@@ -8,6 +8,7 @@ from ..errors import OutputError
 from ..scene import Back, Camera
 from . import tone
 from .fit import fitted
+from .flat import planes
 from .gathered import Gathered
 from .lookup import Lookup
 from .quantity import Quantity
@@ -27,12 +28,16 @@ class Picture:
             0 where none is seen.
         cover: (height, width) share of the samples that see a patch; the rest see nothing, or an absorbing back.
         own_light: (height, width) bool, pixels on surfaces that emit.
+        variance: (height, width, n) of the mean of a pixel's samples, as if they were independent; NaN with one sample.
+        flat: (height, width) number of the plane of a surface where all samples see the same one; -1 elsewhere.
         camera: the camera that took it.
     """
 
     values: np.ndarray
     cover: np.ndarray
     own_light: np.ndarray
+    variance: np.ndarray
+    flat: np.ndarray
     camera: Camera
 
     @property
@@ -42,30 +47,43 @@ class Picture:
         return self.values[on & ~self.own_light] if (on & ~self.own_light).any() else self.values[on]
 
 
-def take(solution, shown: Quantity, camera: Camera, *, look: Lookup | Gathered, samples=4, hits=None) -> Picture:
+def take(solution, shown: Quantity, camera: Camera, *, look: Lookup | Gathered | None = None, samples=4, hits=None) -> Picture:
     """Take a picture with ``samples`` lines of sight a pixel, at the points of a Hammersley set (each row and column once).
 
     Args:
-        look: finds values from hits.
+        look: finds values from hits; by default those that are shown, smoothed.
     """
     samples = checked_samples(samples)
     hits, camera = hits or first_hits, check(camera)
+    look = look or Lookup(solution.patches, shown.values)
     sight = Sight(solution.patches.scene, look, hits, shown.adds)
     width, n = int(camera.width), int(camera.width) * int(camera.height)
     total, count, own = np.zeros((n, shown.values.shape[1])), np.zeros(n), np.zeros(n)
+    variance, flat, plane = np.full(total.shape, np.nan), np.full(n, -1), np.append(planes(solution.patches), -1)
     offsets = np.stack([(np.arange(samples) + 0.5) / samples, _bits_reversed(samples)], axis=1)
     step = max(1, CHUNK // samples)
     for begin in range(0, n, step):
         pixel = np.arange(begin, min(begin + step, n))
         x, y = (pixel % width)[:, None] + offsets[:, 0], (pixel // width)[:, None] + offsets[:, 1]
         rays = directions(camera, x.ravel(), y.ravel())
-        values, seen, lamps = sight(np.broadcast_to(camera.origin, rays.shape).copy(), rays, shown.own_light)
-        total[pixel] = values.reshape(len(pixel), samples, -1).sum(axis=1)
-        count[pixel] = seen.reshape(len(pixel), samples).sum(axis=1)
+        values, patch, lamps = sight(np.broadcast_to(camera.origin, rays.shape).copy(), rays, shown.own_light)
+        values, seen = values.reshape(len(pixel), samples, -1), plane[patch].reshape(len(pixel), samples)
+        total[pixel] = values.sum(axis=1)
+        count[pixel] = (seen >= 0).sum(axis=1)
+        if samples > 1:
+            variance[pixel] = values.var(axis=1, ddof=1) / samples
+        flat[pixel] = np.where((seen == seen[:, :1]).all(axis=1), seen[:, 0], -1)
         own[pixel] = lamps.reshape(len(pixel), samples).sum(axis=1)
     shape = (int(camera.height), width)
     values = total / np.maximum(count, 1)[:, None]
-    return Picture(values.reshape(*shape, -1), (count / samples).reshape(shape), (own > 0).reshape(shape), camera)
+    return Picture(
+        values.reshape(*shape, -1),
+        (count / samples).reshape(shape),
+        (own > 0).reshape(shape),
+        variance.reshape(*shape, -1),
+        flat.reshape(shape),
+        camera,
+    )
 
 
 def checked_samples(samples) -> int:

@@ -1,6 +1,7 @@
 """`render`: a picture of a solution, to look at (PNG) or to measure in (EXR)."""
 
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from ..errors import OutputError, RadiosityWarning, result_kept
 from ..scene import Camera
 from . import bitmap, tone
 from . import false_color as maps
+from .denoise import denoised
 from .gathered import Gathered, lines_of
 from .look import Look
 from .lookup import Lookup
@@ -39,6 +41,7 @@ def render(
     samples: int = 4,
     final_gather: int | None = None,
     seed: int = 0,
+    denoise: bool = False,
     progress=None,
     hits=None,
 ) -> np.ndarray:
@@ -57,6 +60,7 @@ def render(
         final_gather: lines a pixel, that find the light at the points that are seen: shadow rays go to lamps, and others read
             the solution. So shadows and images are sharp, whatever the size of patches. ``smooth`` then means nothing. For
             radiosity, irradiance, radiance and luminance.
+        denoise: filter the noise of the final gather within surfaces; edges stay sharp.
         seed, progress: of the final gather; see `radiosity.solve`.
         hits: ``hits(scene, origins, directions)`` with the result of `radiosity.tracing.first_hits.first_hits`, the default.
 
@@ -81,6 +85,8 @@ def render(
     require_results(solution)
     hits, samples = hits or first_hits, checked_samples(samples)
     lines = None if final_gather is None else lines_of(final_gather, samples)
+    if denoise and (lines is None or samples < 2):
+        raise OutputError("denoise is of a final gather with 2 samples a pixel or more; give final_gather, or leave it out")
     shown = choose(solution, quantity, band, single=false_color)
     view = choose_camera(solution, camera, width, height, hits)
     look: Lookup | Gathered = Lookup(solution.patches, shown.values, smooth)
@@ -88,9 +94,10 @@ def render(
         of_gather = {"lines": lines, "points": check(view).width * view.height * samples, "seed": seed, "progress": progress}
         look = Gathered.of(solution, look, quantity, band, single=false_color, **of_gather)
     picture = take(solution, shown, view, look=look, samples=samples, hits=hits)
+    picture = replace(picture, values=denoised(picture)) if denoise else picture
     facts = {"quantity": shown.title, "unit": shown.unit, "bands": ", ".join(shown.bands), "camera": repr(view)}
     if final_gather is not None:
-        facts |= {"final gather": f"{final_gather} lines a pixel", "seed": str(seed)}
+        facts |= {"final gather": f"{final_gather} lines a pixel", "seed": str(seed), "denoised": str(denoise)}
     if false_color:
         pixels = maps.colour(picture, title=shown.title, unit=shown.unit, limits=range, log=log, color_map=color_map)
     else:

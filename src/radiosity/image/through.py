@@ -42,7 +42,7 @@ class Sight:
         return replace(self.scene, transmittance=None)
 
     def __call__(self, origins: np.ndarray, rays: np.ndarray, marked: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return values, (m, n), whether a patch is seen, (m,), and whether a marked one is, (m,).
+        """Return values, (m, n), the first patch that is seen, (m,), -1 for none, and whether a marked one is, (m,).
 
         Args:
             marked: (n_patches,) bool.
@@ -50,12 +50,12 @@ class Sight:
         through = self.scene.transmittance
         if through is None:
             values, patch = self.look(self.hits(self.scene, origins, rays))
-            return values, patch >= 0, (patch >= 0) & marked[patch]
+            return values, patch, (patch >= 0) & marked[patch]
         step = STEP * max(self.scene.reach, float(np.abs(origins - self.scene.centre).max(initial=0.0)))
         rays = rays / np.linalg.norm(rays, axis=1, keepdims=True)
         going, share, last = np.arange(len(rays)), np.ones(len(rays)), np.full(len(rays), -1)
         total = np.zeros((len(rays), self.look.columns))
-        seen, own = np.zeros((2, len(rays)), bool)
+        nearest, own = np.full(len(rays), -1), np.zeros(len(rays), bool)
         for _ in range(MOST):
             met = self.hits(self._opaque, origins, rays[going])
             values, patch = self.look(met)
@@ -64,7 +64,7 @@ class Sight:
             shows = ~again & (patch >= 0) & ((t < HALF) | self.adds)
             here = going[shows]
             total[here] += share[here, None] * values[shows]
-            seen[here] = True
+            nearest[here] = np.where(nearest[here] < 0, patch[shows], nearest[here])
             own[here] |= marked[patch[shows]]
             on = again | ((t > 0) & ((t >= HALF) | self.adds))
             share[going] *= np.where(again, 1.0, t)
@@ -75,4 +75,4 @@ class Sight:
                 share[going] = 1.0
             if not len(going):
                 break
-        return total, seen, own
+        return total, nearest, own

@@ -82,7 +82,7 @@ class Tracing:
             shadow = trial.shadow(none, few if direct else none, squares=True)
             variance = np.stack([_variance(one, sums, pilot) for sums in (cosine, shadow)])
         shares = _shares(variance, one.sizes, has_targets=direct and chances.targets > 0)
-        receivers = Receivers(geometry, replicates, sensors=sensors, seed=seed, faces=faces)
+        receivers = one if replicates == 1 else Receivers(geometry, replicates, sensors=sensors, seed=seed, faces=faces)
         lines = Lines.of(receivers, chances, problem, method, seed, (Purpose.SENSORS, Purpose.SENSORS_SHADOW))
         lines = lines if direct else _without_direct(lines)
         whole = np.broadcast_to(reflected, (replicates, *reflected.shape[1:]))

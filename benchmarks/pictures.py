@@ -1,0 +1,107 @@
+"""RMS errors of pictures for CPU seconds, with and without a final gather, and of Mitsuba's path tracer: ``make bench-pictures``.
+
+The error is the RMS of (picture - truth) in linear radiance over all pixels that see no lamp, nor lie beside one, relative to the
+mean of the truth. The truth is two path traced pictures of other seeds, a and b; the mean of (picture - a)(picture - b) holds
+none of their own noise. CPU seconds of ours hold the solution.
+
+python benchmarks/pictures.py [--width 256] [--truth 256] [--scenes cornell-box room]
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import radiosity as rd
+from radiosity.device.backend import choose, entered, upload
+from radiosity.image import render
+from radiosity.image.lookup import Lookup
+from radiosity.image.picture import take
+from radiosity.image.quantity import choose as quantity
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from validation.path_tracer import WIDE, world_of
+
+SAMPLES = 64  # a pixel, of the path tracer
+AT_ONCE = 256
+OURS = (None, 256, 512, 1024)  # lines a pixel
+LINES = 1_000_000  # of the solution
+ROW = "  {:<34} {:>8} {:>9}"
+
+
+def used() -> float:
+    """CPU seconds of this process so far."""
+    times = os.times()
+    return times.user + times.system
+
+
+def traced(scene: rd.Scene, camera: rd.Camera, samples: int, seed: int) -> tuple[np.ndarray, float]:
+    """Return a path traced picture, in exitance, and its CPU seconds without those of the scene."""
+    low, high = scene.bounds
+    centre, factor = (low + high) / 2, WIDE / (high - low).max()  # see `validation.path_tracer._wide`
+    wide, device = replace(scene, vertices=(scene.vertices - centre) * factor), choose("cpu")
+    origin, target = ((np.subtract(place, centre) * factor).tolist() for place in (camera.origin, camera.target))
+    with entered(device) as mi:
+        world = world_of(mi, wide, upload, device.types)
+        place = mi.ScalarTransform4f().look_at(origin, target, list(camera.up))
+        film = {"type": "hdrfilm", "width": camera.width, "height": camera.height, "rfilter": {"type": "box"}}
+        clip = {"near_clip": 1e-5 * WIDE, "far_clip": 100 * WIDE}
+        view = {"type": "perspective", "fov": camera.fov, "fov_axis": "y", "to_world": place, "film": film, **clip}
+        sensor, integrator = mi.load_dict(view), mi.load_dict({"type": "path", "max_depth": -1, "rr_depth": 16})
+        begun, total = used(), np.zeros((camera.height, camera.width, scene.n_bands))
+        for done in range(0, samples, AT_ONCE):
+            step = min(samples - done, AT_ONCE)
+            picture = mi.render(world, sensor=sensor, integrator=integrator, spp=step, seed=seed + done)
+            total = total + step * np.array(picture, np.float64)[..., : scene.n_bands]
+        return np.pi * total / samples, used() - begun
+
+
+def without_lamps(scene: rd.Scene, camera: rd.Camera) -> np.ndarray:
+    """Return the pixels that neither see a lamp nor lie beside one, (height, width) bool."""
+    patches = rd.subdivide(scene, cells=1)
+    rough = rd.solve(patches, method="random-walk", rays=20_000)
+    shown = quantity(rough)
+    lamps = np.pad(take(rough, shown, camera, look=Lookup(patches, shown.values, smooth=False), samples=64).own_light, 1)
+    beside = [lamps[i : i + camera.height, j : j + camera.width] for i in range(3) for j in range(3)]
+    return ~np.any(beside, axis=0)
+
+
+def compare(name: str, width: int, truth: int) -> None:
+    """Print the rows of a scene."""
+    scene = rd.load_scene(name)
+    camera = replace(scene.cameras[0], width=width, height=round(width * scene.cameras[0].height / scene.cameras[0].width))
+    traced(scene, camera, 1, 0)  # kernels are compiled
+    one, other = (traced(scene, camera, truth, seed)[0] for seed in (10_000, 20_000_000))
+    mask = without_lamps(scene, camera)
+    level = float(((one + other) / 2)[mask].mean())
+
+    def error(picture: np.ndarray) -> str:
+        return f"{np.sqrt(max(((picture - one) * (picture - other))[mask].mean(), 0)) / level:.2%}"
+
+    picture, seconds = traced(scene, camera, SAMPLES, 5)
+    print(f"{name}, {camera.width} x {camera.height} pixels, truth of 2 x {truth} samples", flush=True)
+    print(ROW.format("", "CPU s", "RMS error"))
+    print(ROW.format(f"path tracer, {SAMPLES} samples a pixel", f"{seconds:.2f}", error(picture)), flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for lines in OURS:
+            for _ in range(2):  # the first compiles kernels
+                begun = used()
+                solution = rd.solve(scene, rays=LINES)
+                picture = render(solution, Path(folder) / "a.exr", camera=camera, final_gather=lines).astype(float)
+                seconds = used() - begun
+            words = "patches alone" if lines is None else f"final gather, {lines} lines a pixel"
+            print(ROW.format(words, f"{seconds:.2f}", error(picture)), flush=True)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--width", type=int, default=256)
+    parser.add_argument("--truth", type=int, default=256)
+    parser.add_argument("--scenes", nargs="+", default=["cornell-box", "room"])
+    given = parser.parse_args()
+    for scene_name in given.scenes:
+        compare(scene_name, given.width, given.truth)
