@@ -71,6 +71,19 @@ def test_quanta_replay_a_run_bit_for_bit(monkeypatch):
     assert first.quanta > budgets.first_stage(2, len(patches))  # several stages were replayed
 
 
+@pytest.mark.parametrize("method", ["random-walk", "gather"])
+def test_quanta_a_little_above_a_rung_are_met(method):
+    """A run to so many lines may end at a rung within a hundredth of them. One to quanta repeats a run, and may not."""
+    patches = rd.subdivide(rd.load_scene("room"), cells=2)
+    quanta = 66_000  # a rung is at 2^16
+    found = rd.solve(patches, method, quanta=quanta, replicates=16)
+    assert found.quanta == quanta
+    at_once = rd.solve(patches, method, rays=found.rays, replicates=16)
+    again = rd.solve(patches, method, quanta=at_once.quanta, replicates=16)
+    assert again.quanta == at_once.quanta
+    np.testing.assert_array_equal(again.irradiance, at_once.irradiance)
+
+
 def test_coherent_firing_traces_the_same_lines():
     patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
     plain = rd.solve(patches, "random-walk", quanta=8_000_000, replicates=1)

@@ -137,18 +137,21 @@ class Progressed:
     slope: float = 0.5
 
 
-def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, most: float, *, replay: bool) -> int | None:
+def next_quanta(
+    budget: Budget, replicates: int, first: int, at: Progressed, most: float, *, replay: bool, exact: bool = False
+) -> int | None:
     """Return N of the next stage, or None where the budget is used up.
 
     The stages of any run are the rungs of the ladder below its last N, then N. So N alone replays a run, also where bands make
     the result depend on the stages (``replay``); there a stage between two rungs is the last. Integers alone do not depend on
-    stages, and a run of them may go on from any N. A replicate counts ``most`` lines at most.
+    stages, and a run of them may go on from any N. A replicate counts ``most`` lines at most. A stage of a hundredth more lines
+    is left out, unless N itself was asked for (``exact``): that repeats a run.
     """
     if replay and not on_ladder(at.quanta, first):
         return None
     rung = rung_after(at.quanta, first)
     wanted = _wanted(budget, rung, at, replay)
-    if wanted <= at.quanta * 1.01:
+    if wanted <= at.quanta * (1.0 if exact else 1.01):
         return None
     target = min(rung, wanted)
     if at.lines / replicates * target / at.quanta > most:

@@ -160,7 +160,8 @@ class Run(Generic[R]):
                 steps = self._climb(target)
                 target = steps[-1]
                 continue
-            target = next_quanta(self.ladder, self.replicates, self.rung, at, self.most, replay=replay)
+            exact = self.budget.quanta is not None
+            target = next_quanta(self.ladder, self.replicates, self.rung, at, self.most, replay=replay, exact=exact)
             steps = [target] if target else []
             if target and large and self.replicates > 1:
                 snapshot.settle()
