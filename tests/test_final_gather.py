@@ -255,3 +255,10 @@ def test_the_command(tmp_path, standing):
         shown = np.asarray(picture)
     wanted = render(rd.load_solution(tmp_path / "a.npz"), width=8, height=6, final_gather=32, seed=5)
     assert np.array_equal(shown, wanted)
+
+
+def test_a_seed_without_a_gather_is_refused(tmp_path, standing, capsys):
+    solved(standing, rays=2000).save(tmp_path / "a.npz")
+    assert main([str(word) for word in ("render", tmp_path / "a.npz", "-o", tmp_path / "a.png", "--seed", 5)]) == 1
+    assert "--seed 5 is that of a final gather: give --final-gather N" in " ".join(capsys.readouterr().err.split())
+    assert not (tmp_path / "a.png").exists()

@@ -114,6 +114,8 @@ def render(
             raise OutputError(f"{path}: pictures are .png or .exr; meshes and tables come from `radiosity solve`")
     if not output:
         raise OutputError("no output; name a picture with -o, such as -o view.png")
+    if picture.seed and picture.final_gather is None:
+        raise OutputError(f"--seed {picture.seed} is that of a final gather: give --final-gather N, or leave it out")
     interval = picture.range
 
     import radiosity as rd
