@@ -259,6 +259,6 @@ def test_the_command(tmp_path, standing):
 
 def test_a_seed_without_a_gather_is_refused(tmp_path, standing, capsys):
     solved(standing, rays=2000).save(tmp_path / "a.npz")
-    assert main([str(word) for word in ("render", tmp_path / "a.npz", "-o", tmp_path / "a.png", "--seed", 5)]) == 1
+    assert main([str(word) for word in ("render", tmp_path / "a.npz", "-o", tmp_path / "a.png", "--seed", 5)]) == 2
     assert "--seed 5 is that of a final gather: give --final-gather N" in " ".join(capsys.readouterr().err.split())
     assert not (tmp_path / "a.png").exists()
