@@ -95,7 +95,7 @@ def test_a_refine_check_whose_table_cannot_be_written(capsys, tmp_path, monkeypa
 
 
 def test_pictures_come_last(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr(still, "write", lambda *_: None)
+    monkeypatch.setattr(still, "write", lambda *_, **options: None)
     names = ("a.png", "b.glb", "c.exr", "d.npz")
     status, out, _ = run(capsys, *RUN, "-o", *(tmp_path / name for name in names))
     assert status == 0
@@ -104,7 +104,7 @@ def test_pictures_come_last(capsys, tmp_path, monkeypatch):
 
 def test_even_a_picture_that_ends_the_process_leaves_the_rest(tmp_path):
     """As pictures of some scenes did."""
-    code = "import os; from radiosity.cli import main; from radiosity.image import still; still.write = lambda *_: os.abort(); "
+    code = "import os; from radiosity.cli import main; from radiosity.image import still; still.write = lambda *_, **options: os.abort(); "
     code += "main()"
     words = [*RUN, "-o", str(tmp_path / "a.png"), str(tmp_path / "b.npz"), str(tmp_path / "c.csv")]
     done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
