@@ -104,8 +104,8 @@ def test_pictures_come_last(capsys, tmp_path, monkeypatch):
 
 def test_even_a_picture_that_ends_the_process_leaves_the_rest(tmp_path):
     """As pictures of some scenes did."""
-    code = "import os; from radiosity.cli import main; from radiosity.image import still; still.write = lambda *_, **__: os.abort(); "
-    code += "main()"
+    code = "import os; from radiosity.cli import main; from radiosity.image import still; "
+    code += "still.write = lambda *_, **__: os.abort(); main()"
     words = [*RUN, "-o", str(tmp_path / "a.png"), str(tmp_path / "b.npz"), str(tmp_path / "c.csv")]
     done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
     assert done.returncode == -signal.SIGABRT
