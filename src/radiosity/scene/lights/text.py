@@ -113,6 +113,6 @@ class Words:
             raise SceneError(f"{self.source}: ends before {what}: {count} numbers expected, {self.left} are left; is it cut off?")
         result = []
         for word, line in self.words[self.at : self.at + count]:
-            result.append(number(word, f"{self.source}, line {line}", f"one of {what}"))
+            result.append(number(word, f"{self.source}, line {line}", what if count == 1 else f"one of {what}"))
         self.at += count
         return result
