@@ -120,7 +120,7 @@ def test_a_tilt_at_measurement_is_told(photometry):
 
 FAULTS = {
     "symmetry": ({3: "5"}, "line 3: the symmetry (Isym) is 5"),
-    "word": ({24: "one"}, "line 24: the conversion factor is 'one'"),
+    "word": ({24: "one"}, "line 24: the conversion factor: there is 'one'"),
     "lamps": ({29: "0"}, "line 29: the flux of all lamps of set 1 is 0"),
     "planes": ({4: "9000"}, "line 4: the number of planes C (Mc) is 9000"),
     "sets": ({26: "-1"}, "line 26: the number of lamp sets is -1"),

@@ -186,7 +186,7 @@ def test_type_b_of_one_side_is_the_same_on_the_other(photometry):
 
 FAULTS = {
     "no TILT": (lambda text: text.replace("TILT", "TILTED"), "no line TILT="),
-    "word": (lambda text: text.replace("\n0\n", "\nzero\n"), "line 9: one of the horizontal angles is 'zero'"),
+    "word": (lambda text: text.replace("\n0\n", "\nzero\n"), "line 9: the horizontal angles: there is 'zero', which is no"),
     "cut": (lambda text: text[:-40], "is it cut off"),
     "type": (lambda text: text.replace(" 1 2 0 0 0", " 4 2 0 0 0"), "photometric type"),
     "unit": (lambda text: text.replace(" 1 2 0 0 0", " 1 3 0 0 0"), "unit"),

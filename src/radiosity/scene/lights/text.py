@@ -57,7 +57,7 @@ def number(word: str, where: str, what: str, comma: bool = False) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value) or "_" in text:
-        raise SceneError(f"{where}: {what} is '{printable(text[:SHOWN])}', which is no number")
+        raise SceneError(f"{where}: {what}: there is '{printable(text[:SHOWN])}', which is no number")
     return value
 
 
@@ -113,6 +113,6 @@ class Words:
             raise SceneError(f"{self.source}: ends before {what}: {count} numbers expected, {self.left} are left; is it cut off?")
         result = []
         for word, line in self.words[self.at : self.at + count]:
-            result.append(number(word, f"{self.source}, line {line}", what if count == 1 else f"one of {what}"))
+            result.append(number(word, f"{self.source}, line {line}", what))
         self.at += count
         return result
