@@ -24,6 +24,7 @@ FLOORS = (  # a folder, or a file of the package's own folder, imports what is a
     "algorithms",
     "run",
     "image",
+    "comparison",  # of two solutions; its pictures take cameras and false colours
     "exchange",  # heat from counted lines: it runs them, and its pictures take cameras and false colours
     "sensors",  # light at points: they run a solution's scene once more
     "lab",

@@ -48,6 +48,13 @@ def test_the_office_is_measured_as_the_page_shows(tmp_path, monkeypatch):
     assert (tmp_path / "office.png").exists()
 
 
+def test_two_solutions_are_compared_as_the_page_shows(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (block,) = blocks(DOCS / "compare.md")
+    exec(compile(block, "compare.md", "exec"), {"__name__": "compare"})
+    assert (tmp_path / "difference.png").exists()
+
+
 def test_parts_of_a_run_are_merged_as_the_page_shows(tmp_path, monkeypatch):
     """To the bits of one run."""
     monkeypatch.chdir(tmp_path)

@@ -18,6 +18,8 @@ from .hooks import HOOKS
 if TYPE_CHECKING:
     __version__: str
 
+    from .comparison.compare import compare
+    from .comparison.result import Comparison
     from .diagnostics.check import check
     from .exchange.compute import view_factors
     from .exchange.gebhart import GebhartFactors, gebhart_factors
@@ -69,6 +71,8 @@ HOOKS["gather"] = _gather  # of pictures with a final gather
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {
+    "comparison.compare": ("compare",),
+    "comparison.result": ("Comparison",),
     "diagnostics.check": ("check",),
     "exchange.compute": ("view_factors",),
     "exchange.gebhart": ("GebhartFactors", "gebhart_factors"),
@@ -108,6 +112,7 @@ __all__ = [
     "Back",
     "Baseline",
     "Camera",
+    "Comparison",
     "DeviceError",
     "GebhartFactors",
     "GlareRating",
@@ -132,6 +137,7 @@ __all__ = [
     "ViewFactors",
     "check",
     "cie_sky",
+    "compare",
     "epw_sky",
     "gebhart_factors",
     "load_exchange",

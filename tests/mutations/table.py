@@ -2395,4 +2395,18 @@ MISTAKES = (
         ("test_light_reports.py",),
         "of several rows an hour the first is taken",
     ),
+    Mistake(
+        "comparison/significance.py",
+        "return mean, nu, float(chi2.sf(nu * mean, nu))",
+        "return mean, nu, float(chi2.sf(count * mean, count))",
+        ("test_compare.py",),
+        "means that share lines count as independent when two solutions are compared",
+    ),
+    Mistake(
+        "comparison/pairing.py",
+        "np.where(inverted, 2 / 3, 1 / 3)",
+        "np.where(inverted, 1 / 3, 2 / 3)",
+        ("test_compare.py",),
+        "solutions that are cut otherwise are compared at points of neighbouring patches",
+    ),
 )

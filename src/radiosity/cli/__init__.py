@@ -4,8 +4,8 @@
 def main(arguments: list[str] | None = None) -> int:
     """Run ``radiosity`` and return its exit status.
 
-    0: done; 1: it could not be done, or `check` and `doctor` found something serious; 2: the input is wrong;
-    130: interrupted, with all results so far written; 143 and 129: interrupted by SIGTERM and SIGHUP.
+    0: done; 1: it could not be done, `check` and `doctor` found something serious, or `compare` a difference;
+    2: the input is wrong; 130: interrupted, with all results so far written; 143 and 129: interrupted by SIGTERM and SIGHUP.
 
     Without ``arguments`` it is the program itself: it takes those of the command line, and Ctrl-C has no effect after it.
     """

@@ -10,6 +10,7 @@ from cyclopts import App, CoercionError, CycloptsError
 from ..errors import INSTALL, DeviceError, RadiosityError, RadiosityWarning
 from . import interrupts
 from .check import check
+from .compare import compare
 from .conductors import conductors
 from .doctor import doctor
 from .exchange import exchange
@@ -41,7 +42,7 @@ app = App(
     suppress_keyboard_interrupt=False,
 )
 for place, command in enumerate(
-    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, check, experiment, doctor)
+    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, compare, check, experiment, doctor)
 ):
     app.command(command, sort_key=place)
 

@@ -33,14 +33,24 @@ def of_scene(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndar
 
 def of_rows(solution, level: float, quantity: str) -> "Ends":
     """The errors and intervals of the rows of tables (`Solution.sides`); ``quantity`` may also be "absorbed"."""
+    sides = solution.sides
+    return _of_sets(solution, level, quantity, sides.row, len(sides.surface), row_powers(solution))
+
+
+def row_powers(solution) -> np.ndarray | None:
+    """What the rows of tables receive and reflect in each replicate, (2, replicates, n_rows, n_bands) W or lm.
+
+    NaN where a file holds no powers of sides, and None where it holds no powers.
+    """
     sides, power = solution.sides, solution.surface_power
-    if power is not None:
-        power = power[:, :, sides.surface]
-        back = np.array([side == BACK for side in sides.side])
-        parts = ~sides.whole
-        of_sides = solution.side_power
-        power[:, :, parts] = np.nan if of_sides is None else of_sides[:, :, (2 * sides.surface + back)[parts]]
-    return _of_sets(solution, level, quantity, sides.row, len(sides.surface), power)
+    if power is None:
+        return None
+    power = power[:, :, sides.surface]
+    back = np.array([side == BACK for side in sides.side])
+    parts = ~sides.whole
+    of_sides = solution.side_power
+    power[:, :, parts] = np.nan if of_sides is None else of_sides[:, :, (2 * sides.surface + back)[parts]]
+    return power
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,1 @@
+"""Comparisons of two solutions of one scene: differences, and whether their errors explain them."""
