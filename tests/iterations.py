@@ -43,4 +43,4 @@ def walked() -> dict[str, tuple[rd.Patches, np.ndarray]]:
     """Patches of three scenes, and the power that their surfaces receive from random walks, (replicates, n_surfaces)."""
     scenes = {"room": rd.load_scene("room"), "open": open_room(), "two-sided": open_room(two_sided=True)}
     cut = {name: rd.subdivide(scene, cells=3) for name, scene in scenes.items()}
-    return {name: (p, powers(rd.solve(p, "random-walk", rays=8_000_000, replicates=16))) for name, p in cut.items()}
+    return {name: (p, powers(rd.solve(p, "random-walk", rays=4_000_000, replicates=16))) for name, p in cut.items()}

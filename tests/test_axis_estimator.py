@@ -21,7 +21,7 @@ from radiosity.algorithms.walks.scores import Scores
 from radiosity.device.backend import upload
 from radiosity.method.estimator import ABSORPTIONS, ESTIMATORS
 
-REPLICATES, RAYS = 32, 300_000
+REPLICATES, RAYS = 32, 150_000
 RHO, LIGHT = np.array([0.9, 0.1, 0.8, 0.2, 0.7, 0.3]), np.array([1.0, 0.1, 0.2, 0.5, 0.1, 2.0])
 START_UP = 1e-4  # of the light, that iterations may leave out as they begin (docs/iterations.md); some have no variance here
 BOUND = critical(REPLICATES, 6)

@@ -24,15 +24,15 @@ SCHEMES = ("full-matrix", "progressive")
 
 @pytest.fixture(scope="module")
 def room():
-    """324 patches, and their solution by random walks (0.2 %)."""
+    """162 patches, and their solution by random walks (0.4 %)."""
     patches = rd.subdivide(rd.load_scene("room"), cells=3)
-    return patches, rd.solve(patches, "random-walk", rays=8_000_000, seed=99)
+    return patches, rd.solve(patches, "random-walk", rays=2_500_000, seed=99)
 
 
 @pytest.fixture(scope="module")
 def box():
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=4)
-    return patches, rd.solve(patches, "random-walk", rays=8_000_000, seed=99)
+    return patches, rd.solve(patches, "random-walk", rays=2_500_000, seed=99)
 
 
 def error(solution: rd.Solution, reference: rd.Solution) -> float:

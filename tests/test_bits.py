@@ -63,7 +63,7 @@ def test_quanta_replay_a_run_bit_for_bit(monkeypatch):
     monkeypatch.setattr(budgets, "FIRST_STAGE", 1 << 17)
     for scene in ("room", "cornell-box"):
         patches = rd.subdivide(rd.load_scene(scene), cells=5)
-        for budget in ({"seconds": 0.5}, {"error": 0.02}, {"rays": 2_000_000}):
+        for budget in ({"seconds": 0.2}, {"error": 0.03}, {"rays": 1_000_000}):
             first = rd.solve(patches, replicates=2, **budget)
             again = rd.solve(patches, replicates=2, quanta=first.quanta)
             assert np.array_equal(first.irradiance, again.irradiance)
@@ -86,8 +86,8 @@ def test_quanta_a_little_above_a_rung_are_met(method):
 
 def test_coherent_firing_traces_the_same_lines():
     patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
-    plain = rd.solve(patches, "random-walk", quanta=8_000_000, replicates=1)
-    coherent = rd.solve(patches, quanta=8_000_000, replicates=1, coherent=True)
+    plain = rd.solve(patches, "random-walk", quanta=2_000_000, replicates=1)
+    coherent = rd.solve(patches, quanta=2_000_000, replicates=1, coherent=True)
     difference = np.abs(plain.state["arrivals"].astype(np.int64) - coherent.state["arrivals"].astype(np.int64)).sum()
     assert difference < 1e-5 * plain.rays  # ties alone
     assert coherent.provenance["choices"]["coherent"]

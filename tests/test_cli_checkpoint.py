@@ -186,8 +186,19 @@ def test_signals_leave_the_state(tmp_path, number, status, method):
     assert np.array_equal(more.irradiance, rd.solve(cut, method, quanta=more.quanta, replicates=2).irradiance)
 
 
-@pytest.mark.parametrize("numbers", [(signal.SIGHUP,), (signal.SIGHUP, signal.SIGHUP), (signal.SIGTERM, signal.SIGHUP)], ids=str)
-@pytest.mark.parametrize("piped", [False, True])
+ENDS = ((signal.SIGHUP,), (signal.SIGHUP, signal.SIGHUP), (signal.SIGTERM, signal.SIGHUP))
+USUAL = ((False, ENDS[0]), (True, ENDS[1]), (False, ENDS[2]))  # each end and each kind of reader; all pairs with the slow tests
+
+
+@pytest.mark.parametrize(
+    ("piped", "numbers"),
+    [
+        pytest.param(piped, numbers, marks=[] if (piped, numbers) in USUAL else pytest.mark.slow)
+        for piped in (False, True)
+        for numbers in ENDS
+    ],
+    ids=str,
+)
 def test_a_terminal_that_goes_away(tmp_path, numbers, piped):
     """What there is is written, though nobody can be told; and though sessions that end send more than one signal."""
     kept, output, (ours, theirs) = tmp_path / "room.checkpoint.npz", tmp_path / "room.csv", os.pipe() if piped else os.openpty()

@@ -381,8 +381,10 @@ def test_no_progress_where_nobody_looks(capsys):
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize("full", [False, True])
+@pytest.mark.parametrize(
+    ("full", "unbuffered"),
+    [(False, ""), (True, "1"), pytest.param(False, "1", marks=pytest.mark.slow), pytest.param(True, "", marks=pytest.mark.slow)],
+)
 def test_outputs_are_written_where_nobody_reads_the_report(tmp_path, unbuffered, full):
     """Of a pipe whose reader has gone, and of a full disk."""
     if full and not Path("/dev/full").exists():

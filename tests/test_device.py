@@ -158,9 +158,11 @@ def test_other_seeds_and_scenes_compile_no_new_kernel():
     assert len(kernels("labyrinth-0.9", 3) - first) <= 2  # sequences of another length, at most
 
 
+@pytest.mark.parametrize("turns", [1, pytest.param(2, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("order", ["breadth-first", "depth-first"])
-def test_kernels_stay_within_their_arrays(order):
-    """Dr.Jit's debug mode checks every gather and scatter: open, two-sided, passing and coloured scenes."""
+def test_kernels_stay_within_their_arrays(order, turns):
+    """Dr.Jit's debug mode checks every gather and scatter: open, two-sided, passing and coloured scenes, one replicate and three
+    in turn."""
     code = (
         "import sys; sys.path.insert(0, 'tests')\n"
         "import radiosity as rd, drjit as dr\n"
@@ -169,8 +171,8 @@ def test_kernels_stay_within_their_arrays(order):
         "scenes = [stack(back) for back in rd.Back] + [scene_of_all_kinds(), rd.load_scene('room'), rd.load_scene('labyrinth')]\n"
         f"order = {order!r}\n"
         "if order == 'breadth-first': scenes.append(rd.load_scene('cornell-box'))\n"
-        "for scene in scenes:\n"
-        "    for replicates in (1, 3):\n"
+        "for k, scene in enumerate(scenes):\n"
+        f"    for replicates in [(1, 3)[(k + turn) % 2] for turn in range({turns})]:\n"
         "        rd.solve(rd.subdivide(scene, cells=3), quanta=20_000, replicates=replicates, order=order)\n"
         "print('done')"
     )

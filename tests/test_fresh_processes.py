@@ -89,7 +89,10 @@ def run(forks, folder: Path, scene: str, commands) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("case", CASES)
+LONGER = ("lines of one, passes", "lines of plates")  # other lines are counted in the cases beside them
+
+
+@pytest.mark.parametrize("case", [pytest.param(case, marks=pytest.mark.slow) if case in LONGER else case for case in CASES])
 def test_cases_that_ended_the_process(forks, tmp_path, case):
     scene, commands = CASES[case]
     assert set(run(forks, tmp_path, scene, commands)) <= {"done", "suspicious"}

@@ -17,7 +17,10 @@ def difference(patches, found, expected) -> float:
     return float(np.sqrt((area * (found - expected) ** 2).sum(0) / (area * (expected - patches.emission) ** 2).sum(0)).max())
 
 
-@pytest.fixture(scope="module", params=[("room", 1.0), ("cornell-box", 0.14)], ids=lambda param: param[0])
+WALKED = (("room", 1.0), ("cornell-box", 0.14))
+
+
+@pytest.fixture(scope="module", params=WALKED, ids=lambda param: param[0])
 def walked(request):
     """Patches and their radiosity, within 0.3 %."""
     name, size = request.param
@@ -27,8 +30,21 @@ def walked(request):
     return patches, solution.radiosity
 
 
+LONGER = (("room", "error-power"), ("cornell-box", "brightness-factor"))  # each refinement and scene is in another pair, too
+
+
 # 10 % at the largest epsilon, and at the smallest 3 %: what 16 rays leave of the shadows of patches of this size
-@pytest.mark.parametrize("refinement", REFINEMENTS)
+@pytest.mark.parametrize(
+    ("walked", "refinement"),
+    [
+        pytest.param(
+            scene, refinement, marks=pytest.mark.slow if (scene[0], refinement) in LONGER else (), id=f"{scene[0]}-{refinement}"
+        )
+        for scene in WALKED
+        for refinement in REFINEMENTS
+    ],
+    indirect=["walked"],
+)
 def test_random_walks_agree_the_better_the_smaller_epsilon(walked, refinement, geometry_of):
     patches, expected = walked
     errors = []

@@ -64,7 +64,7 @@ def test_coverage_of_four_scenes(name, lines):
 def dim():
     """The room with many small patches and few lines."""
     patches = rd.subdivide(rd.load_scene("room"), cells=12)
-    return rd.solve(patches, "random-walk", rays=60_000), rd.solve(patches, "random-walk", rays=10_000_000, seed=5).irradiance
+    return rd.solve(patches, "random-walk", rays=60_000), rd.solve(patches, "random-walk", rays=4_000_000, seed=5).irradiance
 
 
 def test_no_line_is_no_certain_zero(dim):
@@ -117,7 +117,7 @@ def test_without_replicates_intervals_are_unknown():
 def test_surfaces_have_the_error_of_their_own_means():
     """Not that of patches that are taken for independent: in a maze one shift moves them all."""
     patches = rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=1)
-    solutions = [rd.solve(patches, "random-walk", quanta=4096, seed=seed) for seed in range(60)]
+    solutions = [rd.solve(patches, "random-walk", quanta=2048, seed=seed) for seed in range(50)]
     inside = []
     for solution in solutions:
         low, high = solution.surface_interval(0.9, "radiosity")
@@ -207,12 +207,12 @@ def test_target_errors_of_three_scenes(name, target):
 
 def test_a_surface_reaches_its_error():
     patches = rd.subdivide(rd.load_scene("room"), cells=4)
-    solution = rd.solve(patches, "random-walk", error=0.004, error_of="surface:*box")
+    solution = rd.solve(patches, "random-walk", error=0.006, error_of="surface:*box")
     rows = {row["surface"]: row["error"] for row in solution.surface_table()}
-    assert max(rows["tall box"], rows["low box"]) < 0.008
-    usual = rd.solve(patches, "random-walk", error=0.004)
+    assert max(rows["tall box"], rows["low box"]) < 0.012
+    usual = rd.solve(patches, "random-walk", error=0.006)
     assert solution.rays > 1.5 * usual.rays  # boxes are small and dim
-    assert solution.provenance["budget"] == {"error": 0.004, "error_of": "surface:*box"}
+    assert solution.provenance["budget"] == {"error": 0.006, "error_of": "surface:*box"}
 
 
 @pytest.mark.parametrize(
@@ -255,7 +255,7 @@ def test_a_surface_without_an_error_to_reach():
 
 def test_coloured_runs_that_stopped_between_two_rungs_replay():
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=2)
-    solution = rd.solve(patches, "random-walk", error=0.0018)
+    solution = rd.solve(patches, "random-walk", error=0.0035)
     assert solution.quanta & (solution.quanta - 1)
     again = rd.solve(patches, "random-walk", quanta=solution.quanta)
     assert np.array_equal(solution.irradiance, again.irradiance)

@@ -1,8 +1,8 @@
 """Unbiased where the derivation says so, and the same test rejects what is wrong.
 
 Each test compares the mean of independent short runs (replicates, each with a key and rounding offsets of its own) with a
-reference, surface by surface: the exact solution of the cube, and of the room one of 32 million lines of Halton numbers, whose
-error is a small part of theirs. Student's t, alpha = 1e-3 in all, shared out among the surfaces (Bonferroni). There are 4096 runs
+reference, surface by surface: the exact solution of the cube, and of the room one of 16 million lines of Halton numbers, whose
+error is a small part of theirs. Student's t, alpha = 1e-3 in all, shared out among the surfaces (Bonferroni). There are 2048 runs
 of some lines a patch, which show a bias of second order too, and 512 of 40 000 lines. Numbers are random, for which the
 derivations of docs/iterations.md hold; seeds are fixed.
 """
@@ -21,7 +21,7 @@ import radiosity as rd
 from radiosity.algorithms.iterations.exchange import LINE, Exchange
 from radiosity.tally.shooter import Ends, Shooter
 
-RUNS, LONG_RUNS, SHORT_RUNS, ALPHA = 4096, 512, 768, 1e-3
+RUNS, LONG_RUNS, SHORT_RUNS, ALPHA = 2048, 512, 768, 1e-3
 UNBIASED = ("incremental", "incremental, both ends", "incremental, control variate", "regular, warm-up")
 CONSISTENT = ("regular", "regular, both ends", "regular, control variate", "regular, everything")
 
@@ -30,7 +30,7 @@ CONSISTENT = ("regular", "regular, both ends", "regular, control variate", "regu
 def room():
     """Few patches with unlike reflectances, an opening, and the power that surfaces receive."""
     patches = rd.subdivide(open_room(), cells=1)
-    return patches, powers(rd.solve(patches, "random-walk", rays=32_000_000, replicates=16)).mean(axis=0)
+    return patches, powers(rd.solve(patches, "random-walk", rays=16_000_000, replicates=16)).mean(axis=0)
 
 
 @pytest.fixture(scope="module")

@@ -30,7 +30,7 @@ def sweeps_of(case: Case) -> tuple[rd.Solution, int]:
 
 
 def test_three_kills(tmp_path):
-    case = Case("cornell-box", "random-walk", 1 << 20)
+    case = Case("cornell-box", "random-walk", 1 << 19)
     whole, sweeps = sweeps_of(case)
     found, kills = killed(case, tmp_path, max(2, sweeps // 4), 1, 3)
     assert kills == 3

@@ -5,13 +5,14 @@ Slopes have five replicates; an interval at alpha = 1e-3 (Student, 4 degrees of 
 """
 
 import csv
+import shutil
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.lab import cases, slopes
+from radiosity.lab import cases, pictures, slopes
 from radiosity.lab.bits import bits
 from radiosity.lab.calibration import LEVELS, coverage
 from radiosity.lab.discretisation import discretisation
@@ -23,6 +24,7 @@ from radiosity.lab.study import Arm, Protocol
 SHORT = Protocol(last=16, reference=20)
 WIDER = 8.61 / 2.776
 SCENES = ("labyrinth-0.1", "labyrinth-0.5", "labyrinth-0.9", "room")
+FEW = ("labyrinth-0.9", "room")  # of the experiments but that of the numbers; all scenes with the slow tests
 
 
 @pytest.fixture(scope="module")
@@ -30,8 +32,17 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("study")
 
 
+@pytest.fixture(scope="module", params=[FEW, pytest.param(SCENES, marks=pytest.mark.slow)], ids=["few", "all"])
+def scenes(request):
+    """The scenes of the experiments, within the modules too."""
+    with pytest.MonkeyPatch.context() as patch:
+        for number in (1, 2, 3):
+            patch.setattr(module(number), "SCENES", request.param)
+        yield request.param
+
+
 @pytest.fixture(scope="module")
-def study(folder):
+def study(folder, scenes):
     known = {}
 
     def get(number):
@@ -40,6 +51,17 @@ def study(folder):
         return known[number]
 
     return get
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    """What draws the picture of the scenes, once for all reports."""
+    made = pictures.scenes(tmp_path_factory.mktemp("drawn") / "scenes", SHORT)
+
+    def draw(path, protocol):
+        return [shutil.copy(picture, path.with_suffix(picture.suffix)) for picture in made]
+
+    return draw
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -71,16 +93,15 @@ def test_global_lines_without_a_first_shot_are_clearly_worse_in_the_room(study):
         assert repaired < worse / 3
 
 
-@pytest.mark.parametrize("scene", SCENES)
-def test_order_has_no_influence(study, scene):
+def test_order_has_no_influence(study, scenes):
     """To the bit on one machine; and the slope of an iteration, which draws lines anew, is not less steep."""
     results = study(1)
-    for name in ("WDRS", "Shirley", "Feda-Purgathofer"):
+    for scene in scenes:
         for kind in ("random", "Halton"):
-            assert results.equal(scene, f"{name}, {kind}", f"random walk, {kind}")
-    for kind in ("random", "Halton"):
-        ray, walk = results.slope(scene, f"stochastic ray, {kind}"), results.slope(scene, f"random walk, {kind}")
-        assert ray.value - walk.value < WIDER * np.hypot(ray.half, walk.half)
+            for name in ("WDRS", "Shirley", "Feda-Purgathofer"):
+                assert results.equal(scene, f"{name}, {kind}", f"random walk, {kind}"), scene
+            ray, walk = results.slope(scene, f"stochastic ray, {kind}"), results.slope(scene, f"random walk, {kind}")
+            assert ray.value - walk.value < WIDER * np.hypot(ray.half, walk.half), scene
 
 
 @pytest.mark.parametrize("number", [n for n in EXPERIMENTS if hasattr(module(n), "SCENES")])
@@ -158,12 +179,13 @@ def test_discretisation_error_falls_with_the_mesh_and_is_less_for_continuous_wal
     ("number", "text"),
     [(2, "first shot"), pytest.param(5, "All runs of one seed end in the same bits", marks=pytest.mark.slow)],
 )
-def test_the_command_writes_a_report_that_stands_alone(study, folder, capsys, monkeypatch, number, text):
+def test_the_command_writes_a_report_that_stands_alone(study, folder, drawn, capsys, monkeypatch, number, text):
     """That of experiment 2 from series that the tests above have made."""
     from radiosity.cli.app import run as command
 
     for name in ("study", "make"):
         monkeypatch.setattr(f"radiosity.lab.{name}.QUICK", SHORT)
+    monkeypatch.setattr(pictures, "scenes", drawn)
     if number == 2:
         study(2)
     assert command(["experiment", str(number), "--quick", "-o", str(folder)]) == 0
@@ -207,12 +229,13 @@ def test_a_baseline_that_does_not_fit_has_a_row_that_says_so():
     assert "GiB are free" in found
 
 
-def test_figures_tables_and_stores(tmp_path, monkeypatch):
+def test_figures_tables_and_stores(tmp_path, drawn, monkeypatch):
     import xarray
 
     from radiosity.lab.make import make
 
     monkeypatch.setattr(module(4), "SCENES", ("labyrinth-0.1", "room"))
+    monkeypatch.setattr(pictures, "scenes", drawn)
     protocol = Protocol(last=12, replicates=2, reference=2)
     report = make([4], protocol, tmp_path, "radiosity experiment 4", lambda *told: None, image=True)
     assert report.read_text().count("<svg") == 2

@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -44,13 +44,12 @@ def older(docstring: str) -> str | None:
     return None if found is None else f"{found}: say {OLDER[found]}"
 
 
-def docstrings(source: str) -> Iterator[tuple[int, str]]:
-    """Yield line and text of every docstring of a module."""
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            text = ast.get_docstring(node)
-            if text:
-                yield node.body[0].lineno, text
+@cache
+def docstrings(source: str) -> tuple[tuple[int, str], ...]:
+    """Return line and text of every docstring of a module."""
+    kinds = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+    nodes = (node for node in ast.walk(ast.parse(source)) if isinstance(node, kinds))
+    return tuple((node.body[0].lineno, text) for node in nodes if (text := ast.get_docstring(node)))
 
 
 def faults(source: str, fault) -> list[tuple[int, str]]:

@@ -63,7 +63,7 @@ def test_the_furnace_is_exact_since_rows_sum_to_one(mean_reflectance, lines):
 @pytest.mark.parametrize("scene", ["room", "open", "two-sided"])
 def test_surfaces_receive_what_the_firing_engine_says(reference, scene, lines):
     patches, expected = reference[scene]
-    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=2_000_000, replicates=16, seed=3)
+    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=1_000_000, replicates=16, seed=3)
     power = powers(solution, tally=MatrixTally(lines == "local"))
     # what a patch gets back of its own light goes there and back along counts of the same lines: a bias of the order of one
     # over the lines of the patch, which the light's few lines show
@@ -116,7 +116,7 @@ def test_what_was_counted_solves_for_other_light(lines):
     linear in emission to rounding."""
     patches = rd.subdivide(rd.load_scene("room"), cells=2)
     pairs = counted(
-        rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=2_000_000, replicates=16), both_ways=lines == "local"
+        rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=1_000_000, replicates=16), both_ways=lines == "local"
     )
     scene = patches.scene
     wall = (scene.emission[:, 0] == 0) & (scene.area == scene.area[scene.emission[:, 0] == 0].max())
@@ -124,7 +124,7 @@ def test_what_was_counted_solves_for_other_light(lines):
     cut = rd.subdivide(other, cells=2)
     assert np.allclose(cut.area, patches.area)
     (found,) = pairs.solve(cut.emission, cut.reflectance)
-    wanted = rd.solve(cut, "random-walk", rays=8_000_000, replicates=16, seed=4)
+    wanted = rd.solve(cut, "random-walk", rays=4_000_000, replicates=16, seed=4)
     values, reference = found.power / cut.area, wanted.irradiance[:, 0]
     error = np.hypot(values.std(axis=0, ddof=1) / 4, wanted.irradiance_standard_error[:, 0])
     off = np.abs(values.mean(axis=0) - reference)
@@ -175,14 +175,20 @@ def test_too_many_pairs_are_refused_or_end_the_run(monkeypatch):
     assert solution.quanta < 10**6
 
 
-@pytest.mark.parametrize("lines", LINES)
-def test_backs_that_let_lines_pass_are_counted_one_way(lines):
+@pytest.fixture(scope="module")
+def passing():
+    """The room whose backs let lines pass, and what its surfaces receive from random walks."""
     from dataclasses import replace
 
     scene = rd.load_scene("room")
     patches = rd.subdivide(replace(scene, back=np.full_like(scene.back, int(rd.Back.PASSES))), cells=3)
-    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=4_000_000, replicates=16)
-    expected = powers(rd.solve(patches, "random-walk", rays=4_000_000, replicates=16))
+    return patches, powers(rd.solve(patches, "random-walk", rays=4_000_000, replicates=16))
+
+
+@pytest.mark.parametrize("lines", LINES)
+def test_backs_that_let_lines_pass_are_counted_one_way(passing, lines):
+    patches, expected = passing
+    solution = rd.solve(patches, rd.Method(order="matrix", lines=lines), rays=2_000_000, replicates=16)
     assert np.abs(difference(powers(solution, tally=MatrixTally(False, directed=True)), expected)).max() < 6.0
 
 

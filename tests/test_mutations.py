@@ -3,6 +3,7 @@
 import ast
 import builtins
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -19,15 +20,20 @@ def faults(mistake: Mistake, text: str) -> list[str]:
     """What is wrong with a row, of a file that holds ``text``."""
     if text.count(mistake.old) != 1:
         return [f"its text stands {text.count(mistake.old)} times in the file"]
-    before = ast.parse(text)
     try:
         after = ast.parse(text.replace(mistake.old, mistake.new))
     except SyntaxError as error:
         return [f"is no Python ({error})"]
-    if ast.dump(before) == ast.dump(after):
+    if dumped(text) == ast.dump(after):
         return ["changes no code"]
     unknown = read(after) - bound(after) - set(dir(builtins)) - {"__file__"}
     return [f"reads names that the file does not have: {', '.join(sorted(unknown))}"] if unknown else []
+
+
+@cache
+def dumped(text: str) -> str:
+    """The syntax tree of a file, which many rows may change."""
+    return ast.dump(ast.parse(text))
 
 
 def bound(tree: ast.AST) -> set[str]:

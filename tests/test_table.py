@@ -15,7 +15,7 @@ import radiosity as rd
 from radiosity.lab import cases
 from radiosity.method.model import CHOICES
 
-RAYS, REPLICATES = 1_500_000, 16
+RAYS, REPLICATES = 750_000, 16
 START_UP = 1e-4  # of the light, that iterations may leave out as they begin (docs/iterations.md); some have no variance here
 
 
@@ -39,7 +39,7 @@ def reference(room, plates):
 
     def get(name, equation):
         if (name, equation) not in known:
-            solution = rd.solve(scenes[name], REFERENCES[equation], rays=16_000_000, replicates=REPLICATES, seed=77)
+            solution = rd.solve(scenes[name], REFERENCES[equation], rays=8_000_000, replicates=REPLICATES, seed=77)
             known[name, equation] = powers(solution)
         return known[name, equation]
 
