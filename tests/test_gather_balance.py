@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from radiosity.algorithms.gather.balance import factors
+from radiosity.patches.scatter import Scatter
 
 OWN, REFLECTANCE = np.array([1.0, 0.0]), np.array([0.0, 0.5])  # a lamp and a floor
 RECEIVED = np.array([[0.0, 2.0]]) * np.linspace(0.97, 1.02, 8)[:, None]
@@ -17,7 +18,7 @@ def imbalance(received: np.ndarray, missed: np.ndarray, lines: np.ndarray) -> np
 
 def balanced(missed, lines, received=RECEIVED) -> np.ndarray:
     missed, lines = np.broadcast_to(np.array(missed), received.shape), np.array(lines, float)
-    return received * factors(OWN, REFLECTANCE, received, missed, lines)
+    return received * factors(OWN, Scatter(REFLECTANCE), received, missed, lines)
 
 
 def test_a_closed_scene_absorbs_what_lamps_emit():
@@ -56,7 +57,7 @@ def test_the_imbalance_goes_where_its_cause_is(even, alone, better):
     """To all patches alike, or to the twenty that vary much: not to others, whose errors would grow by it."""
     own, reflectance, lines = np.append(1.0, np.zeros(100)), np.append(0.0, np.full(100, 0.5)), np.full(101, 1000)
     received = np.column_stack([np.zeros(256), patches_of_two_kinds(even, alone)])
-    found = received * factors(own, reflectance, received, np.zeros_like(received), lines)
+    found = received * factors(own, Scatter(reflectance), received, np.zeros_like(received), lines)
     before, after = (np.sqrt(np.mean((power[:, 21:] / 0.02 - 1) ** 2)) for power in (received, found))
     assert after < 1.05 * before / better
     assert found.sum(axis=1) == pytest.approx(np.full(256, 2.0), rel=1e-9)
@@ -66,7 +67,7 @@ def test_the_imbalance_goes_where_its_cause_is(even, alone, better):
 
 
 def test_replicates_that_receive_nothing_stay():
-    assert (factors(OWN, REFLECTANCE, np.zeros((3, 2)), np.zeros((3, 2)), np.ones(2)) == 1).all()
+    assert (factors(OWN, Scatter(REFLECTANCE), np.zeros((3, 2)), np.zeros((3, 2)), np.ones(2)) == 1).all()
 
 
 def test_one_replicate_stays():

@@ -14,6 +14,7 @@ import radiosity as rd
 from radiosity.algorithms.matrix.tally import MatrixTally
 from radiosity.factors.counted import CountedPairs
 from radiosity.factors.counts import PairCounts, split
+from radiosity.patches.scatter import Scatter
 
 LINES = ("local", "global", "global-disc", "spans", "bundles")
 GLOBAL = LINES[1:]
@@ -123,7 +124,7 @@ def test_what_was_counted_solves_for_other_light(lines):
     other = rd.Scene.from_arrays(scene.vertices, scene.faces, 0.35, np.where(wall, 7.0, 0.0), back=scene.back)
     cut = rd.subdivide(other, cells=2)
     assert np.allclose(cut.area, patches.area)
-    (found,) = pairs.solve(cut.emission, cut.reflectance)
+    (found,) = pairs.solve(cut.emission, cut.scatter)
     wanted = rd.solve(cut, "random-walk", rays=4_000_000, replicates=16, seed=4)
     values, reference = found.power / cut.area, wanted.irradiance[:, 0]
     error = np.hypot(values.std(axis=0, ddof=1) / 4, wanted.irradiance_standard_error[:, 0])
@@ -131,7 +132,8 @@ def test_what_was_counted_solves_for_other_light(lines):
     assert (off < 6 * error + found.bias.mean(axis=0) / cut.area + 1e-6 * reference.max()).all()
     assert (off < 0.05 * reference.max()).all()
     both = pairs.solve(
-        np.hstack([cut.emission, 3 * cut.emission + patches.emission, patches.emission]), np.repeat(cut.reflectance, 3, axis=1)
+        np.hstack([cut.emission, 3 * cut.emission + patches.emission, patches.emission]),
+        Scatter(np.repeat(cut.reflectance, 3, axis=1)),
     )
     assert np.allclose(both[1].power, 3 * both[0].power + both[2].power, rtol=1e-8)
     assert np.array_equal(both[0].power, found.power)

@@ -25,7 +25,7 @@ class SolvedTally(AbstractTally[AbstractSolvedState]):
     def books(self, problem: Problem, state: AbstractSolvedState, group: int) -> dict:
         emitted = float(problem.groups.emission[:, group] @ problem.patches.area)
         received = _of(state).received[..., group].mean(axis=0)
-        absorbed = float(received @ (1 - problem.groups.reflectance[:, group]))
+        absorbed = float(received @ (1 - problem.groups.scatter.albedo[:, group]))
         escaped, lost = _of(state).missed[..., group].mean(axis=0)
         return by_difference(emitted, absorbed, float(escaped), float(lost))
 

@@ -75,7 +75,9 @@ class FullMatrix(AbstractAlgorithm[FullMatrixState]):
     def _solve(self, matrix: Factors) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return power received and missed, entries of each column, and the history of convergence."""
         groups, area = self.problem.groups, self.problem.patches.area
-        system = solvers.System(matrix.sparse(self.n), groups.emission, groups.reflectance, area)
+        system = solvers.System(
+            matrix.sparse(self.n), groups.emission, groups.reflectance, area, through=groups.through, other=groups.other
+        )
         found = solvers.solve(self.method.solver, system)
         received = area[:, None] * (system.factors @ found.radiosity)
         power = area[:, None] * found.radiosity

@@ -58,4 +58,5 @@ def _lit(scene: Scene, fates: leaks.Fates) -> tuple[np.ndarray, np.ndarray]:
     """The sides of surfaces that lines met, and whether more of them met the front of a face, (n_faces,) bool."""
     seen, reached = fates.fate == leaks.SEEN, np.zeros((scene.n_faces, 2))
     np.add.at(reached, (fates.hit[seen], (~fates.front[seen]).astype(int)), 1)
+    reached[scene.diffusers] = reached[scene.diffusers].sum(axis=1, keepdims=True)  # light that falls on one side leaves both
     return lit_sides(scene, reached, MANY), reached[:, 0] >= reached[:, 1]

@@ -73,11 +73,25 @@ def follow(scene: Scene, power: np.ndarray, walks: int = WALKS, *, seed: int = 0
         fates, front, place = _trace(scene, face, back, place or _places(scene, face, generator), generator, device)
         generations.append(fates)
         goes_on = fates.fate == SEEN
-        goes_on &= (np.where(front[:, None], scene.reflectance[fates.hit], scene.back_reflectance[fates.hit]) > 0).any(axis=1)
+        goes_on &= (_reflectance(scene, fates.hit, ~front) > 0).any(axis=1) | scene.diffusers[fates.hit]
         face, back, place = fates.hit[goes_on], ~front[goes_on], (place[0][goes_on], place[1][goes_on])
+        back ^= _across(scene, face, back, generator)
         if len(face) == 0:
             break
     return Fates(*(np.concatenate([getattr(g, field.name) for g in generations]) for field in fields(Fates)))
+
+
+def _reflectance(scene: Scene, face: np.ndarray, back: np.ndarray) -> np.ndarray:
+    return np.where(back[:, None], scene.back_reflectance[face], scene.reflectance[face])
+
+
+def _across(scene: Scene, face: np.ndarray, back: np.ndarray, generator) -> np.ndarray:
+    """Return which lines go on from the other side of a diffusing pane."""
+    diffuse = scene.diffuse_transmittance
+    if diffuse is None:
+        return np.zeros(len(face), bool)
+    through, rho = diffuse[face].max(axis=1, initial=0), _reflectance(scene, face, back).max(axis=1, initial=0)
+    return generator.random(len(face)) * (rho + through) < through
 
 
 def flipped_emitters(scene: Scene, emits: np.ndarray, *, seed: int = 0, device: str = "auto") -> list[tuple[int, float, float]]:

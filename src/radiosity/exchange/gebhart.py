@@ -17,6 +17,7 @@ from ..errors import MethodError, SceneError, shown
 from ..factors.counted import CountedPairs
 from ..factors.direct import Direct, is_quicker
 from ..patches.model import Patches
+from ..patches.scatter import Scatter
 from ..patches.values import of_sides
 from ..run.line_set.model import LineSet
 from ..solution.csv_rows import write_rows
@@ -172,7 +173,7 @@ def _absorbed(pairs: CountedPairs, groups: Groups, share: np.ndarray, some: np.n
     emission = np.where(labels[:, None] == some, share[:, None], 0.0)
     emitted = area @ emission
     values, bias = np.zeros((pairs.replicates, len(some), n + 2)), np.zeros((len(some), n + 2))
-    for k, found in enumerate(pairs.solve(emission, np.repeat(1 - share[:, None], len(some), axis=1))):
+    for k, found in enumerate(pairs.solve(emission, Scatter(np.repeat(1 - share[:, None], len(some), axis=1)))):
         for replicate, (power, missed) in enumerate(zip(found.power, found.missed, strict=True)):
             values[replicate, k, :n] = np.bincount(labels, share * power, n) / emitted[k]
             values[replicate, k, n:] = missed / emitted[k]

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..solution.npz import EXCHANGE, FORMAT_OF_PANES
+from ..solution.npz import EXCHANGE, FORMATS_OF_PANES
 from ..solution.reading import read
 from ..solution.stored_patches import restored
 from ..solution.validate import validate_patches
@@ -34,7 +34,7 @@ def load_exchange(path) -> RadiativeExchange:
         >>> bool((rd.load_exchange(path).net == heat.net).all())
         True
     """
-    return read(Path(path), EXCHANGE, (FORMAT, FORMAT_OF_PANES), _restored)
+    return read(Path(path), EXCHANGE, (FORMAT, *FORMATS_OF_PANES), _restored)
 
 
 def _restored(arrays: dict[str, Any], meta: dict[str, Any]) -> RadiativeExchange:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..errors import SceneError
+from ..errors import SceneError, shown
 from ..patches.model import Patches
 
 ROUNDING = 1e-12  # by which a sum may be above 1
@@ -15,8 +15,15 @@ def of_solid(patches: Patches, emissivity: np.ndarray) -> np.ndarray:
         emissivity: (n_patches,) or (n_bands, n_patches), of whole panes.
 
     Raises:
-        SceneError: emissivity and transmittance are above 1 together.
+        SceneError: emissivity and transmittance are above 1 together, or panes diffuse light: exchange does not cross them.
     """
+    scene = patches.scene
+    if scene.diffusers.any():
+        names = shown([scene.names[i] for i in np.unique(scene.surface[scene.diffusers])])
+        raise SceneError(
+            f"{scene.source}: {names} let light through diffusely (diffuse_transmittance), and an exchange of heat does not "
+            "cross them: leave it out for heat, or give a clear transmittance"
+        )
     if patches.scene.transmittance is None:
         return emissivity
     through = patches.transmittance

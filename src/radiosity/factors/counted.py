@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..patches.model import Patches
+from ..patches.scatter import Scatter
 from ..tally.unmet import means, sides
 from .counts import WORD, split
 from .model import Factors
@@ -84,12 +85,12 @@ class CountedPairs:
             keys, counts = self.keys[begin:end] - (np.uint64(replicate * n) << WORD), self.counts[begin:end]
             yield of_both_ways(keys, counts, n, self.patches.area) if self.both_ways else of_rows(keys, counts, n)
 
-    def solve(self, emission: np.ndarray, reflectance: np.ndarray) -> list[Received]:
+    def solve(self, emission: np.ndarray, scatter: Scatter) -> list[Received]:
         """Solve the equation for each band. No line is traced.
 
         Args:
             emission: (n_patches, n_bands) W/m² or lm/m².
-            reflectance: (n_patches, n_bands), in [0, 1).
+            scatter: what patches send on of the light that they receive, of each band.
         """
         area, side = self.patches.area, sides(self.patches)
         found: list[tuple[list, list, list]] = [([], [], []) for _ in range(emission.shape[1])]
@@ -100,12 +101,13 @@ class CountedPairs:
             def filled(received, lines=lines, fill=fill):
                 return means(received * lines, lines, side) if fill else received
 
-            for (power, missed, bias), one, rho in zip(found, emission.T, reflectance.T, strict=True):
-                received = irradiance(seen, one, rho, filled)
-                sent = area * (one + rho * received)
+            for band, ((power, missed, bias), one) in enumerate(zip(found, emission.T, strict=True)):
+                column = scatter.column(band)
+                received = irradiance(seen, one, column, filled)
+                sent = area * (one + column.of(received))
                 power.append(area * received)
                 missed.append([factors.escaped @ sent, factors.lost @ sent])
-                bias.append(area * of_own_light(seen, area, lines, one, rho, received, both_ways=self.both_ways))
+                bias.append(area * of_own_light(seen, area, lines, one, column, received, both_ways=self.both_ways))
         return [Received(*(np.array(column) for column in columns)) for columns in found]
 
     def between(self, labels: np.ndarray) -> np.ndarray:

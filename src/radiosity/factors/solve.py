@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ..patches.scatter import Scatter
 from .balance import restored
 from .counts import split
 from .model import Factors
@@ -35,24 +36,25 @@ def of_both_ways(keys: np.ndarray, counts: np.ndarray, n: int, area: np.ndarray)
     return restored(of_rows(keys, counts, n), area, np.bincount(rows, weights=counts, minlength=n) / area, SCALINGS)
 
 
-def irradiance(factors: Factors, emission: np.ndarray, reflectance: np.ndarray, filled=lambda received: received) -> np.ndarray:
+def irradiance(factors: Factors, emission: np.ndarray, scatter: Scatter, filled=lambda received: received) -> np.ndarray:
     """Return H = F B, (n,), where B = E + rho H, by Jacobi iterations; each change is at most rho_max times the last one.
 
     Args:
+        scatter: what patches send on, of one band.
         filled: takes irradiance, (n,), and returns it with values for patches whose rows are empty.
     """
     received = np.zeros(len(emission))
-    bound = float(reflectance.max(initial=0.0))
+    bound = float(scatter.albedo.max(initial=0.0))
     steps = 2 + (math.ceil(math.log(TOLERANCE * (1 - bound)) / math.log(bound)) if bound > 0 else 0)
     for _ in range(steps):
-        new = filled(factors.gather(emission + reflectance * received))
+        new = filled(factors.gather(emission + scatter.of(received)))
         change, received = np.abs(new - received).max(), new
         if change * bound <= TOLERANCE * (1 - bound) * received.max(initial=0.0):
             break
     return received
 
 
-def of_own_light(factors: Factors, area, lines, emission, reflectance, received, *, both_ways: bool) -> np.ndarray:
+def of_own_light(factors: Factors, area, lines, emission, scatter: Scatter, received, *, both_ways: bool) -> np.ndarray:
     """Return the bias of irradiance, (n,), to the first order in the reciprocal of the number of lines.
 
     Lines between i and j count in both rows. So where by chance many lines lead from a patch to j, as many bring its light back.
@@ -61,15 +63,16 @@ def of_own_light(factors: Factors, area, lines, emission, reflectance, received,
     count both ways, A_j (n_i / A_i + n_j / A_j) takes the place of n_j.
 
     Args:
-        area, lines, emission, reflectance, received: (n,); ``lines`` of each row.
+        area, lines, emission, received: (n,); ``lines`` of each row.
+        scatter: what patches send on, of one band. What crosses a pane goes on along lines of another row, without this bias.
     """
     i, j = factors.rows, factors.columns
     known = known_lines(factors, area, lines, both_ways=both_ways)
-    more = emission[i] + reflectance[i] * received[i] - received[j]
-    own = np.bincount(i, weights=factors.values * reflectance[j] * more / known, minlength=len(lines))
+    more = (emission + scatter.of(received))[i] - received[j]
+    own = np.bincount(i, weights=factors.values * scatter.reflectance[j] * more / known, minlength=len(lines))
     # in two parts, since `irradiance` solves for values that are not negative
     up, down = (np.maximum(sign * own, 0) for sign in (1, -1))
-    reflected = [irradiance(factors, reflectance * part, reflectance) for part in (up, down)]
+    reflected = [irradiance(factors, scatter.of(part), scatter) for part in (up, down)]
     return np.abs(own + reflected[0] - reflected[1])
 
 

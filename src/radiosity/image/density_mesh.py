@@ -49,6 +49,8 @@ def display(solution, quantity: str) -> tuple[DisplayMesh, np.ndarray, np.ndarra
     if quantity == "radiosity":
         patches = solution.patches
         values = mesh.smoothed(patches.emission) + mesh.smoothed(patches.reflectance) * values
+        if patches.diffuse_transmittance is not None:  # what comes from the other sides, in means over patches
+            values += mesh.smoothed(patches.diffuse_transmittance * solution.irradiance[patches.other_side])
     mesh, patch = merged(solution, mesh, values)
     used, polygons = np.unique(mesh.polygons, return_inverse=True)
     polygons = polygons.reshape(mesh.polygons.shape).astype(np.int32)

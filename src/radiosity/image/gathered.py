@@ -84,6 +84,15 @@ class Gathered:
         values[seen] = self._values(patch[seen], np.asarray(hits.u, np.float64)[seen], np.asarray(hits.v, np.float64)[seen])
         return values, patch
 
+    def _add_from_beyond(self, found: np.ndarray, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> None:
+        """Add what comes through diffusing panes from their other sides."""
+        patches = self.lookup.patches
+        if patches.diffuse_transmittance is None:
+            return
+        through = patches.diffuse_transmittance[patch]
+        lit = np.flatnonzero(through.any(axis=1))
+        found[lit] += through[lit] * self.gather.irradiance(patches.other_side[patch[lit]], u[lit], v[lit])
+
     def _values(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         patches = self.lookup.patches
         if self.quantity == "irradiance":
@@ -93,5 +102,6 @@ class Gathered:
             found = values_at(patches, "emission", patch, u, v)
             lit = np.flatnonzero(reflectance.any(axis=1))  # black points need no gather
             found[lit] += reflectance[lit] * self.gather.irradiance(patch[lit], u[lit], v[lit])
+            self._add_from_beyond(found, patch, u, v)
             found /= np.pi if self.quantity in OF_DIRECTIONS else 1.0
         return in_columns(self.gather.solution, found, self.band, single=self.single)

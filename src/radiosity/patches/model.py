@@ -9,6 +9,7 @@ import numpy as np
 from ..scene.model import Back, Scene
 from . import cells
 from .paint_means import cell_means
+from .scatter import Scatter
 
 MOST = float(np.nextafter(1.0, 0.0))  # a reflectance
 
@@ -168,6 +169,32 @@ class Patches:
         if self.own_emission is not None:
             return self.own_emission
         return self._of_side(self.scene.emission, self.scene.back_emission, self.scene.emission_paint)
+
+    @cached_property
+    def diffuse_transmittance(self) -> np.ndarray | None:
+        """The share of what falls on a patch that leaves its other side in all directions, (n_patches, n_bands) float64.
+
+        It is None where the scene has no diffusing panes.
+        """
+        if self.scene.diffuse_transmittance is None:
+            return None
+        if self.pane_of is None:
+            return self.scene.diffuse_transmittance[self.face]
+        whole = self.pane_of.diffuse_transmittance
+        assert whole is not None
+        return np.clip(self._over_solid(whole), 0, MOST - self.reflectance)
+
+    @cached_property
+    def other_side(self) -> np.ndarray:
+        """The patch on the other side of each patch's cell, (n_patches,) int64; the patch itself where that does not radiate."""
+        cells = np.where(self.scene.back == Back.RADIATES, self.cells_per_face, 0)[self.face]
+        return np.arange(len(self)) + np.where(self.is_back, -cells, cells)
+
+    @cached_property
+    def scatter(self) -> Scatter:
+        """What patches send on of the light that they receive."""
+        through = self.diffuse_transmittance
+        return Scatter(self.reflectance, through, None if through is None else self.other_side)
 
     def _over_solid(self, values: np.ndarray) -> np.ndarray:
         return values / (1 - self.transmittance)[:, None]

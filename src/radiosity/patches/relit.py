@@ -1,6 +1,7 @@
 """Patches with other light: the same geometry and cut, with another emission or reflectance."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +30,10 @@ def relit(patches: Patches, emission=None, reflectance=None, bands=None) -> Patc
     scene = patches.scene
     count = max(scene.n_bands if value is None else value.shape[1] for value in given.values())
     names = scene.bands if bands is None and count == scene.n_bands else bands_of(bands, count, scene.source)
-    changed, kept = {"bands": names}, {}
+    changed: dict[str, Any] = {"bands": names}
+    kept = {}
+    if scene.diffuse_transmittance is not None:
+        changed["diffuse_transmittance"] = widened(scene.diffuse_transmittance, count, "diffuse_transmittance")
     for what, value in given.items():
         if value is None and scene.n_bands == count:
             kept[f"own_{what}"] = getattr(patches, f"own_{what}")

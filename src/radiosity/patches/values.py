@@ -123,14 +123,17 @@ def _emitting(patches: Patches, rows: np.ndarray) -> np.ndarray:
 
 def _check(patches: Patches, values: np.ndarray, what: str) -> None:
     """Refuse values out of range, and panes that would give back more light than they get."""
-    through = patches.transmittance
-    excess = (through > 0)[:, None] & (values + through[:, None] >= 1)
+    through, diffuse = patches.transmittance, patches.diffuse_transmittance
+    if diffuse is not None and 1 in (diffuse.shape[1], values.shape[1], 1 + abs(diffuse.shape[1] - values.shape[1])):
+        through = through + diffuse.max(axis=1) if values.shape[1] == 1 else through[:, None] + diffuse
+    through = np.broadcast_to(through.reshape(len(values), -1), values.shape)
+    excess = (through > 0) & (values + through >= 1)
     if what == "reflectance" and excess.any():
         patch, band = np.argwhere(excess)[0]
         where = f"patch {patch} (surface '{patches.scene.names[patches.surface[patch]]}', band {band})"
         raise SceneError(
-            f"{patches.scene.source}: reflectance of {where} is {values[patch, band]:g}, and its transmittance {through[patch]:g}"
-            "; the sum must be strictly below 1"
+            f"{patches.scene.source}: reflectance of {where} is {values[patch, band]:g}, and its transmittance "
+            f"{through[patch, band]:g}; the sum must be strictly below 1"
         )
     top = 1.0 if what == "reflectance" else LARGEST
     wrong = ~((values >= 0) & (values < top))

@@ -1,10 +1,12 @@
 """Groups of bands: bands of a group are one problem (contract 3)."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ..patches.model import Patches
+from ..patches.scatter import Scatter
 
 QUANTUM = 2**31  # fixed point units of a quantum: a hit adds at most one quantum, and 2^32 quanta fit in 64 bits
 
@@ -18,6 +20,8 @@ class BandGroups:
         scale: (n_bands,) float64: the band's emission over the group's.
         emission, reflectance: (n_patches, n_groups) float64, of each group.
         leaders: (n_groups,) int, the band that each group has its values from.
+        through: (n_patches, n_groups) float64, the diffuse transmittance of each group; None where nothing diffuses light.
+        other: (n_patches,) int64, the patch on the other side of each; None where nothing diffuses light.
     """
 
     index: np.ndarray
@@ -25,11 +29,13 @@ class BandGroups:
     emission: np.ndarray
     reflectance: np.ndarray
     leaders: np.ndarray
+    through: np.ndarray | None = None
+    other: np.ndarray | None = None
 
     @staticmethod
     def of(patches: Patches, light_power: np.ndarray | None = None) -> "BandGroups":
         """Compare the bands of a scene, and of its lights without area, (n_lights, n_bands)."""
-        emission, reflectance = patches.emission, patches.reflectance
+        emission, reflectance, through = patches.emission, patches.reflectance, patches.diffuse_transmittance
         n_patches = len(emission)
         if light_power is not None and len(light_power):
             emission = np.concatenate([emission, light_power])
@@ -44,6 +50,7 @@ class BandGroups:
                 if (
                     ratio
                     and np.array_equal(reflectance[:, band], reflectance[:, leader])
+                    and (through is None or np.array_equal(through[:, band], through[:, leader]))
                     and np.allclose(emission[:, band], ratio * emission[:, leader], rtol=1e-14, atol=0)
                 ):
                     index[band], scale[band] = group, ratio
@@ -53,7 +60,14 @@ class BandGroups:
                 leaders.append(band)
         if leaders != list(range(n_bands)):  # else they are the patches' own arrays, which need no copy
             emission, reflectance = emission[:, leaders], reflectance[:, leaders]
-        return BandGroups(index, scale, emission[:n_patches], reflectance, np.array(leaders, np.int64))
+            through = None if through is None else through[:, leaders]
+        other = None if through is None else patches.other_side
+        return BandGroups(index, scale, emission[:n_patches], reflectance, np.array(leaders, np.int64), through, other)
+
+    @cached_property
+    def scatter(self) -> Scatter:
+        """What patches send on of the light that they receive, of each group."""
+        return Scatter(self.reflectance, self.through, self.other)
 
     @property
     def n_groups(self) -> int:

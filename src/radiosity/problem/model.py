@@ -46,8 +46,10 @@ class Problem:
         """Return the problem of the largest band of each row alone, which fires as many lines."""
         rows, n = self.rows, self.rows.n_patches
         emission, reflectance = (x.max(axis=1, keepdims=True) for x in (rows.emission, rows.reflectance))
-        groups = BandGroups(np.zeros(1, np.int64), np.ones(1), emission[:n], reflectance[:n], np.zeros(1, np.int64))
-        return replace(self, groups=groups, rows=SourceRows(n, emission, reflectance, rows.area, rows.lines))
+        through = None if rows.through is None else rows.through.max(axis=1, keepdims=True)
+        one, other = np.zeros(1, np.int64), self.groups.other
+        groups = BandGroups(one, np.ones(1), emission[:n], reflectance[:n], one, None if through is None else through[:n], other)
+        return replace(self, groups=groups, rows=SourceRows(n, emission, reflectance, rows.area, rows.lines, through, rows.other))
 
     @staticmethod
     def of(patches: Patches, lights: AbstractLights | None = None, through: bool = False) -> "Problem":

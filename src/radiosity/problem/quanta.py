@@ -1,7 +1,8 @@
 """The target count of each patch, in integers (contract 2).
 
 With energy packets delta = Phi / N, the target count of patch i is floor(E_i A_i / delta + rho_i h_i + phase_i) after h_i hits.
-All three terms are fixed point numbers with a 32-bit fraction, so the sum is exact and the same everywhere.
+On a diffusing pane tau_i h_j is added, where h_j are the hits of its other side. All terms are fixed point numbers with a 32-bit
+fraction, so the sum is exact and the same everywhere.
 """
 
 import math
@@ -12,6 +13,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..patches.model import Patches
+from ..patches.scatter import Scatter
 from ..pieces import pieces
 from ..sampling.streams import Purpose, Seed, stream
 
@@ -27,15 +29,29 @@ class Source:
         share: (n_rows,) float64, E_i A_i / Phi.
         rho: (n_rows,) uint32, reflectance times 2^32.
         power: Phi, W or lm.
+        tau: (n_rows,) uint32, diffuse transmittance times 2^32; None where nothing diffuses light.
+        other: (n_rows,) uint32, the row on the other side of each; None where nothing diffuses light.
     """
 
     share: np.ndarray
     rho: np.ndarray
     power: float
+    tau: np.ndarray | None = None
+    other: np.ndarray | None = None
 
     @staticmethod
-    def of(patches: Patches, emission: np.ndarray, reflectance: np.ndarray, area: np.ndarray | None = None) -> "Source":
+    def of(
+        patches: Patches,
+        emission: np.ndarray,
+        reflectance: np.ndarray,
+        area: np.ndarray | None = None,
+        through: np.ndarray | None = None,
+        other: np.ndarray | None = None,
+    ) -> "Source":
         """Make it from scalar emission, reflectance and area of rows, (n_rows,) each; the area is that of the patches by default.
+
+        Args:
+            through: (n_rows,) diffuse transmittance, and ``other`` the row on the other side of each; None where there is none.
 
         Raises:
             SceneError: nothing emits.
@@ -53,7 +69,8 @@ class Source:
                 "give one an emission: in the file where its format has lights, else by power = 40 for a surface in a .toml "
                 "(docs/scene-toml.md)"
             )
-        return Source(power / total, Source.fixed(reflectance), total)
+        tau = None if through is None else Source.fixed(through)
+        return Source(power / total, Source.fixed(reflectance), total, tau, None if other is None else other.astype(np.uint32))
 
     @staticmethod
     def fixed(reflectance: np.ndarray) -> np.ndarray:
@@ -62,6 +79,22 @@ class Source:
         for part in pieces(len(fixed)):
             fixed[part] = np.floor(reflectance[part] * ONE)
         return fixed
+
+    @staticmethod
+    def fixed_albedo(scatter: Scatter, group: int) -> np.ndarray:
+        """Return the share of received light that is sent on, of one group, times 2^32, (n,) uint32.
+
+        Diffuse transmittance is equal on both sides of a pane, so sums over all patches count what crosses, too.
+        """
+        rho = Source.fixed(scatter.reflectance[:, group])
+        return rho if scatter.through is None else rho + Source.fixed(scatter.through[:, group])
+
+    def sent_on(self, arrivals: np.ndarray, part: slice = slice(None)) -> np.ndarray:
+        """Return what rows send on for hit counts of all rows, (..., n_rows): of some of them, in 2^-32ths, uint64."""
+        sent = self.rho[part].astype(np.uint64) * arrivals[..., part].astype(np.uint64)
+        if self.tau is None or self.other is None:
+            return sent
+        return sent + self.tau[part].astype(np.uint64) * arrivals[..., self.other[part]].astype(np.uint64)
 
     def emitted(self, quanta: int) -> tuple[np.ndarray, np.ndarray]:
         """Return E_i A_i / delta at N quanta: whole lines and 2^-32ths, uint32 each. It never falls when N grows."""
@@ -93,5 +126,5 @@ def phases(seed: Seed | int, replicates: int, n_patches: int) -> np.ndarray:
 def target_counts(source: Source, quanta: int, arrivals: np.ndarray, phase: np.ndarray) -> np.ndarray:
     """Return the target counts of contract 2 on the host, (..., n_patches) uint64: for the energy balance and for tests."""
     whole, fraction = source.emitted(quanta)
-    low = source.rho.astype(np.uint64) * arrivals.astype(np.uint64) + fraction.astype(np.uint64) + phase.astype(np.uint64)
+    low = source.sent_on(arrivals) + fraction.astype(np.uint64) + phase.astype(np.uint64)
     return whole.astype(np.uint64) + (low >> np.uint64(32))

@@ -103,16 +103,16 @@ def predicted(problem: Problem, found: pilot.Pilot) -> dict[str, float]:
     """
     area, groups, n = problem.patches.area, problem.groups, len(problem.patches)
     shares = groups.emission / np.maximum(problem.unit, 1e-300)
-    reflected = groups.reflectance * found.irradiance
+    reflected = groups.scatter.of(found.irradiance)
     group = int(np.argmax((area[:, None] * reflected**2).sum(axis=0)))
-    light, rho = reflected[:, group], groups.reflectance[:, group]
+    light, rho = reflected[:, group], groups.scatter.albedo[:, group]
     total = float(area @ light**2)
     if not total:
         return {}
     packets = found.shares.packets
     weights = np.repeat(found.shares.weights, packets.sizes, axis=1)[:, packets.place]
     each = n * weights / weights.sum()
-    importance = area * groups.reflectance.max(axis=1) ** 2
+    importance = area * groups.scatter.albedo.max(axis=1) ** 2
     gather = float((importance * found.variance / each).sum()) / total
     power, again = float(area @ shares.max(axis=1)), float(area @ reflected.max(axis=1))
     walk = float(rho @ light) * (power + again) / n / total

@@ -11,7 +11,7 @@ from ..algorithms.base import AbstractBiasedTally, AbstractTally
 from ..algorithms.baseline_state import AbstractSolvedState
 from ..pieces import pieces
 from ..problem.model import Problem
-from ..solution.errors import inner_products, margin, mean_and_error, relative_error
+from ..solution.errors import inner_products, margin, mean_and_error, relative_error_of
 from ..solution.intervals import FEW, by_luck, least_error, usual_power
 
 
@@ -118,8 +118,8 @@ class Snapshot:
 
         for group in range(groups.n_groups):
             values, unit = self.tally.irradiance(self.problem, self.state, group)
-            rho = groups.reflectance[:, group]
-            found.append([[summed(row) * unit for row in values], [summed(row * rho) * unit for row in values]])
+            sent = groups.scatter.of_rows
+            found.append([[summed(row) * unit for row in values], [summed(sent(row, group)) * unit for row in values]])
         return np.stack([np.array(found[g]) * s for g, s in zip(groups.index, groups.scale, strict=True)], axis=-1)
 
     def _irradiance(self, group: int) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
@@ -137,7 +137,7 @@ class Snapshot:
     def error(self, rows: np.ndarray | slice = slice(None)) -> float:
         """Return the error of some patches, see `Solution.error`."""
         patches = self.problem.patches
-        return relative_error(*(value[rows] for value in (patches.reflectance, *self.irradiance, patches.area)))
+        return relative_error_of(patches.scatter, *self.irradiance, patches.area, rows)
 
     def judged(self, rows: np.ndarray | slice = slice(None)) -> bool:
         """Return whether the error of some patches is known well enough to stop there: it comes from `FEW` lines or more.
@@ -147,7 +147,7 @@ class Snapshot:
         would bring as much power, these are counted instead. The least error, where there is no hit, counts as one line.
         """
         patches, (mean, error) = self.problem.patches, self.irradiance
-        area, rho, error = patches.area[rows, None], patches.reflectance[rows], error[rows]
+        area, rho, error = patches.area[rows, None], patches.scatter.albedo[rows], error[rows]
         power, line = mean[rows] * area, np.broadcast_to(self.line, mean.shape)[rows]
         lines = np.minimum(np.divide(power, line, out=np.full(power.shape, np.inf), where=line > 0), self.arrivals[rows, None])
         square = area * ((rho if rho.any() else 1.0) * error) ** 2
@@ -193,7 +193,7 @@ class Snapshot:
         area, groups, found = self.problem.patches.area[rows], self.problem.groups, []
         for group in range(groups.n_groups):
             values, _ = self.tally.irradiance(self.problem, self.state, group)
-            rho = groups.reflectance[rows, group]
+            rho = groups.scatter.albedo[rows, group]
             weight = (rho if rho.any() else np.ones(len(rho))) / np.sqrt(area)
             found.append(margin(inner_products(np.asarray(values)[:, rows], weight), len(values)))
         return max(found)

@@ -224,14 +224,21 @@ def refuse_panes(scene: Scene, method: Method | Baseline) -> None:
     """Raise where a scene has panes and the method cannot solve it.
 
     Global lines pair the two sides of what they cross, and hierarchies take links for seen or not: neither goes on through panes.
+    Some algorithms do not send light on from the other side of a face.
     """
     if isinstance(method, Method):
-        reason = "" if method.lines == "local" else f"lines '{method.lines}' pair the faces on both sides of a pane"
+        clear = "" if method.lines == "local" else f"lines '{method.lines}' pair the faces on both sides of a pane"
+        one_sided = method.machine in ("multipath", "pooling") or method.absorption == "fractional"
     else:
-        reason = "links of a hierarchy do not go on through panes" if method.scheme == "hierarchical" else ""
-    if reason and scene.panes.any():
-        names = shown([scene.names[i] for i in np.unique(scene.surface[scene.panes])])
-        raise MethodError(
-            f"{scene.source}: {names} let light through (transmittance), and {reason}: take local lines, such as "
-            "--method random-walk"
-        )
+        one_sided = method.scheme == "hierarchical"
+        clear = "links of a hierarchy do not go on through panes" if one_sided else ""
+    diffuse = f"method {method} sends no light on from the other side of a face" if one_sided else ""
+    for some, key, reason in (
+        (scene.panes, "transmittance", clear),
+        (scene.diffusers, "diffuse_transmittance", diffuse),
+    ):
+        if reason and some.any():
+            names = shown([scene.names[i] for i in np.unique(scene.surface[some])])
+            raise MethodError(
+                f"{scene.source}: {names} let light through ({key}), and {reason}: take local lines, such as --method random-walk"
+            )

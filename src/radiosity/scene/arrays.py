@@ -30,6 +30,7 @@ def checked_fields(
     bands=None,
     photometric=False,
     transmittance=None,
+    diffuse_transmittance=None,
     cameras=(),
     source="arrays",
 ) -> tuple[dict[str, Any], np.ndarray]:
@@ -58,15 +59,18 @@ def checked_fields(
         reflectance if back_reflectance is None else arguments.per_face(back_reflectance, n, "back_reflectance", source)
     )
     back_emission = emission if back_emission is None else arguments.per_face(back_emission, n, "back_emission", source)
-    n_bands = max(a.shape[1] for a in (reflectance, emission, back_reflectance, back_emission))
-    values = [arguments.widen(a, n_bands, source) for a in (reflectance, emission, back_reflectance, back_emission)]
+    diffuse = panes.diffuse_transmittances(diffuse_transmittance, n, source)
+    given = (reflectance, emission, back_reflectance, back_emission)
+    n_bands = max(a.shape[1] for a in (*given, *([] if diffuse is None else [diffuse])))
+    values = [arguments.widen(a, n_bands, source) for a in given]
     surface, names = arguments.surfaces_of(surface, names, n, source)
     back = arguments.backs_of(back, two_sided, n, source)
     for value, what in zip(values, ("reflectance", "emission", "back reflectance", "back emission"), strict=True):
         arguments.check_values(value, what, surface, names, source)
     arguments.check_open(back, values[0], surface, names, source)
     transmittance = panes.transmittances(transmittance, n, source)
-    panes.check(transmittance, back, (values[0], values[2]), surface, names, source)
+    diffuse = None if diffuse is None else arguments.widen(diffuse, n_bands, source)
+    panes.check(transmittance, back, (values[0], values[2]), surface, names, source, diffuse)
     bands = arguments.bands_of(bands, n_bands, source)
     crossed = _crossed(vertices, faces)
     if len(crossed):
@@ -88,6 +92,7 @@ def checked_fields(
         "bands": bands,
         "photometric": bool(photometric),
         "transmittance": None if transmittance is None else transmittance[rows],
+        "diffuse_transmittance": None if diffuse is None else diffuse[rows],
         "patch_size": np.full(len(names), np.nan),
         "cameras": arguments.cameras_of(cameras, source),
         "source": str(source),

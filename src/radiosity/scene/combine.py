@@ -7,7 +7,7 @@ import numpy as np
 from .lights.add import all_lights
 from .model import Scene
 from .paint import Paint
-from .panes import panes_or_none
+from .panes import of_all_faces
 
 
 def combine(scenes: list[Scene], *, source: str, photometric: bool, scale: float) -> Scene:
@@ -35,7 +35,8 @@ def combine(scenes: list[Scene], *, source: str, photometric: bool, scale: float
         back_reflectance=stack("back_reflectance"),
         back_emission=stack("back_emission"),
         surface=np.concatenate([np.array([index[name] for name in s.names], np.int32)[s.surface] for s in scenes]),
-        transmittance=panes_or_none(_transmittances(scenes)),
+        transmittance=of_all_faces(scenes, "transmittance"),
+        diffuse_transmittance=of_all_faces(scenes, "diffuse_transmittance", len(bands)),
         names=names,
         bands=bands,
         photometric=photometric,
@@ -68,8 +69,3 @@ def _paints(scenes: list[Scene], key: str, n_bands: int) -> Paint | None:
         color.append(paint.color)
         limit = min(limit, paint.limit)
     return Paint(tuple(images), np.concatenate(image), np.concatenate(uv), np.concatenate(color), limit, tuple(samplers))
-
-
-def _transmittances(scenes: list[Scene]) -> np.ndarray:
-    """The transmittances of all faces; 0 for faces of scenes without panes."""
-    return np.concatenate([np.zeros(s.n_faces) if s.transmittance is None else s.transmittance for s in scenes])

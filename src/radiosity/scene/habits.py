@@ -38,7 +38,7 @@ def settle(parts: list[Part], source: str, options: ReadOptions) -> list[Part]:
             m = replace(m, reflectance=(DEFAULT_REFLECTANCE,))
         _check_values(part.name, m, source)
         for value in (m.reflectance, m.back_reflectance):
-            highest = 0.0 if value is None else float(np.max(np.asarray(value) * _peak(part)))
+            highest = 0.0 if value is None else _most_given_back(part, value)
             highest /= 1 - min(m.transmittance, MOST_CLEAR)  # of what does not go through
             if highest > options.max_reflectance + 1e-12 and not m.given:
                 of_file = bright.setdefault(m.origin or source, {})
@@ -74,14 +74,22 @@ def _peak(part: Part) -> np.ndarray:
     return peak
 
 
+def _most_given_back(part: Part, reflectance) -> float:
+    """Return the largest share of light that a face gives back to either side: what it reflects, and what it lets through
+    diffusely."""
+    return float(np.max(np.asarray(reflectance) * _peak(part) + np.asarray(part.material.diffuse_transmittance or 0.0)))
+
+
 def _lower(part: Part, limit: float) -> Part:
     m = part.material
     front = m.reflectance or ()
-    if m.transmittance > 0:  # the paint's limit is that of opaque faces
-        highest = max(float(np.max(np.asarray(value) * _peak(part))) for value in (front, m.back_reflectance or front))
+    if m.transmittance > 0 or m.diffuse_transmittance:  # the paint's limit is that of opaque faces
+        highest = max(_most_given_back(part, value) for value in (front, m.back_reflectance or front))
         share = min(limit / highest, 1.0) if highest > 0 else 1.0
-        back = m.back_reflectance and tuple(v * share for v in m.back_reflectance)
-        return replace(part, material=replace(m, reflectance=tuple(v * share for v in front), back_reflectance=back))
+        front, back, through = (
+            value and tuple(v * share for v in value) for value in (front, m.back_reflectance, m.diffuse_transmittance)
+        )
+        return replace(part, material=replace(m, reflectance=front, back_reflectance=back, diffuse_transmittance=through))
     if part.color is None and part.texture is None:
         back = m.back_reflectance and tuple(min(v, limit) for v in m.back_reflectance)
         return replace(part, material=replace(m, reflectance=tuple(min(v, limit) for v in front), back_reflectance=back))
@@ -110,7 +118,7 @@ def _has_white_face(part: Part) -> bool:
 
 
 def _check_values(name: str, m, source: str) -> None:
-    for which in ("reflectance", "back_reflectance"):
+    for which in ("reflectance", "back_reflectance", "diffuse_transmittance"):
         for v in getattr(m, which) or ():
             if not 0 <= v < LARGEST:
                 what = f"{which.replace('_', ' ')} of surface '{name}'"

@@ -50,6 +50,8 @@ class Scene:
         lights: luminaires, suns and the sky, which are no surfaces.
         transmittance: (n_faces,) float64 in [0, 1), the share of lines that goes straight on through each face from either side
             (panes), equal in all bands; None where no face is a pane.
+        diffuse_transmittance: (n_faces, n_bands) float64 in [0, 1), the share of what falls on either side that leaves the other
+            side in all directions (diffusing panes); None where there is none. Both sides of such faces radiate.
         sensors: what the file asks `measure` for; light does not depend on it.
 
     Example:
@@ -80,6 +82,7 @@ class Scene:
     assumed: tuple[str, ...] = ()
     lights: Lights = field(default_factory=Lights)
     transmittance: np.ndarray | None = None
+    diffuse_transmittance: np.ndarray | None = None
     sensors: tuple[SensorRequest, ...] = ()
 
     @staticmethod
@@ -98,6 +101,7 @@ class Scene:
         bands=None,
         photometric=False,
         transmittance=None,
+        diffuse_transmittance=None,
         cameras=(),
         source="arrays",
     ) -> "Scene":
@@ -118,6 +122,8 @@ class Scene:
             photometric: emission is in lm/m².
             transmittance: a number or (n_faces,) in [0, 1): the share of light that goes straight on through a face (a clear
                 pane), from either side. With the reflectance of each side it must stay below 1; the rest is absorbed.
+            diffuse_transmittance: like ``reflectance``, the share of light on either side that leaves the other side in all
+                directions (a diffusing pane). The faces must be two-sided, and all shares together stay below 1.
 
         Raises:
             SceneError: shapes, indices or values out of range; nothing left that has an area.
@@ -138,6 +144,7 @@ class Scene:
             bands=bands,
             photometric=photometric,
             transmittance=transmittance,
+            diffuse_transmittance=diffuse_transmittance,
             cameras=cameras,
             source=source,
         )
@@ -157,6 +164,12 @@ class Scene:
     def panes(self) -> np.ndarray:
         """True where a face lets light through from both sides, (n_faces,) bool."""
         return np.zeros(self.n_faces, bool) if self.transmittance is None else self.transmittance > 0
+
+    @property
+    def diffusers(self) -> np.ndarray:
+        """True where light leaves the other side of a face in all directions, (n_faces,) bool."""
+        diffuse = self.diffuse_transmittance
+        return np.zeros(self.n_faces, bool) if diffuse is None else (diffuse > 0).max(axis=1)
 
     @property
     def unit(self) -> str:
@@ -251,6 +264,8 @@ class Scene:
         if self.lights:
             digest.update(self.lights.digest())
         digest.update(repr((self.names, self.bands, self.photometric)).encode())
+        if self.diffuse_transmittance is not None:
+            digest.update(b"diffuse" + _digest(self.diffuse_transmittance).digest())
         return self._with_panes(digest).hexdigest()
 
     @cached_property
@@ -277,6 +292,7 @@ class Scene:
             back_emission=self.back_emission[rows],
             surface=self.surface[rows],
             transmittance=panes_or_none(None if self.transmittance is None else self.transmittance[rows]),
+            diffuse_transmittance=panes_or_none(None if self.diffuse_transmittance is None else self.diffuse_transmittance[rows]),
             reflectance_paint=self.reflectance_paint and self.reflectance_paint.take(rows),
             emission_paint=self.emission_paint and self.emission_paint.take(rows),
         )

@@ -1,6 +1,9 @@
-"""Panes: faces that let a share of the light go straight on, from either side. Their transmittances are checked here."""
+"""Panes: faces that let light through, from either side. Their transmittances are checked here.
 
-from collections.abc import Iterable
+A clear share goes straight on. A diffusing share leaves the other side like light that is reflected there, in all directions.
+"""
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -32,13 +35,42 @@ def transmittances(given, n: int, source: str) -> np.ndarray | None:
     return panes_or_none(np.broadcast_to(value, (n,)).copy())
 
 
-def check(transmittance: np.ndarray | None, back, reflectances: Iterable[np.ndarray], surface, names, source) -> None:
+def diffuse_transmittances(given, n: int, source: str) -> np.ndarray | None:
+    """Return the diffuse transmittance of each face, (n, 1) or (n, n_bands) float64; None where no face diffuses light.
+
+    Raises:
+        SceneError: another shape.
+    """
+    return None if given is None else panes_or_none(arguments.per_face(given, n, "diffuse_transmittance", source))
+
+
+def of_all_faces(scenes, key: str, n_bands: int | None = None) -> np.ndarray | None:
+    """Return the transmittances of the faces of several scenes; 0 for faces of scenes without panes. None where no face is one.
+
+    Args:
+        key: "transmittance" or "diffuse_transmittance".
+        n_bands: None for one value for all bands.
+    """
+    found = []
+    for scene in scenes:
+        shape = (scene.n_faces,) if n_bands is None else (scene.n_faces, n_bands)
+        value = getattr(scene, key)
+        found.append(np.zeros(shape) if value is None else np.broadcast_to(value, shape))
+    return panes_or_none(np.concatenate(found))
+
+
+def check(
+    transmittance: np.ndarray | None, back, reflectances: Sequence[np.ndarray], surface, names, source, diffuse=None
+) -> None:
     """Refuse transmittances out of range, and sides that would give back more light than they get.
 
     Args:
         transmittance: (n_faces,) or None.
         reflectances: (n_faces, n_bands) of the fronts, then of the backs.
+        diffuse: (n_faces, n_bands) diffuse transmittances, or None.
     """
+    if diffuse is not None:
+        _check_diffuse(diffuse, transmittance, back, reflectances, surface, names, source)
     if transmittance is None:
         return
 
@@ -61,5 +93,31 @@ def check(transmittance: np.ndarray | None, back, reflectances: Iterable[np.ndar
             lambda face, values=highest, side=side: (
                 f"with the reflectance {values[face]:g} of its {side} the sum is {values[face] + transmittance[face]:g}; it must "
                 "be strictly below 1: the rest is absorbed"
+            ),
+        )
+
+
+def _check_diffuse(diffuse: np.ndarray, transmittance, back, reflectances, surface, names, source) -> None:
+    """Refuse diffuse transmittances out of range, on backs that do not radiate, or too large beside the other shares."""
+
+    def refuse(wrong: np.ndarray, text) -> None:
+        if wrong.any():
+            face, band = np.argwhere(wrong)[0]
+            where = f"face {face} (surface '{names[surface[face]]}', band {band})"
+            raise SceneError(f"{source}: diffuse transmittance of {where} is {diffuse[face, band]:g}; {text(face, band)}")
+
+    refuse(~((diffuse >= 0) & (diffuse < 1)), lambda face, band: "it must lie in [0, 1)")
+    refuse(
+        (diffuse > 0) & (back != Back.RADIATES)[:, None],
+        lambda face, band: "what falls on one side leaves the other, so that both must radiate: make the face two-sided",
+    )
+    clear = np.zeros(len(diffuse)) if transmittance is None else transmittance
+    for values, side in zip(reflectances, ("front", "back"), strict=True):
+        total = values + diffuse + clear[:, None]
+        refuse(
+            (diffuse > 0) & ~(total < 1),
+            lambda face, band, values=values, total=total, side=side: (
+                f"with the reflectance {values[face, band]:g} of its {side} and the clear transmittance {clear[face]:g} the sum "
+                f"is {total[face, band]:g}; it must be strictly below 1: the rest is absorbed"
             ),
         )

@@ -27,6 +27,7 @@ class Material:
         given: the user's own .toml sets the reflectance, below 1: it is taken as it is.
         origin: the file that sets the reflectance, where it is another one than the scene's.
         transmittance: the share of light that goes straight on through a clear pane, from either side.
+        diffuse_transmittance: the share of light on either side that leaves the other side in all directions; None: nothing does.
     """
 
     reflectance: tuple[float, ...] | None = None
@@ -38,6 +39,7 @@ class Material:
     given: bool = False
     origin: str = ""
     transmittance: float = 0.0
+    diffuse_transmittance: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +78,7 @@ class Part:
     def n_bands(self) -> int:
         """Number of bands, 1 or 3."""
         m = self.material
-        values = [m.reflectance, m.emission, m.back_reflectance, m.back_emission]
+        values = [m.reflectance, m.emission, m.back_reflectance, m.back_emission, m.diffuse_transmittance]
         arrays = [self.color, self.emission_color, self.texture, self.emission_texture]
         return max([1] + [len(v) for v in values if v is not None] + [a.shape[-1] for a in arrays if a is not None])
 

@@ -15,7 +15,7 @@ def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.nd
 
     A solution without replicates has one.
     """
-    rho, unit = problem.groups.reflectance, np.maximum(problem.unit, 1e-300)
+    unit = np.maximum(problem.unit, 1e-300)
     if solution.by_baseline or solution.replicates < 2:
         return mean_reflected(solution, problem)[None]
     facts = solution.provenance
@@ -25,11 +25,12 @@ def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.nd
     found = []
     for group in range(problem.groups.n_groups):
         power, scale = algorithm.tally.irradiance(problem, state, group)
-        found.append(np.asarray(power, np.float64) * (scale / unit[group]) / problem.patches.area)
-    return rho * np.stack(found, axis=-1)
+        received = np.asarray(power, np.float64) * (scale / unit[group]) / problem.patches.area
+        found.append(problem.groups.scatter.of_rows(received, group))
+    return np.stack(found, axis=-1)
 
 
 def mean_reflected(solution: Solution, problem: Problem) -> np.ndarray:
     """Return B - E of the solution, (n_patches, n_groups) float64, in shares of `Problem.unit`."""
     unit = np.maximum(problem.unit, 1e-300)
-    return problem.groups.reflectance * solution.irradiance[:, problem.groups.leaders] / unit
+    return problem.groups.scatter.of(solution.irradiance[:, problem.groups.leaders]) / unit

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..patches.scatter import Scatter
 from ..pieces import pieces
 
 SURE = 0.95  # share of runs that must reach the error that was asked for
@@ -85,3 +86,20 @@ def relative_error(reflectance: np.ndarray, irradiance: np.ndarray, error: np.nd
         if lit.any() or blind.any():
             return float("nan") if blind.any() else float((np.sqrt(top[lit]) / np.sqrt(bottom[lit])).max())
     return float("nan")
+
+
+def relative_error_of(
+    scatter: Scatter, irradiance: np.ndarray, error: np.ndarray, area: np.ndarray, rows: np.ndarray | slice = slice(None)
+) -> float:
+    """Return the `relative_error` of some patches. Errors of both sides of diffusing panes are added.
+
+    Args:
+        scatter: what patches send on of the light that they receive.
+        rows: the patches that count.
+    """
+    if scatter.through is None:
+        return relative_error(scatter.reflectance[rows], irradiance[rows], error[rows], area[rows])
+    sent, wrong = scatter.of(irradiance)[rows], scatter.error_of(error)[rows]
+    if not (sent.any() or wrong.any()):
+        sent, wrong = irradiance[rows], error[rows]
+    return relative_error(np.ones(sent.shape), sent, wrong, area[rows])

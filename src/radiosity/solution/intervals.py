@@ -175,8 +175,8 @@ def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.nd
         low, high = widened(low, high, few, *bounds, mean if solution.signed else None)
     if quantity == "irradiance":
         return low, high
-    emission, rho = solution.patches.emission, solution.patches.reflectance
-    return tuple(np.where(rho == 0, emission, emission + rho * end) for end in (low, high))
+    emission, scatter = solution.patches.emission, solution.patches.scatter
+    return tuple(emission + scatter.error_of(end) for end in (low, high))
 
 
 def power_of_none(solution) -> np.ndarray:

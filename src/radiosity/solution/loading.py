@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from .model import Solution
-from .npz import FORMAT, FORMAT_OF_LIGHTS, FORMAT_OF_OWN, FORMAT_OF_PANES, POWER_ARRAYS, SCALARS, SOLUTION, SOLUTION_ARRAYS
+from .npz import FORMAT, FORMAT_OF_LIGHTS, FORMAT_OF_OWN, FORMATS_OF_PANES, POWER_ARRAYS, SCALARS, SOLUTION, SOLUTION_ARRAYS
 from .reading import read
 from .stored_patches import restored
 from .validate import validate
@@ -21,7 +21,7 @@ def load_solution(path) -> Solution:
         >>> rd.load_solution("room.npz").status
         'complete'
     """
-    return read(Path(path), SOLUTION, (FORMAT, FORMAT_OF_OWN, FORMAT_OF_LIGHTS, FORMAT_OF_PANES), _restore)
+    return read(Path(path), SOLUTION, (FORMAT, FORMAT_OF_OWN, FORMAT_OF_LIGHTS, *FORMATS_OF_PANES), _restore)
 
 
 def _restore(arrays: dict[str, Any], meta: dict[str, Any]) -> Solution:

@@ -75,7 +75,7 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
         check(quantity)
     patches, some = solution.patches.solid, key >= 0
     here, shape = key[some], (n, patches.emission.shape[1])
-    its_area, reflectance = patches.area[some], patches.reflectance[some]
+    its_area, scatter = patches.area[some], patches.scatter
     area = np.bincount(here, its_area, n)
     area = np.where(area > 0, area, np.nan)  # a set without patches has no mean
     if power is None:
@@ -84,9 +84,11 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
     values = {"irradiance": received, "radiosity": reflected}.get(quantity, received - reflected)
     mean, error = mean_and_error(values)
     half = student(level, solution.replicates)
+    # a side of a diffusing pane may send out more than it receives: that counts as negative absorption
+    floor = -np.inf if quantity == "absorbed" and scatter.through is not None else 0.0
     if solution.by_baseline:
         error = np.where(error > 0, error, np.nan)  # form factors that agree tell nothing about their error
-        low, high = np.maximum(mean - half * error, 0), mean + half * error
+        low, high = np.maximum(mean - half * error, floor), mean + half * error
     else:
         usual, share = _usual(solution, key, shape), np.ones(shape)
         arrivals = np.bincount(here, solution.arrivals[some], n)
@@ -94,13 +96,17 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
         bunches = np.maximum(cluster(got, its_error, arrivals, area), _cluster(solution))
         if quantity != "irradiance":
             share = np.zeros(shape)
-            np.maximum.at(share, here, reflectance if quantity == "radiosity" else 1 - reflectance)
+            np.maximum.at(share, here, (scatter.reflectance if quantity == "radiosity" else 1 - scatter.reflectance)[some])
         error = least_error(mean, error, arrivals, area, usual * share, solution.replicates)
-        low, high = np.maximum(mean - half * error, 0), mean + half * error
+        low, high = np.maximum(mean - half * error, floor), mean + half * error
         least, most = irradiance_bounds(got, arrivals, area, 0.5 + level / 2, bunches, usual)
         least = least if quantity == "irradiance" else 0 * least  # where reflectances differ, lines may hit the darkest
-        few = (arrivals < FEW)[:, None] | (got == 0)
-        low, high = widened(low, high, few, least, most * share, mean if solution.signed else None)
+        few, most = (arrivals < FEW)[:, None] | (got == 0), most * share
+        if quantity != "irradiance" and scatter.through is not None:
+            beyond, unsure = _from_beyond(solution, scatter, some, here, area, level, bunches, usual)
+            few, most = few | unsure, most + (beyond if quantity == "radiosity" else 0)
+            least = least - (beyond if quantity == "absorbed" else 0)
+        low, high = widened(low, high, few, least, most, mean if solution.signed else None)
     if quantity != "irradiance" and patches.pane_of is not None:  # what leaves or heats the solid part, over the whole area
         whole = np.bincount(here, patches.whole.area[some], n)
         part = np.divide(area, whole, out=np.ones(n), where=whole > 0)[:, None]
@@ -111,6 +117,18 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
         emitted = np.stack([np.bincount(here, its_area * band, n) for band in emission.T], axis=1) / area[:, None]
         low, high = low + emitted, high + emitted
     return Ends(error, low, high)
+
+
+def _from_beyond(solution, scatter, some, here, area, level: float, bunches, usual) -> tuple[np.ndarray, np.ndarray]:
+    """Return a bound of what sets send on of the light on the other side, (k, n_bands), and where few lines hit there."""
+    n, other = len(area), scatter.other[some]
+    its_area = solution.patches.solid.area[some]
+    arrivals = np.bincount(here, solution.arrivals[other], n)
+    got = np.stack([np.bincount(here, its_area * band, n) for band in solution.irradiance[other].T], axis=1) / area[:, None]
+    share = np.zeros(got.shape)
+    np.maximum.at(share, here, scatter.through[some])
+    _, most = irradiance_bounds(got, arrivals, area, 0.5 + level / 2, bunches, usual)
+    return most * share, (share > 0) & ((arrivals < FEW)[:, None] | (got == 0))
 
 
 def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:

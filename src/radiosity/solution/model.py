@@ -11,7 +11,7 @@ from ..patches.model import Patches
 from ..scene.model import Back
 from . import intervals, means
 from .brief import brief
-from .errors import relative_error
+from .errors import relative_error_of
 from .sides import Sides, sides_of
 
 
@@ -68,15 +68,19 @@ class Solution:
     def radiosity(self) -> np.ndarray:
         """The radiosity, emission plus reflectance times irradiance, (n_patches, n_bands) float64.
 
+        A diffusing pane adds its diffuse transmittance times the irradiance of its other side.
         What goes straight on through a pane is no radiosity of the pane: lines carry it from where it comes from.
         """
-        return self.patches.emission + self.patches.reflectance * self.irradiance
+        return self.patches.emission + self.patches.scatter.of(self.irradiance)
 
     @cached_property
     def standard_error(self) -> np.ndarray:
-        """The standard error of the radiosity, (n_patches, n_bands) float64; zero on black patches, NaN where unknown."""
-        error = self.patches.reflectance * self.irradiance_standard_error
-        return np.where(self.patches.reflectance == 0, 0.0, error)
+        """The standard error of the radiosity, (n_patches, n_bands) float64; zero on black patches, NaN where unknown.
+
+        On a diffusing pane the errors of both sides are added: it is never too small, and at most 1.4 times too large where they
+        do not depend on each other.
+        """
+        return self.patches.scatter.error_of(self.irradiance_standard_error)
 
     @property
     def bands(self) -> tuple[str, ...]:
@@ -166,8 +170,7 @@ class Solution:
         if self.by_baseline and not self.irradiance_standard_error[rows].any():
             return float("nan")
         patches = self.patches.solid
-        values = (patches.reflectance, self.irradiance, self.irradiance_standard_error, patches.area)
-        return relative_error(*(value[rows] for value in values))
+        return relative_error_of(patches.scatter, self.irradiance, self.irradiance_standard_error, patches.area, rows)
 
     @property
     def history(self) -> np.ndarray:

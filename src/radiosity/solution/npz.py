@@ -11,6 +11,9 @@ READERS = {SOLUTION: "load_solution", LINES: "load_lines", EXCHANGE: "load_excha
 FORMAT, FORMAT_OF_OWN, FORMAT_OF_LIGHTS = 1, 2, 3
 FORMAT_OF_PANES = 4  # of all kinds of files, where the scene has panes, which older versions would take for opaque faces
 PANES = "scene_transmittance"
+FORMAT_OF_DIFFUSERS = 5  # of all kinds of files, where panes diffuse light
+FORMATS_OF_PANES = (FORMAT_OF_PANES, FORMAT_OF_DIFFUSERS)
+DIFFUSERS = "scene_diffuse_transmittance"
 OWN_ARRAYS = ("own_reflectance", "own_emission")  # of patches, that may be missing
 SCENE_ARRAYS = (
     "vertices",

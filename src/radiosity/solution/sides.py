@@ -52,6 +52,7 @@ def sides_of(solution) -> Sides:
     counts = np.where(solution.few | ~received, hits, np.maximum(hits, FEW))
     reached = np.zeros((scene.n_faces, 2))
     np.add.at(reached, place, counts)
+    reached[scene.diffusers] = reached[scene.diffusers].sum(axis=1, keepdims=True)  # light that falls on one side leaves both
     kind = lit_sides(scene, reached, FEW)
     back_is_less = reached[:, 0] >= reached[:, 1]
     of_face, outside = kind[surface], np.zeros((scene.n_faces, 2), bool)

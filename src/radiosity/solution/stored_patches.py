@@ -14,7 +14,7 @@ from ..scene.paint import Paint
 from ..scene.sampler import Sampler
 from ..scene.sensor_request import SensorRequest
 from . import stored_lights
-from .npz import FORMAT_OF_PANES, OWN_ARRAYS, PAINT_ARRAYS, PANES, SCENE_ARRAYS
+from .npz import DIFFUSERS, FORMAT_OF_DIFFUSERS, FORMAT_OF_PANES, OWN_ARRAYS, PAINT_ARRAYS, PANES, SCENE_ARRAYS
 
 
 def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -51,9 +51,14 @@ def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
     if scene.lights:
         of_lights, facts["lights"] = stored_lights.stored(scene.lights)
         arrays |= of_lights
-    if scene.transmittance is None:
-        return arrays, {"paints": paints, "scene": facts}
-    return arrays | {PANES: scene.transmittance}, {"paints": paints, "scene": facts, "format": FORMAT_OF_PANES}
+    meta: dict[str, Any] = {"paints": paints, "scene": facts}
+    for key, value, number in (
+        (PANES, scene.transmittance, FORMAT_OF_PANES),
+        (DIFFUSERS, scene.diffuse_transmittance, FORMAT_OF_DIFFUSERS),
+    ):
+        if value is not None:
+            arrays[key], meta["format"] = value, number
+    return arrays, meta
 
 
 def restored(arrays: dict[str, Any], meta: dict[str, Any]) -> Patches:
@@ -79,6 +84,7 @@ def restored(arrays: dict[str, Any], meta: dict[str, Any]) -> Patches:
         assumed=tuple(described.get("assumed", ())),
         lights=stored_lights.restored(arrays, described["lights"]) if "lights" in described else Lights(),
         transmittance=arrays.get(PANES),
+        diffuse_transmittance=arrays.get(DIFFUSERS),
         sensors=tuple(SensorRequest.of(facts) for facts in described.get("sensors", ())),
     )
     own = {name: arrays.get(f"patches_{name}") for name in OWN_ARRAYS}

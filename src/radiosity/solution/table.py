@@ -19,6 +19,8 @@ def surface_table(solution) -> list[dict]:
       received (of a pane: without what goes through), reflected, absorbed, left (emitted + reflected: the power that leaves),
       net (left - received = emitted - absorbed: above zero where the surface sends out more than it receives), net error
       (standard error of net), net low and net high (ends of its 95 % interval)
+    - transmitted: what comes through from the other side of diffusing panes, W or lm; only where a scene has some. It is part of
+      ``left``; the sides together have net = emitted - absorbed
     - illuminance: mean, lx; only where a photometric scene has red, green and blue
     - interval: half the 95 % interval of the mean irradiance, relative to it, the largest of the bands
     - error: relative, RMS over the patches
@@ -35,20 +37,31 @@ def surface_table(solution) -> list[dict]:
     count, areas, solid = np.bincount(row, minlength=n), total(whole), total(area)
     safe, stops = (np.where(some > 0, some, 1) for some in (areas, solid))
     absorbs = of_rows(solution, 0.95, "absorbed")
+    scatter = patches.scatter
     columns: dict[str, np.ndarray] = {"patches": count, "area": areas, "dark": sides.dark_area}
     for band, name in enumerate(scene.bands):
         tail = f" [{name}]" if len(scene.bands) > 1 else ""
         power = area * solution.irradiance[some, band]
         reflected = patches.reflectance[some, band] * power
         emitted = area * patches.emission[some, band]
-        columns[f"radiosity{tail}"] = (total(emitted) + total(reflected)) / safe
+        through, taken = (
+            (np.zeros(n), power - reflected)
+            if scatter.through is None
+            else (
+                total(area * (scatter.through[:, band] * solution.irradiance[scatter.other, band])[some]),
+                power * (1 - scatter.albedo[some, band]),
+            )
+        )
+        columns[f"radiosity{tail}"] = (total(emitted) + total(reflected) + through) / safe
         columns[f"irradiance{tail}"] = total(power) / stops
         columns[f"emitted{tail}"] = total(emitted)
         columns[f"received{tail}"] = total(power)
         columns[f"reflected{tail}"] = total(reflected)
-        columns[f"absorbed{tail}"] = total(power - reflected)
-        columns[f"left{tail}"] = total(emitted) + total(reflected)
-        columns[f"net{tail}"] = total(emitted) + total(reflected) - total(power)
+        if scatter.through is not None:
+            columns[f"transmitted{tail}"] = through
+        columns[f"absorbed{tail}"] = total(taken)
+        columns[f"left{tail}"] = total(emitted) + total(reflected) + through
+        columns[f"net{tail}"] = total(emitted) + total(reflected) + through - total(power)
         columns[f"net error{tail}"] = absorbs.error[:, band] * areas
         columns[f"net low{tail}"] = total(emitted) - absorbs.high[:, band] * areas
         columns[f"net high{tail}"] = total(emitted) - absorbs.low[:, band] * areas

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from ..patches.model import Patches
+from ..scene import panes
 from ..scene.lights.given import fault_of, light_bands
 from ..scene.model import Back, Scene
 from ..scene.paint import Paint
@@ -90,6 +91,10 @@ def _scene(scene: Scene) -> None:
     if scene.transmittance is not None:
         _array("transmittance", scene.transmittance, "f", (n,))
         _that(((scene.transmittance >= 0) & (scene.transmittance < 1)).all(), "transmittance out of range")
+    if scene.diffuse_transmittance is not None:
+        _array("diffuse_transmittance", scene.diffuse_transmittance, "f", (n, bands))
+        sides, of_surface = (scene.reflectance, scene.back_reflectance), (scene.surface, scene.names, scene.source)
+        panes.check(scene.transmittance, scene.back, sides, *of_surface, scene.diffuse_transmittance)
     for paint in (scene.reflectance_paint, scene.emission_paint):
         if paint is not None:
             _paint(paint, n, bands)

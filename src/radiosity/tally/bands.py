@@ -1,6 +1,7 @@
 """Powers of bands that lines carry where bands differ (contract 3)."""
 
 import functools
+from typing import Any
 
 import drjit as dr
 
@@ -33,6 +34,8 @@ class BandTally:
         self.shares = [upload(types.Float64, rows.emission[:, g] * rows.area / source.power) for g in range(self.n)]
         self.lines = None if rows.lines is None else upload(types.Float64, source.share)
         self.rhos = [upload(types.UInt32, Source.fixed(rows.reflectance[:, g])) for g in range(self.n)]
+        through = rows.through
+        self.taus: Any = None if through is None else [upload(types.UInt32, Source.fixed(column)) for column in through.T]
         self.received = dr.opaque(types.UInt64, 0, tracer.slots * self.n)
         self.sent = dr.opaque(types.UInt64, 0, tracer.total * self.n)
         self.fired = dr.opaque(types.UInt64, 0, self.n * tracer.replicates)
@@ -72,9 +75,16 @@ class BandTally:
         emitted = [dr.gather(wide, share, patch) for share in self.shares]
         first = functools.reduce(dr.maximum, emitted) if self.lines is None else dr.gather(wide, self.lines, patch)
         target_counts = dr.fma(first, quanta, fraction(counters.rho) * wide(arrivals)) - wide(fired)
+        beyond = None
+        if counters.panes is not None:
+            beyond = counters.panes.beyond(numbers)
+            hits = dr.gather(types.UInt32, counters.hits.arrivals, beyond)
+            target_counts += fraction(counters.panes.tau) * wide(hits)
         for g, (share, rho) in enumerate(zip(emitted, self.rhos, strict=True)):
             received, sent = (dr.gather(types.UInt64, column, numbers * self.n + g) for column in (self.received, self.sent))
             power = dr.fma(share, quanta * QUANTUM, fraction(rho) * wide(received)) - wide(sent)
+            if beyond is not None:
+                power += fraction(self.taus[g]) * wide(dr.gather(types.UInt64, self.received, beyond * self.n + g))
             carried = dr.select(target_counts > 0, dr.clip(power / target_counts, 0, QUANTUM), 0)
             dr.scatter(self.weights, types.UInt32(dr.floor(carried + 0.5)), places * self.n + g)
 

@@ -116,7 +116,7 @@ class Arrivals(AbstractTally[FiringState]):
             missed, fired, unit = bands.received_missed[..., group], exact_sum(bands.fired_power[group]), 1
             share = rows.emission[:, group] * rows.area / source.power
             emitted = round(float(share.sum()) * quanta * QUANTUM) * replicates << 32
-        arrived, reflected = signed_totals(sent.received[..., group], Source.fixed(rows.reflectance[:, group]))
+        arrived, reflected = signed_totals(sent.received[..., group], Source.fixed_albedo(rows.scatter, group))
         escaped, lost = (exact_sum(x) * unit + int(y.sum()) << 32 for x, y in zip(missed, sent.missed[..., group], strict=True))
         fired = fired * unit + sent.fired[group]
         watts = source.power / quanta / QUANTUM / 2**32 / replicates

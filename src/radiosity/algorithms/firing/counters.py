@@ -17,6 +17,7 @@ from ...problem.model import Problem
 from ...problem.quanta import phases
 from ...sampling.streams import Seed
 from ...tally.bands import BandTally
+from ...tally.far_sides import FarSides
 from ...tally.hit_counts import HitCounts
 from ...tally.hit_tally import AbstractHitTally, hit_tally
 from ...tracing.geometry import Geometry
@@ -38,6 +39,7 @@ class FiringCounters:
         hits: the hit counts.
         fired: UInt32 (total,), the fired count of each row.
         phase: UInt32 (total,), the rounding offset of each row.
+        panes: the far sides of diffusing panes, or None.
         quanta: N of the stage that began last.
         has_due: True where some row may still have to fire a line.
     """
@@ -48,6 +50,7 @@ class FiringCounters:
         self.types, self.total = self.tracer.types, self.tracer.total
         u32 = self.types.UInt32
         self.rho = upload(u32, self.source.rho)
+        self.panes = FarSides.of(self.tracer, self.source)
         self.phase = upload(u32, phases(seed, replicates, self.tracer.n))
         self.fired = dr.opaque(u32, 0, self.total)
         rows = problem.rows
@@ -87,16 +90,24 @@ class FiringCounters:
         types, numbers = self.types, None
         if self.landed is not None:
             numbers = np.unique(self.landed)
-            numbers = upload(types.UInt32, _not_alone(numbers[numbers < self.total], self.total))
+            numbers = numbers[numbers < self.total]
+            numbers = numbers if self.panes is None else self.panes.with_others(numbers)
+            numbers = upload(types.UInt32, _not_alone(numbers, self.total))
         elif not self.everywhere:
+            if self.panes is not None:
+                self.hits.touched = self.panes.spread(self.hits.touched)
             numbers = dr.compress(dr.reshape(types.Bool, self.hits.touched, self.total, shrink=True))  # no copy of the flags
         if self.landed is None:
             self.hits.forget_touched()
         self.everywhere, self.landed = False, None
         return numbers
 
-    def target_counts(self, numbers, arrivals):
-        """Return the target counts of patch numbers (None: of all patches) after ``arrivals`` hits, UInt32."""
+    def target_counts(self, numbers, arrivals, hits=None):
+        """Return the target counts of patch numbers (None: of all patches) after ``arrivals`` hits, UInt32.
+
+        Args:
+            hits: the hits of all numbers, from which those of the other sides of diffusing panes are taken; None: those of now.
+        """
         u32, wide = self.types.UInt32, self.types.UInt64
         if numbers is None and self.tracer.replicates == 1:
             rho, whole, fraction = self.rho, self.whole, self.fraction
@@ -105,16 +116,22 @@ class FiringCounters:
             patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
             rho, whole, fraction = (dr.gather(u32, column, patch) for column in (self.rho, self.whole, self.fraction))
         low = wide(rho) * wide(arrivals) + wide(fraction) + wide(self._read(self.phase, numbers))
+        if self.panes is not None:
+            low += self.panes.sent_on(numbers, self.hits.arrivals if hits is None else hits)
         return whole + u32(low >> 32)
 
     def is_due_after(self, number, before, active):
-        """Return whether one hit after ``before`` others raises the target count of a patch by one; called in a kernel."""
+        """Return whether one hit after ``before`` others raises the target count of a patch by one; called in a kernel.
+
+        On diffusing panes it does not: a hit there may raise the counts of both sides, which the next wavefront finds.
+        """
         u32, wide = self.types.UInt32, self.types.UInt64
         patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
         rho = wide(dr.gather(u32, self.rho, patch, active))
         rest = wide(dr.gather(u32, self.fraction, patch, active)) + wide(dr.gather(u32, self.phase, number, active))
         low = rho * wide(before) + rest
-        return ((low + rho) >> 32) > (low >> 32)
+        raised = ((low + rho) >> 32) > (low >> 32)
+        return raised if self.panes is None else raised & ~self.panes.crosses(patch, active)
 
     def _read(self, column, numbers):
         """Return a column's values of patch numbers, or of all patches.
@@ -205,7 +222,8 @@ class FiringCounters:
         It is for wavefronts that keep no counts.
         """
         assert self.bands is not None
-        return self.target_counts(numbers, dr.gather(self.types.UInt32, self.bands.arrivals_before, numbers))
+        before = self.bands.arrivals_before
+        return self.target_counts(numbers, dr.gather(self.types.UInt32, before, numbers), before)
 
     def _shifts(self, wavefront: Wavefront) -> tuple[int, ...]:
         """Return the binary logarithms of the lines of a lane; () for one line a lane.

@@ -98,14 +98,16 @@ class Residue:
 
         The first is of the scalar problem, (k,) uint64, the second of each group, (k, n_groups) int64.
         """
-        arrivals, phase = self.state.arrivals[replicate, part], self.phase[replicate, part]
-        target_counts = self.problem.source.rho[part].astype(np.uint64) * arrivals + self.emitted[part]
+        phase = self.phase[replicate, part]
+        target_counts = self.problem.source.sent_on(self.state.arrivals[replicate], part) + self.emitted[part]
         bands = self.state.bands
         if bands is None:
             return target_counts, (((target_counts + phase) % ONE).astype(np.int64) - phase)[:, None]
         rows, received = self.problem.rows, bands.received[replicate, part]
         share = rows.emission[part] * (rows.area[part] / self.problem.source.power)[:, None]
         owed_of_each = share * (self.quanta * QUANTUM) + Source.fixed(rows.reflectance[part]) * 2.0**-32 * received
+        if rows.through is not None and rows.other is not None:
+            owed_of_each += Source.fixed(rows.through[part]) * 2.0**-32 * bands.received[replicate, rows.other[part]]
         return target_counts, 2 * np.round(owed_of_each - bands.sent[replicate, part]).astype(np.int64)
 
 

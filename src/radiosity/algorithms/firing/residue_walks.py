@@ -89,9 +89,11 @@ def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], in
     streams = [stream(tracer.seed, replicate, Purpose.RESIDUE_LINES) for replicate in range(tracer.replicates)]
     words = upload(types.UInt32, np.array([stream.generate_state(WORDS, np.uint32) for stream in streams]))
 
+    panes = counters.panes
+
     def body(number, turn, going, weight, powers, fired):
         replicate = tracer.replicate(number)
-        points, choice = _numbers(types, words, line, turn, replicate)
+        points, choice, side = _numbers(types, words, line, turn, replicate)
         slot = tracer.land_in(tracer.leave(tracer.record(number))(points), replicate, active=going)
         for g, power in enumerate(powers):
             dr.scatter_add(tally, power, slot * n_groups + g, active=going)
@@ -99,10 +101,18 @@ def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], in
         here = going & (slot < tracer.total)
         patch = slot - tracer.replicate(slot) * tracer.n_opaque
         rho = dr.gather(types.UInt32, counters.rho, patch, here)
-        left = types.UInt32((types.UInt64(weight) * types.UInt64(rho)) >> 32)
+        albedo, across, tau = rho, types.Bool(False), None
+        if panes is not None:
+            tau = dr.gather(types.UInt32, panes.tau, patch, here)
+            albedo = rho + tau
+            across = types.UInt64(side) * types.UInt64(albedo) < types.UInt64(tau) << 32
+        left = types.UInt32((types.UInt64(weight) * types.UInt64(albedo)) >> 32)
         after = dr.maximum(left, LEAST)
         here &= choice >> 2 < left
-        return slot, turn + 1, here, after, _reflected(counters, powers, patch, here, left, after), fired
+        chances = None if tau is None else (across, rho, tau)
+        powers = _reflected(counters, powers, patch, here, left, after, chances)
+        number = slot if panes is None else dr.select(here & across, panes.beyond(dr.select(here, slot, 0)), slot)
+        return number, turn + 1, here, after, powers, fired
 
     powers = [column(types.Int64, power) for power in begun.power.T]
     none = [dr.zeros(types.Int64, width) for _ in powers]
@@ -113,20 +123,33 @@ def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], in
     return [int(frozen(one)[:m].sum()) for one in fired], int(frozen(turn)[:m].sum(dtype=np.int64))
 
 
-def _reflected(counters: FiringCounters, powers: list, patch, here, left, after) -> list:
-    """Return the powers of lines that go on with the weight ``after`` where ``left`` is left of it; called in a kernel."""
+def _reflected(counters: FiringCounters, powers: list, patch, here, left, after, chances=None) -> list:
+    """Return the powers of lines that go on with the weight ``after`` where ``left`` is left of it; called in a kernel.
+
+    Args:
+        chances: which lines go on from the other side of a diffusing pane, and the reflectance and diffuse transmittance by which
+            that was decided; None where nothing diffuses light.
+    """
     types, bands = counters.types, counters.bands
     if bands is None:
         return [dr.select(powers[0] < 0, -types.Int64(after), types.Int64(after))]
     wide = types.Float64
     gain = wide(after) / wide(left) * 2.0**-32
     shares = [wide(dr.gather(types.UInt32, rho, patch, here)) * gain for rho in bands.rhos]
+    if chances is not None:
+        across, rho, tau = chances
+        both = wide(rho) + wide(tau)
+        shares = [
+            dr.select(across, wide(dr.gather(types.UInt32, one, patch, here)) * gain / wide(tau), share / wide(rho)) * both
+            for one, share in zip(bands.taus, shares, strict=True)
+        ]
+        shares = [dr.select(here & (both > 0), share, 0) for share in shares]
     return [types.Int64(dr.round(wide(power) * share)) for power, share in zip(powers, shares, strict=True)]
 
 
 def _numbers(types, words, line, turn, replicate):
-    """Return five numbers of the ``turn``-th line of a walk, and a word that decides whether it goes on; in a kernel."""
+    """Return five numbers of the ``turn``-th line of a walk, a word that decides whether it goes on, and one for the side."""
     first, second = (list(dr.gather(types.Array4u, words, replicate * 2 + half)) for half in (0, 1))
     drawn = philox([line, turn, *first[2:]], first[:2])
-    choice, fifth, *_ = philox([line, turn, *second[2:]], second[:2])
-    return [types.Float(word >> 8) * 2.0**-24 for word in (*drawn, fifth)], choice
+    choice, fifth, side, _ = philox([line, turn, *second[2:]], second[:2])
+    return [types.Float(word >> 8) * 2.0**-24 for word in (*drawn, fifth)], choice, side

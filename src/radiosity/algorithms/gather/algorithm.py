@@ -17,6 +17,7 @@ from ...sampling.streams import Purpose
 from ..base import AbstractAlgorithm, Swept
 from ..state import Arrays, Sizes
 from .chances import Chances
+from .lane_scatter import LaneScatter
 from .lines import UNITS, Lines
 from .near import Near
 from .packets import Packets
@@ -79,7 +80,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         self._shares = Pilot.of(self.geometry, self.problem, self.chances, method, self.seed).shares
         purposes = (Purpose.NUMBERS, Purpose.SHADOW_RAYS)
         self._lines = Lines.of(self.packets, self.chances, self.problem, method, self.seed, purposes)
-        self._reflectance = Rows.reflectances(self.packets, self.problem.groups.reflectance)
+        self._scatter = LaneScatter.of_lanes(self.packets, self.problem.groups.scatter)
         self._brought, self._met = (
             [dr.zeros(kind, self.packets.lanes) for _ in range(self.groups)] for kind in (types.UInt64, types.Int64)
         )
@@ -141,7 +142,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         _, _, place, _ = self.packets.read()
         stored = self.packets.of_packets(shares.stored(self._done), place)
         dr.eval(stored)
-        return Rows(self.packets, self._hits, stored, self._reflectance)
+        return Rows(self.packets, self._hits, stored, self._scatter)
 
     def _correct(self, shares: Shares) -> None:
         """Correct the radiosity that lines read."""

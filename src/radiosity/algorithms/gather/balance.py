@@ -14,13 +14,15 @@ it is more than the bias of stored lines: where faces stand twice, the power tha
 
 import numpy as np
 
+from ...patches.scatter import Scatter
+
 BY_CHANCE = 3.0  # standard errors: a mean imbalance beyond them has another cause, such as faces that stand twice
 LIMITS = (0.75, 4 / 3)  # of what a patch is multiplied by: where a few patches have most of the variance, the adjustment is rough
 
 
 def factors(
     own: np.ndarray,
-    reflectance: np.ndarray,
+    scatter: Scatter,
     received: np.ndarray,
     missed: np.ndarray,
     lines: np.ndarray,
@@ -30,7 +32,7 @@ def factors(
 
     Args:
         own: (n_patches,) emitted power.
-        reflectance: (n_patches,).
+        scatter: what patches send on, of one group.
         received: (replicates, n_patches) received power.
         missed: (replicates, n_patches) how many lines of each patch missed all others.
         lines: (n_patches,) how many lines each patch fired.
@@ -40,24 +42,25 @@ def factors(
     if len(received) < 2:  # nothing tells what causes its imbalance
         return np.ones_like(received)
     share, mean = missed / lines, received.mean(axis=0)
-    sent = own + reflectance * received
-    imbalance = own.sum() - (received * (1 - reflectance)).sum(axis=1) - (sent * share).sum(axis=1)
-    explained = BY_CHANCE * imbalance.std(ddof=1) / len(received) ** 0.5 + float(np.sum(bias * (1 - reflectance)))
+    taken, sends = 1 - scatter.albedo, scatter.in_column
+    sent = own + sends.of_rows(received, 0)
+    imbalance = own.sum() - (received * taken).sum(axis=1) - (sent * share).sum(axis=1)
+    explained = BY_CHANCE * imbalance.std(ddof=1) / len(received) ** 0.5 + float(np.sum(bias * taken))
     if abs(imbalance.mean()) > explained:
         imbalance = imbalance - imbalance.mean()
     usual = share.mean(axis=0)
     # replicates together, and one line more that hits: all lines of a patch may miss by chance
     likely = np.where(usual > 0, np.minimum(usual, 1 - 1 / (lines * len(received) + 2)), 0.0)
-    taken = 1 - reflectance + reflectance * usual
+    reaches = taken + scatter.of(usual)
     variance = np.minimum(received.var(axis=0, ddof=1), mean**2)
-    alone = float((taken**2 * variance).sum())
+    alone = float((reaches**2 * variance).sum())
     of_missed = float((sent**2 * (likely * (1 - likely) / lines)).sum()) / len(received)
     whole = max(float((imbalance**2).mean()), alone + of_missed)
     if whole == 0:
         return np.ones_like(received)
-    absorbed = received * (1 - reflectance + reflectance * share)
+    absorbed = received * (taken + sends.of_rows(share, 0))
     even = (1 - (alone + of_missed) / whole) * _ratio(imbalance, absorbed.sum(axis=1))
-    relative = _ratio(taken * variance, mean)
+    relative = _ratio(reaches * variance, mean)
     of_each = alone / whole * _ratio(imbalance, (absorbed * relative).sum(axis=1))
     return np.clip(1 + even[:, None] + of_each[:, None] * relative, *LIMITS)
 

@@ -183,7 +183,7 @@ class Lines:
 
 def most_read(problem: Problem) -> float:
     """Return a bound of what a cosine line reads, in shares of the largest emission: four times that of the solution."""
-    return 4.0 / max(1.0 - float(problem.groups.reflectance.max()), 1e-3)
+    return 4.0 / max(1.0 - float(problem.groups.scatter.albedo.max()), 1e-3)
 
 
 def _squared(sums, values):

@@ -14,6 +14,7 @@ from ...problem.model import Problem
 from ...sampling.streams import Purpose, Seed
 from ...tracing.geometry import Geometry
 from .chances import Chances
+from .lane_scatter import LaneScatter
 from .lines import Lines
 from .packets import Packets
 from .rows import Rows
@@ -66,19 +67,19 @@ class Pilot:
         hits = dr.zeros(types.UInt32, STORED * packets.lanes)
         lamplight, _ = lines.cosine(constant(0), constant(STORED), keep=hits)
         rows = Rows(
-            packets, hits, dr.full(types.UInt32, STORED, packets.lanes), Rows.reflectances(packets, problem.groups.reflectance)
+            packets, hits, dr.full(types.UInt32, STORED, packets.lanes), LaneScatter.of_lanes(packets, problem.groups.scatter)
         )
         direct = [
             total * (1 / SHADOW) + types.Float(met) * (1 / lines.unit / STORED)
             for total, met in zip(shadow, lamplight, strict=False)
         ]
-        right = [rho * value for rho, value in zip(rows.reflectance, direct, strict=True)]
+        right = rows.scatter.of(direct)
         dr.eval(right, direct)
         level = max(float(np.mean(np.array(one))) for one in direct)
         reflected, _ = rows.solve(right, TOLERANCE * max(level, 1e-30))
         cosine, _ = lines.cosine(constant(STORED), constant(READ), read=reflected, squares=True)
         variance = np.stack([_variance(packets, sums, number) for sums, number in ((cosine, READ), (shadow, SHADOW))])
-        rho = problem.groups.reflectance.max(axis=1)
+        rho = problem.groups.scatter.albedo.max(axis=1)
         area = packets.patches.area
         importance = area * np.maximum(rho, BLACK * float(rho @ area) / float(area.sum())) ** 2 if rho.any() else area
         whole = [np.array(a + types.Float(b)) for a, b in zip(direct, rows.means(reflected), strict=True)]

@@ -46,12 +46,9 @@ class Reading:
             first: it is the first correction.
         """
         groups = len(self.reflected)
-        right = [rho * value - read for rho, value, read in zip(rows.reflectance, irradiance, self.reflected, strict=True)]
+        right = [sent - read for sent, read in zip(rows.scatter.of(irradiance), self.reflected, strict=True)]
         met = [*rows.means(self.halves[:groups]), *rows.means(self.halves[groups:])]
-        rights = [
-            start + rho * mean - half
-            for start, rho, mean, half in zip(right * 2, rows.reflectance * 2, met, self.halves, strict=True)
-        ]
+        rights = [start + sent - half for start, sent, half in zip(right * 2, rows.scatter.of(met), self.halves, strict=True)]
         dr.eval(right, rights)
         more, missing = rows.solve(right, tolerance)
         of_halves = [

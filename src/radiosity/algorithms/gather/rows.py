@@ -13,6 +13,7 @@ import numpy as np
 
 from ...device.backend import small, upload
 from ...device.recorded import loop
+from .lane_scatter import LaneScatter
 from .packets import Packets
 
 WHOLE = 2.0**48  # fixed point units of sums of power: values are below 2^14
@@ -29,23 +30,13 @@ class Rows:
         packets: the lanes.
         hits: UInt32, the place that line k of a lane hits, at k * lanes + lane; see `Lines.cosine`.
         stored: UInt32 (lanes,), the stored lines of each lane.
-        reflectance: of each group of bands, (lanes,) Float.
+        scatter: what lanes send on of the light that they receive.
     """
 
     packets: Packets
     hits: Any
     stored: Any
-    reflectance: list
-
-    @staticmethod
-    def reflectances(packets: Packets, reflectance: np.ndarray) -> list:
-        """Return the reflectance of each group at each lane from (n_patches, n_groups)."""
-        _, _, place, patch = packets.read()
-        real = place < dr.opaque(packets.types.UInt32, packets.n)
-        columns = [upload(packets.types.Float, column.astype(np.float32)) for column in reflectance.T]
-        found = [dr.gather(packets.types.Float, column, patch, real) for column in columns]
-        dr.eval(found)
-        return found
+    scatter: LaneScatter
 
     def means(self, values: list, half: int | None = None) -> list:
         """Return the mean over the stored lines of values where they hit, of each group; or over the first or second half."""
@@ -85,7 +76,7 @@ class Rows:
         open_, missing = np.ones(self.packets.replicates, bool), np.zeros(self.packets.replicates)
         for iteration in range(1, LONGEST + 1):
             met = self.means(found, half)
-            new = [one + share * value for one, share, value in zip(right, self.reflectance, met, strict=True)]
+            new = [one + sent for one, sent in zip(right, self.scatter.of(met), strict=True)]
             if iteration % CHECKED == CHECKED - 3:
                 new = [self._balanced(value, old, *even) for value, old, even in zip(new, found, self.even, strict=True)]
             if not open_.all():
@@ -118,9 +109,9 @@ class Rows:
     def even(self) -> list:
         """Return, of each group, what an iteration makes of light like the reflectance, and by how much less power it is."""
         found = []
-        for rho in self.reflectance:
-            again = rho * self.means([rho])[0]
-            less = self._power(rho - again)
+        for group, albedo in enumerate(self.scatter.albedo):
+            again = self.scatter.of(self.means([albedo]), group)[0]
+            less = self._power(albedo - again)
             dr.eval(again, less)
             found.append((again, less))
         return found

@@ -47,7 +47,7 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         if unit > 0 and problem.lights is None:  # what lights without area send past all patches is not known
             own = problem.groups.emission[:, group] * problem.patches.area / unit
             bias = self._bias_of_stored(problem, state, group)
-            factor = factors(own, problem.groups.reflectance[:, group], brought + met, state.missed.sum(axis=0), lines, bias)
+            factor = factors(own, problem.groups.scatter.column(group), brought + met, state.missed.sum(axis=0), lines, bias)
             brought, met = brought * factor, met * factor
         return brought, met, unit
 
@@ -82,10 +82,10 @@ class GatherTally(AbstractBiasedTally[GatherState]):
 
     def books_of(self, problem: Problem, state: GatherState, group: int, received: np.ndarray) -> dict:
         """Return the energy balance of the power that patches receive, (n_patches,) W or lm."""
-        rho, own = problem.groups.reflectance[:, group], problem.groups.emission[:, group] * problem.patches.area
-        left = own + rho * received
+        scatter, own = problem.groups.scatter.column(group), problem.groups.emission[:, group] * problem.patches.area
+        left = own + scatter.of(received)
         escaped, lost = (float(left @ (count.mean(axis=0) / np.maximum(state.cosine, 1))) for count in state.missed)
-        absorbed, emitted = float(received @ (1 - rho)), float(own.sum())
+        absorbed, emitted = float(received @ (1 - scatter.albedo)), float(own.sum())
         if problem.lights is not None:  # they emit what arrives: nothing counts what they send past all patches
             emitted = absorbed + escaped + lost
         return by_difference(emitted, absorbed, escaped, lost)

@@ -6,6 +6,7 @@ numbers next to c_i, and its mean is c_i.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -34,6 +35,8 @@ class Exchange:
         n, replicates, groups, total: sizes; total is n * replicates.
         area: (total,) Float64, share of each patch in the area of all.
         rho: (total * groups,) Float64, reflectance, rounded as in the firing engine.
+        tau: the same of diffuse transmittance; None where nothing diffuses light.
+        beyond: (total * groups,) UInt32, the entry of the other side of each; None where nothing diffuses light.
         emitted: (total * groups,) Float64, E_i A_i over Phi.
         group: (total * groups,) UInt32, replicate * n_groups + group of each entry.
         step: the number of steps so far: each has rounding offsets of its own.
@@ -52,6 +55,13 @@ class Exchange:
         self.areas = problem.patches.area / problem.patches.area.sum()
         self.area = self._tiled(self.areas[:, None])
         self.rho = self._tiled(Source.fixed(groups.reflectance) * 2.0**-32)
+        self.tau: Any = None
+        self.beyond: Any = None
+        if groups.through is not None and groups.other is not None:
+            self.tau = self._tiled(Source.fixed(groups.through) * 2.0**-32)
+            numbers = np.arange(replicates)[:, None] * self.n + groups.other
+            entries = numbers.reshape(-1, 1) * self.groups + np.arange(self.groups)
+            self.beyond = upload(self.types.UInt32, entries.astype(np.uint32))
         self.emitted = self._tiled(groups.emission * problem.patches.area[:, None] / problem.source.power)
         self.replicate = self.shooter.tracer.replicate(dr.arange(self.types.UInt32, self.total))
         every = np.arange(replicates)
@@ -61,6 +71,14 @@ class Exchange:
         self.group = self.by_patch(self.replicate) * self.groups + row % self.groups
         dr.eval(self.replicate, self.group)
         self.step = 0
+
+    def scattered(self, values):
+        """Return what patches send on of received values, (total * groups,) Float64."""
+        sent = self.rho * values
+        if self.tau is None:
+            return sent
+        dr.eval(values)
+        return sent + self.tau * dr.gather(self.types.Float64, values, self.beyond)
 
     @property
     def sizes(self) -> Sizes:

@@ -37,7 +37,7 @@ class Incremental:
         self.probing = 0
         if control is not None:
             groups, area = problem.groups, problem.patches.area
-            best = [source_constant(*columns, area) for columns in zip(groups.emission.T, groups.reflectance.T, strict=True)]
+            best = [source_constant(*columns, area) for columns in zip(groups.emission.T, groups.scatter.albedo.T, strict=True)]
             control.beta[:] = np.array(best) * area.sum() / problem.source.power
 
     def advance(self, quanta: int, swept: Swept) -> None:
@@ -55,7 +55,7 @@ class Incremental:
         if self.control is not None and self.control.beta.any():
             self.probing = self.control.probe(max(more // SHARE, 1))
             # B - beta solves the equation of the source E - (1 - rho f) beta
-            source += np.array(exchange.rho * self.control.received() - self.control.constant())
+            source += np.array(exchange.scattered(self.control.received()) - self.control.constant())
         new = np.rint(source * (float(more) * LINE))
         self.unsent = upload(types.Float64, np.array(self.unsent) + new)
         self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.groups).sum(axis=1)
@@ -71,7 +71,7 @@ class Incremental:
         lines, fired = exchange.send(self.unsent, types.UInt64(exchange.largest(self.unsent)))
         self.fired += 0 if fired is None else fired()
         self.received += exchange.shooter.received
-        self.unsent = dr.round(exchange.rho * types.Float64(exchange.patches(exchange.shooter.received)))
+        self.unsent = dr.round(exchange.scattered(types.Float64(exchange.patches(exchange.shooter.received))))
         dr.eval(self.received, self.unsent)
         return lines
 

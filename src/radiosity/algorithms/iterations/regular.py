@@ -45,7 +45,7 @@ class Regular:
 
     def __init__(self, exchange: Exchange, problem: Problem, control: Control | None, warm_up: bool):
         self.exchange, self.control, types = exchange, control, exchange.types
-        rho, area = problem.groups.reflectance.max(axis=1), problem.patches.area
+        rho, area = problem.groups.scatter.albedo.max(axis=1), problem.patches.area
         self.plan = Plan(exchange.n, min(float(rho @ area / area.sum()), 0.99))
         self.total = TOTAL * (1 - float(rho.max()))
         self.warm = Incremental(exchange, problem, None) if warm_up else None
@@ -94,7 +94,7 @@ class Regular:
         source = self.exchange.patches(self.received)
         dr.eval(source, self.received)
         self.sources = [source] * self.exchange.turns
-        sent = self._sent(self._largest(self.exchange.emitted + self.exchange.rho * source))
+        sent = self._sent(self._largest(self.exchange.emitted + self.exchange.scattered(source)))
         self.weights = self._weight(lines, sent)
         plan.starting, plan.done, plan.summed = 0, plan.done + lines, lines
 
@@ -115,7 +115,7 @@ class Regular:
 
     def _iterate(self, lines: int) -> int:
         exchange, control, types, turn = self.exchange, self.control, self.exchange.types, self.exchange.turn
-        power = exchange.emitted + exchange.rho * self.sources[turn]
+        power = exchange.emitted + exchange.scattered(self.sources[turn])
         if control is not None:
             if self.plan.count & (self.plan.count - 1) == 0:  # a median costs a sort
                 control.adapt(power)

@@ -33,7 +33,7 @@ class IterationTally(AbstractTally[IterationState]):
             return _exact(problem, state, state.scheme, group)
         values, missed = _received(problem, state, group)
         power, area = problem.source.power, problem.patches.area
-        absorbed = float((values.mean(axis=0) * power) @ (1 - problem.groups.reflectance[:, group]))
+        absorbed = float((values.mean(axis=0) * power) @ (1 - problem.groups.scatter.albedo[:, group]))
         escaped, lost = (float(x) * power for x in missed.mean(axis=1))
         return by_difference(float(problem.groups.emission[:, group] @ area), absorbed, escaped, lost)
 
@@ -58,7 +58,7 @@ def _exact(problem: Problem, state: IterationState, scheme: IncrementalState, gr
     replicates, n = state.fired.shape
     received = scheme.received.reshape(replicates * (n + 2), -1)[:, group].astype(np.uint64)
     counts, missed = received[: replicates * n].reshape(replicates, n), received[replicates * n :].reshape(2, replicates)
-    rho = Source.fixed(problem.groups.reflectance[:, group])
+    rho = Source.fixed_albedo(problem.groups.scatter, group)
     arrived, reflected = exact_totals(counts, rho)
     assert scheme.emitted is not None
     assert scheme.left is not None

@@ -59,11 +59,11 @@ class MatrixTally(AbstractMeanTally[MatrixState]):
     def books(self, problem: Problem, state: MatrixState, group: int) -> dict:
         found = self._received(problem, state, group)
         emitted = float(problem.groups.emission[:, group] @ problem.patches.area)
-        absorbed = float(found.power.mean(axis=0) @ (1 - problem.groups.reflectance[:, group]))
+        absorbed = float(found.power.mean(axis=0) @ (1 - problem.groups.scatter.albedo[:, group]))
         return by_difference(emitted, absorbed, *(float(x) for x in found.missed.mean(axis=0)))
 
     def _received(self, problem: Problem, state: MatrixState, group: int) -> Received:
         pairs = self.pairs(problem, state)
         if not self._solved:
-            self._solved = pairs.solve(problem.groups.emission, problem.groups.reflectance)
+            self._solved = pairs.solve(problem.groups.emission, problem.groups.scatter)
         return self._solved[group]

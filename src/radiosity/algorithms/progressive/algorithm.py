@@ -32,7 +32,7 @@ class Progressive(AbstractAlgorithm[ProgressiveState]):
         rows = rows_for(self.geometry, self.problem, self.method, self.seed, 1)
         estimate.progressive(rows, len(self.problem.patches)).check()
         groups, self.area = self.problem.groups, self.problem.patches.area
-        self.recent, self.reflectance = RecentRows(rows), groups.reflectance
+        self.recent, self.scatter = RecentRows(rows), groups.scatter
         self.wanted, self.shots, self.history = 0, 0, [(0.0, 1.0)]
         self.unshot, self.received = groups.emission.copy(), np.zeros_like(groups.emission)
         self.missed, self.seen = np.zeros((2, groups.n_groups)), np.zeros(len(self.area), np.int64)
@@ -68,7 +68,7 @@ class Progressive(AbstractAlgorithm[ProgressiveState]):
     def _shoot(self, swept: Swept) -> None:
         extra = np.zeros_like(self.unshot)
         if self.method.overshooting:
-            extra = self.reflectance * ambient(self.area, self.reflectance, self.unshot)
+            extra = self.scatter.albedo * ambient(self.area, self.scatter.albedo, self.unshot)
         power = self.area[:, None] * (self.unshot + extra)
         urgency = np.abs(power).sum(axis=1)
         i = int(np.argmax(urgency))
@@ -78,7 +78,9 @@ class Progressive(AbstractAlgorithm[ProgressiveState]):
         arriving = possible[:, None] * power[i]
         self.cut += (values - possible).sum() * np.abs(power[i])
         self.received[columns] += arriving
-        self.unshot[columns] += self.reflectance[columns] * arriving / self.area[columns, None]
+        self.unshot[columns] += self.scatter.reflectance[columns] * arriving / self.area[columns, None]
+        if self.scatter.through is not None and self.scatter.other is not None:
+            self.unshot[self.scatter.other[columns]] += self.scatter.through[columns] * arriving / self.area[columns, None]
         self.unshot[i] -= power[i] / self.area[i]
         self.missed += np.array([[escaped], [lost]]) * power[i]
         self.seen[columns] += 1

@@ -10,13 +10,13 @@ from ..baseline_tally import SolvedTally
 from .state import ProgressiveState
 
 
-def ambient(area: np.ndarray, reflectance: np.ndarray, unshot: np.ndarray) -> np.ndarray:
+def ambient(area: np.ndarray, albedo: np.ndarray, unshot: np.ndarray) -> np.ndarray:
     """Return the ambient irradiance, (groups,), the same everywhere: what light not shot yet will bring if it spreads evenly.
 
     It is the sum of A dB over the sum of (1 - rho) A, which balances what it brings with what is absorbed (Cohen et al. 1988,
     equation 6).
     """
-    absorbs = area @ (1 - reflectance)
+    absorbs = area @ (1 - albedo)
     return np.divide(area @ unshot, absorbs, out=np.zeros(unshot.shape[1]), where=absorbs > 0)
 
 
@@ -43,7 +43,7 @@ class ProgressiveTally(AbstractTally[ProgressiveState]):
         if not self.ambient:
             return values, unit
         area = problem.patches.area
-        return values + area * ambient(area, problem.groups.reflectance, state.unshot)[group], unit
+        return values + area * ambient(area, problem.groups.scatter.albedo, state.unshot)[group], unit
 
     def books(self, problem: Problem, state: ProgressiveState, group: int) -> dict:
         return self.solved.books(problem, state, group)

@@ -51,5 +51,5 @@ class DensityTally(AbstractBiasedTally[WalkState]):
         exact = self.counted.books(problem, state, group)
         values, unit = self.irradiance(problem, state, group)
         received = values.mean(axis=0) * unit
-        absorbed = float(received @ (1 - problem.groups.reflectance[:, group]))
+        absorbed = float(received @ (1 - problem.groups.scatter.albedo[:, group]))
         return by_difference(exact["emitted"], absorbed, exact["escaped"], exact["lost"])

@@ -17,6 +17,7 @@ from ...device.backend import frozen, upload
 from ...errors import MethodError
 from ...problem.model import Problem
 from ...solution.books import by_difference, exact_sum
+from ...tally.far_sides import FarSides
 from ...tally.hit_counts import HitCounts
 from ...tally.unmet import bias, means, sides
 from ...tracing.lanes import Batch, Launch
@@ -33,12 +34,17 @@ UNIT = 2.0**24  # fixed point units of the largest emission of a group
 
 @dataclass(frozen=True)
 class Visit:
-    """One segment of a launch's walks: lanes, patch numbers that they left, slots that they hit, and which of them go on."""
+    """One segment of a launch's walks: lanes, patch numbers that they left, slots that they hit, and which of them go on.
+
+    ``leaves`` are the patch numbers that they go on from, which differ from the slots where they go on ``across`` a pane.
+    """
 
     lane: Any
     left: Any
     landed: Any
     alive: Any
+    leaves: Any
+    across: Any = None
 
 
 class Gathering(AbstractWalks[GatheringState]):
@@ -49,14 +55,20 @@ class Gathering(AbstractWalks[GatheringState]):
         self.tracer = LineTracer.of(self.geometry, method.points, method.randomisation, self.seed, self.replicates)
         self.types = types = self.tracer.types
         self.hits, self.fired = HitCounts(self.tracer), dr.opaque(types.UInt32, 0, self.tracer.total)
-        self.segments = PathSegments(self.tracer, continuous=self.method.equation == "continuous")
+        panes = FarSides.of(self.tracer, self.problem.source)
+        self.segments = PathSegments(self.tracer, continuous=self.method.equation == "continuous", panes=panes)
         self.source_sampling = SourceSampling.of_area(self.problem, self.seed, self.replicates)
         groups = self.problem.groups
         self.n, top = groups.n_groups, groups.reflectance.max(axis=1)
-        self.survival = upload(types.Float, top.astype(np.float32))
+        through = None if groups.through is None else groups.through.max(axis=1)
+        self.survival = upload(types.Float, (top if through is None else top + through).astype(np.float32))
+        self.stays = None if through is None else upload(types.Float, top.astype(np.float32))
         emission = groups.emission / groups.emission.max(axis=0)
         ratio = groups.reflectance / np.where(top > 0, top, 1)[:, None]
-        self.emission, self.ratio = ([upload(types.Float, c.astype(np.float32)) for c in x.T] for x in (emission, ratio))
+        far = ratio if through is None else groups.through / np.where(through > 0, through, 1)[:, None]
+        self.emission, self.ratio, self.ratio_across = (
+            [upload(types.Float, c.astype(np.float32)) for c in x.T] for x in (emission, ratio, far)
+        )
         self.met = dr.opaque(types.UInt64, 0, self.tracer.total * self.n)
 
     @property
@@ -77,7 +89,7 @@ class Gathering(AbstractWalks[GatheringState]):
             rows: Any = dr.compress(visit.alive)
             if dr.width(rows) == 0:
                 break
-            lane, left = (dr.gather(types.UInt32, column, rows) for column in (visit.lane, visit.landed))
+            lane, left = (dr.gather(types.UInt32, column, rows) for column in (visit.lane, visit.leaves))
             particles = particles.at(rows)
             segment = dr.opaque(types.UInt32, len(visits), particles.size)
             particles, visit = self._land(particles, lane, left, self.segments.later(particles, segment), True)
@@ -91,9 +103,15 @@ class Gathering(AbstractWalks[GatheringState]):
         alive = on & (step.numbers[4] < dr.gather(types.Float, self.survival, patch, on))
         self.hits.add(step.landed, real)
         dr.scatter_add(self.fired, types.UInt32(1), left, active=real)
-        after = ParticleBank(particles.walk, particles.index, step.place, ())
+        leaves, across, place = step.landed, None, step.place
+        if self.stays is not None and self.segments.panes is not None:
+            across = alive & (step.numbers[4] >= dr.gather(types.Float, self.stays, patch, on))
+            leaves = dr.select(across, self.segments.panes.beyond(leaves, across), leaves)
+            place = self.segments.from_side(place, across)
+            dr.eval(across, leaves)
+        after = ParticleBank(particles.walk, particles.index, place, ())
         dr.eval(self.hits.arrivals, self.fired, alive, step.landed, left, lane, after.columns())
-        return after, Visit(lane, left, step.landed, alive)
+        return after, Visit(lane, left, step.landed, alive, leaves, across)
 
     def _score(self, visits: list[Visit], launch: Launch) -> None:
         """Score what each line met, from the last segments back to the first."""
@@ -106,7 +124,11 @@ class Gathering(AbstractWalks[GatheringState]):
             for g in range(self.n):
                 behind = dr.gather(types.Float, met[g], visit.lane, visit.alive)
                 value = dr.gather(types.Float, self.emission[g], patch, on)
-                value += dr.gather(types.Float, self.ratio[g], patch, visit.alive) * behind
+                ratio = dr.gather(types.Float, self.ratio[g], patch, visit.alive)
+                if visit.across is not None:
+                    far = dr.gather(types.Float, self.ratio_across[g], patch, visit.across)
+                    ratio = dr.select(visit.across, far, ratio)
+                value += ratio * behind
                 dr.eval(value)  # before its entry is overwritten
                 dr.scatter(met[g], value, visit.lane, active=real)
                 fixed = types.UInt64(value * UNIT + 0.5)
@@ -161,11 +183,11 @@ class GatheringTally(AbstractMeanTally[GatheringState]):
     def books(self, problem: Problem, state: GatheringState, group: int) -> dict:
         values, unit = self.irradiance(problem, state, group)
         received = values.mean(axis=0) * unit
-        rho, area = problem.groups.reflectance[:, group], problem.patches.area
+        albedo, area = problem.groups.scatter.albedo[:, group], problem.patches.area
         emitted = float(problem.groups.emission[:, group] @ area)
-        left = emitted + float(received @ rho)
+        left = emitted + float(received @ albedo)
         # walks do not leave patches in proportion to light, so missed power is taken to be the power that does not hit
         missed = max(left - float(received.sum()), 0.0)
         counts = [exact_sum(kind) for kind in state.missed]
         escaped, lost = (missed * count / max(sum(counts), 1) for count in counts)
-        return by_difference(emitted, float(received @ (1 - rho)), escaped, lost)
+        return by_difference(emitted, float(received @ (1 - albedo)), escaped, lost)

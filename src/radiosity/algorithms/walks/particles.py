@@ -15,9 +15,10 @@ import numpy as np
 from ...device.backend import upload
 from ...sampling.numbers.shuffle import key, mix, shuffled
 from ...sampling.streams import Purpose, stream
+from ...tally.far_sides import FarSides
 from ...tracing.hits import first_hit, place_of
 from ...tracing.line_tracer import LineTracer
-from ...tracing.ray_generation import Frame
+from ...tracing.ray_generation import BACK, Frame
 
 SEGMENTS = 64  # number of randomisations; the orders of later segments still differ
 INDEX_BITS = 32
@@ -72,8 +73,8 @@ class Step:
 class PathSegments:
     """Traces segments of walks in kernels."""
 
-    def __init__(self, tracer: LineTracer, *, continuous: bool):
-        self.tracer, self.continuous = tracer, continuous
+    def __init__(self, tracer: LineTracer, *, continuous: bool, panes: FarSides | None = None):
+        self.tracer, self.continuous, self.panes = tracer, continuous, panes
         drawn = []
         for replicate in range(tracer.replicates):
             streams = stream(tracer.seed, replicate, Purpose.LATER_SEGMENTS).spawn(SEGMENTS)
@@ -104,6 +105,14 @@ class PathSegments:
         else:
             line = tracer.leave(tracer.record(particles.place[0]))(numbers)
         return self._land(line, replicate, numbers, active)
+
+    def from_side(self, place: tuple, across) -> tuple:
+        """Return places from which particles go on, on the other side of diffusing panes where they go ``across``."""
+        if across is None or self.panes is None:
+            return place
+        first, *rest = place
+        beyond = first ^ BACK if self.continuous else self.panes.beyond(first, across)
+        return dr.select(across, beyond, first), *rest
 
     def _moved(self, numbers, stream):
         """Return numbers moved modulo 1 by hashes of a stream, the first patch and the segment.

@@ -17,10 +17,12 @@ class Scores:
     With w the power that a particle brings to patch i, and p_i the chance to survive there, a hit scores w (collision),
     w / (1 - p_i) where the walk ends (absorption), or w / p_i where it goes on (survival; a black patch, where none goes on,
     scores w). Each has the mean w, so that all of them estimate the power received. p_i is the largest reflectance of the bands;
-    in each band the particle goes on with w rho_i / p_i.
+    in each band the particle goes on with w rho_i / p_i. On a diffusing pane p_i is the sum of the largest reflectance and the
+    largest diffuse transmittance, and a particle goes on from either side with the chance that each has in it.
 
     Attributes:
         survival: Float (n_patches,), p.
+        stays: Float (n_patches,), the part of p with which particles stay on their side; None where nothing diffuses light.
         carries: True where particles have powers of their own; else all carry one quantum.
         weighted: True where ``received`` is kept; else only hits are counted.
         received: UInt64, group g of a slot at slot * n_groups + g, in `UNIT`.
@@ -33,7 +35,9 @@ class Scores:
         self.n = groups.n_groups
         reflectance = groups.reflectance.max(axis=1)
         self.fractional = method.absorption == "fractional"
-        self.survival = upload(types.Float, reflectance.astype(np.float32))
+        through = None if groups.through is None else groups.through.max(axis=1)
+        self.survival = upload(types.Float, (reflectance if through is None else reflectance + through).astype(np.float32))
+        self.stays = None if through is None else upload(types.Float, reflectance.astype(np.float32))
         self.carries = self.n > 1 or self.fractional
         self.weighted = self.carries or method.estimator != "collision"
         if self.carries:
@@ -41,8 +45,9 @@ class Scores:
             share = groups.emission / np.where(top > 0, top, 1)[:, None]
             kept = 1.0 if self.fractional else np.where(reflectance > 0, reflectance, 1)[:, None]
             ratio = groups.reflectance / kept
-            self.shares, self.ratios = (
-                [upload(types.Float, column.astype(np.float32)) for column in x.T] for x in (share, ratio)
+            across = ratio if through is None else groups.through / np.where(through > 0, through, 1)[:, None]
+            self.shares, self.ratios, self.ratios_across = (
+                [upload(types.Float, column.astype(np.float32)) for column in x.T] for x in (share, ratio, across)
             )
         if self.weighted:
             self.received = dr.opaque(types.UInt64, 0, tracer.slots * self.n)
@@ -94,11 +99,25 @@ class Scores:
             return dr.select(probability > 0, dr.select(alive, brought / probability, 0), brought)
         return brought
 
-    def reflected(self, weights, patch, on, factor) -> tuple:
+    def across(self, number, patch, on):
+        """Return which particles go on from the other side of a diffusing pane; None where nothing diffuses light.
+
+        Args:
+            number: of each particle, in [0, 1): below its chance to survive where it goes on.
+        """
+        if self.stays is None:
+            return None
+        return on & (number >= dr.gather(self.tracer.types.Float, self.stays, patch, on))
+
+    def reflected(self, weights, patch, on, factor, across=None) -> tuple:
         """Return the power that goes on from a hit; ``factor`` restores the power of walks that a fixed share ended."""
         if not self.carries:
             return ()
-        ratios = (dr.gather(self.tracer.types.Float, ratio, patch, on) for ratio in self.ratios)
+        Float = self.tracer.types.Float
+        ratios = [dr.gather(Float, ratio, patch, on) for ratio in self.ratios]
+        if across is not None:
+            far = [dr.gather(Float, ratio, patch, on) for ratio in self.ratios_across]
+            ratios = [dr.select(across, one, other) for one, other in zip(far, ratios, strict=True)]
         return tuple(w * r * (1 if factor is None else factor) for w, r in zip(weights, ratios, strict=True))
 
     def read(self) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None]:

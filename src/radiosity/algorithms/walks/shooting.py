@@ -12,6 +12,7 @@ import drjit as dr
 from ...device.backend import frozen
 from ...device.launches import shared
 from ...errors import MethodError
+from ...tally.far_sides import FarSides
 from ...tally.hit_counts import HitCounts
 from ...tally.hit_tally import DENSE, AbstractHitTally, hit_tally
 from ...tracing.lanes import Batch, Launch, sums
@@ -58,7 +59,8 @@ class Walks(AbstractWalks[WalkState]):
         self.tracer = LineTracer.of(self.geometry, method.points, method.randomisation, self.seed, self.replicates)
         self.hits = HitCounts(self.tracer)
         self.types = self.tracer.types
-        self.segments = PathSegments(self.tracer, continuous=self.method.equation == "continuous")
+        panes = FarSides.of(self.tracer, self.problem.source)
+        self.segments = PathSegments(self.tracer, continuous=self.method.equation == "continuous", panes=panes)
         self.source_sampling = SourceSampling.of_power(self.problem, self.seed, self.replicates)
         self.fractions = Fractions.of(self.tracer, self.problem) if self.method.absorption == "fractional" else None
         self.scores = Scores(self.tracer, self.problem, self.method)
@@ -119,8 +121,9 @@ class Walks(AbstractWalks[WalkState]):
         adding.hits.add(step.landed, [], real)
         self.scores.deposit(particles.weights, step.landed, patch, probability, alive, real, adding.mode)
         factor = None if self.fractions is None else self.fractions.factor(segment)
-        weights = self.scores.reflected(particles.weights, patch, on, factor)
-        return ParticleBank(particles.walk, particles.index, step.place, weights), alive
+        across = self.scores.across(step.numbers[4], patch, on)
+        weights = self.scores.reflected(particles.weights, patch, on, factor, across)
+        return ParticleBank(particles.walk, particles.index, self.segments.from_side(step.place, across), weights), alive
 
     def _to_the_end(self, particles: ParticleBank, segment: int, adding: Adding) -> int:
         """Follow particles in one launch, and return the number of their lines."""

@@ -42,13 +42,14 @@ class WalkTally(AbstractTally[WalkState]):
         if state.received is not None and state.received_missed is not None:
             unit, counts, missed = UNIT, state.received[..., group], state.received_missed[..., group]
         watts = problem.source.power / quanta / unit / 2**32 / replicates
-        reflectance = problem.groups.reflectance[:, group]
         emission = float(problem.groups.emission[:, group] @ problem.patches.area)
         if not self.collisions:
             received = counts.sum(axis=0, dtype=np.float64)
             escaped, lost = (float(exact_sum(x)) * 2**32 * watts for x in missed)
-            return by_difference(emission, float(received @ (1 - reflectance)) * 2**32 * watts, escaped, lost)
-        rho = Source.fixed(reflectance)
+            return by_difference(
+                emission, float(received @ (1 - problem.groups.scatter.albedo[:, group])) * 2**32 * watts, escaped, lost
+            )
+        rho = Source.fixed_albedo(problem.groups.scatter, group)
         arrived, reflected = exact_totals(counts, rho)
         emitted = self._emitted(problem, quanta, unit, emission) * replicates
         fired = int(state.fired_power[group]) << 32

@@ -21,6 +21,11 @@ def solve(system: System) -> Solved:
     Raises:
         MethodError: the form factors are not reciprocal.
     """
+    if system.scatter.through is not None:
+        raise MethodError(
+            "solver 'conjugate-gradients' needs a matrix without what crosses diffusing panes (diffuse_transmittance); take "
+            "gauss-seidel"
+        )
     from scipy.sparse import diags_array
     from scipy.sparse.linalg import cg
 
@@ -33,7 +38,7 @@ def solve(system: System) -> Solved:
         )
     radiosity, histories = system.emission.copy(), []
     for band in range(system.emission.shape[1]):
-        rho = system.reflectance[:, band]
+        rho = system.scatter.reflectance[:, band]
         shiny = rho > 0
         if not shiny.any():
             continue
@@ -67,6 +72,6 @@ def solve(system: System) -> Solved:
 
 def _relative(system: System, radiosity: np.ndarray, band: int) -> float:
     """Return `System.relative` of one band."""
-    new = system.emission[:, [band]] + system.reflectance[:, [band]] * (system.factors @ radiosity)
+    new = system.emission[:, [band]] + system.scatter.reflectance[:, [band]] * (system.factors @ radiosity)
     largest = np.abs(radiosity).max()
     return float(np.abs(new - radiosity).max() / largest) if largest > 0 else 0.0

@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from ...patches.scatter import Scatter
+
 TOLERANCE = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """The system B = E + rho F B.
+    """The system B = E + rho F B. On diffusing panes tau times what the other side receives is added.
 
     Attributes:
         factors: (n, n) scipy CSR array of form factors F_ij, rows sum to 1 or less.
@@ -19,6 +21,8 @@ class System:
         reflectance: (n, n_bands) float64, rho.
         area: (n,) float64, m².
         tolerance: largest error of the solution, relative to the largest radiosity of its band.
+        through: (n, n_bands) float64, tau; None where nothing diffuses light.
+        other: (n,) int64, the patch on the other side of each; None where nothing diffuses light.
     """
 
     factors: Any
@@ -26,16 +30,23 @@ class System:
     reflectance: np.ndarray
     area: np.ndarray
     tolerance: float = TOLERANCE
+    through: np.ndarray | None = None
+    other: np.ndarray | None = None
+
+    @cached_property
+    def scatter(self) -> Scatter:
+        """What patches send on of the light that they receive."""
+        return Scatter(self.reflectance, self.through, self.other)
 
     @cached_property
     def contraction(self) -> float:
         """Largest of the products of rho and a row sum: an iteration makes the error smaller by this factor, or more."""
         sums = np.asarray(self.factors.sum(axis=1)).ravel()
-        return float((self.reflectance * sums[:, None]).max(initial=0.0))
+        return float(self.scatter.of(np.repeat(sums[:, None], self.emission.shape[1], axis=1)).max(initial=0.0))
 
     def residual(self, radiosity: np.ndarray) -> np.ndarray:
         """Return E + rho F B - B, (n, n_bands)."""
-        return self.emission + self.reflectance * (self.factors @ radiosity) - radiosity
+        return self.emission + self.scatter.of(self.factors @ radiosity) - radiosity
 
     def relative(self, residual: np.ndarray, radiosity: np.ndarray) -> float:
         """Return the largest residual divided by the largest radiosity, of the worst band."""

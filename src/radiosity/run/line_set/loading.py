@@ -10,7 +10,7 @@ from ...factors.counted import CountedPairs
 from ...factors.counts import split
 from ...method import Method
 from ...sampling.streams import Seed
-from ...solution.npz import FORMAT_OF_PANES, LINES
+from ...solution.npz import FORMATS_OF_PANES, LINES
 from ...solution.reading import read
 from ...solution.stored_patches import restored
 from ...solution.validate import validate_patches
@@ -34,7 +34,7 @@ def load_lines(path) -> LineSet:
         >>> rd.load_lines("lines.npz").solve(reflectance=0.3).status
         'complete'
     """
-    return read(Path(path), LINES, (FORMAT, FORMAT_OF_PANES), _restore)
+    return read(Path(path), LINES, (FORMAT, *FORMATS_OF_PANES), _restore)
 
 
 def _restore(arrays: dict[str, Any], meta: dict[str, Any]) -> LineSet:

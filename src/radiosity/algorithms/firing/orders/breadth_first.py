@@ -26,7 +26,9 @@ class BreadthFirst(AbstractOrder):
                 return
             if wavefront.total < tail(counters):
                 walk_all(counters, wavefront, swept)
-                return
+                if counters.panes is None:
+                    return
+                continue  # walks end on diffusing panes
             counters.fire(wavefront, largest)
             swept(wavefront.total)
             del wavefront  # frees its memory

@@ -19,9 +19,10 @@ class DepthFirst(AbstractOrder):
     """Follows all walks until they are absorbed."""
 
     def run(self, counters: FiringCounters, swept: Swept) -> None:
-        wavefront, _ = counters.due()
-        if wavefront is not None:
+        while (wavefront := counters.due()[0]) is not None:
             walk_all(counters, wavefront, swept)
+            if counters.panes is None:  # walks end on diffusing panes, and other walks begin there
+                return
 
 
 def walk_all(counters: FiringCounters, wavefront: Wavefront, swept: Swept) -> None:
