@@ -27,6 +27,7 @@ FLOORS = (  # a folder, or a file of the package's own folder, imports what is a
     "comparison",  # of two solutions; its pictures take cameras and false colours
     "exchange",  # heat from counted lines: it runs them, and its pictures take cameras and false colours
     "sensors",  # light at points: they run a solution's scene once more
+    "lightmap",  # light at texels: a gather at each, and the files that hold them
     "lab",
     "",  # __init__.py of the package: the public names, which what is outside the core may use
     "cli",

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from .exchange.radiative import radiative_exchange
     from .exchange.result import RadiativeExchange
     from .exchange.view_factors import ViewFactors
+    from .lightmap.bake import bake_lightmap
+    from .lightmap.model import Lightmap
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
     from .run.line_set.loading import load_lines
@@ -81,6 +83,8 @@ _HOMES = {
     "exchange.radiative": ("radiative_exchange",),
     "exchange.result": ("RadiativeExchange",),
     "exchange.view_factors": ("ViewFactors",),
+    "lightmap.bake": ("bake_lightmap",),
+    "lightmap.model": ("Lightmap",),
     "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
     "patches": ("Patches", "subdivide"),
     "run.line_set.loading": ("load_lines",),
@@ -116,6 +120,7 @@ __all__ = [
     "DeviceError",
     "GebhartFactors",
     "GlareRating",
+    "Lightmap",
     "LineSet",
     "Luminaire",
     "Measurement",
@@ -135,6 +140,7 @@ __all__ = [
     "Solution",
     "Sun",
     "ViewFactors",
+    "bake_lightmap",
     "check",
     "cie_sky",
     "compare",

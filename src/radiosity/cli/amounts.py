@@ -65,6 +65,16 @@ def length(text: str) -> float:
     return _measured(text, LENGTH, form, f"'{text}' must be a finite length above zero, in metres")
 
 
+def density(text: str) -> float:
+    """``20``: a finite number of texels per metre above zero.
+
+    Raises:
+        ValueError: it is none; the message says what to write.
+    """
+    form = f"'{text}' is no density; write a number of texels per metre, such as 20"
+    return _measured(text, {"": 1.0}, form, f"'{text}' must be a finite number of texels per metre, above zero")
+
+
 def _measured(text: str, units: dict[str, float], form: str, bound: str) -> float:
     """A finite amount above zero in one of the units; else a ValueError with one of the two messages."""
     parts = _split(text)

@@ -16,6 +16,7 @@ from .doctor import doctor
 from .exchange import exchange
 from .experiment import experiment
 from .factors import factors
+from .lightmap import lightmap
 from .lines import lines
 from .measure import measure
 from .methods import methods
@@ -42,7 +43,7 @@ app = App(
     suppress_keyboard_interrupt=False,
 )
 for place, command in enumerate(
-    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, compare, check, experiment, doctor)
+    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, lightmap, compare, check, experiment, doctor)
 ):
     app.command(command, sort_key=place)
 

@@ -16,12 +16,13 @@ LEAST = 4  # lines of a sample: less tell nothing of lamps and surfaces
 MOST = 1 << 24  # lines of a pixel
 
 
-def lines_of(final_gather, samples: int) -> float:
+def lines_of(final_gather, samples: int, *, name: str = "final_gather", of: str = "a pixel", parts: str = "samples") -> float:
     """Return the lines of each sample of a pixel.
 
     Args:
         final_gather: lines of a pixel.
         samples: of a pixel.
+        name, of, parts: words for the message, where it is not a pixel.
 
     Raises:
         OutputError: it is no whole number, or makes no sense.
@@ -32,8 +33,8 @@ def lines_of(final_gather, samples: int) -> float:
         good = False
     if not good or not LEAST * samples <= final_gather <= MOST:
         raise OutputError(
-            f"final_gather is {final_gather!r}; it must be a whole number of lines a pixel, from {LEAST * samples} "
-            f"({LEAST} for each of {samples} samples) to {MOST}"
+            f"{name} is {final_gather!r}; it must be a whole number of lines {of}, from {LEAST * samples} "
+            f"({LEAST} for each of {samples} {parts}) to {MOST}"
         )
     return final_gather / samples
 
@@ -81,7 +82,7 @@ class Gathered:
         patch = self.lookup.patch(hits)
         seen = np.flatnonzero(patch >= 0)
         values = np.zeros((len(patch), self.columns))
-        values[seen] = self._values(patch[seen], np.asarray(hits.u, np.float64)[seen], np.asarray(hits.v, np.float64)[seen])
+        values[seen] = self.values(patch[seen], np.asarray(hits.u, np.float64)[seen], np.asarray(hits.v, np.float64)[seen])
         return values, patch
 
     def _add_from_beyond(self, found: np.ndarray, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> None:
@@ -93,7 +94,13 @@ class Gathered:
         lit = np.flatnonzero(through.any(axis=1))
         found[lit] += through[lit] * self.gather.irradiance(patches.other_side[patch[lit]], u[lit], v[lit])
 
-    def _values(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    def values(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return values at points of patches, (m, n).
+
+        Args:
+            patch: (m,) on whose side each lies.
+            u, v: (m,) face coordinates.
+        """
         patches = self.lookup.patches
         if self.quantity == "irradiance":
             found = self.gather.irradiance(patch, u, v)

@@ -8,19 +8,11 @@ precision. Those of a surface far from the origin, for its size, are relative to
 (JSON holds doubles).
 """
 
-import json
-import struct
-
 import numpy as np
 
-from ..errors import OutputError
-from ..solution.replacing import replacing
+from .glb import ARRAY, ELEMENTS, FLOAT, TURN, UINT, USHORT, Buffer, save
 from .look import Look
 from .mesh import ColouredMesh, coloured
-
-FLOAT, USHORT, UINT = 5126, 5123, 5125
-ARRAY, ELEMENTS = 34962, 34963
-TURN = [-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]  # quaternion: z up to y up
 
 
 def write(solution, path, look: Look) -> None:
@@ -29,49 +21,26 @@ def write(solution, path, look: Look) -> None:
     Raises:
         OutputError: the file cannot be written, or would pass the 4 GB that GLB can hold.
     """
-    contents, blocks = document(coloured(solution, look))
-    text = json.dumps(contents, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)
-    size = sum(len(block) for block in blocks)
-    if 12 + 8 + len(text) + 8 + size >= 2**32:
-        raise OutputError(
-            f"{path}: the mesh needs {size / 1e9:.1f} GB, and a GLB file holds 4; export smoothed values or larger patches"
-        )
-    with replacing(path) as temporary, temporary.open("wb") as file:
-        file.write(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + size))
-        file.write(struct.pack("<I4s", len(text), b"JSON") + text)
-        file.write(struct.pack("<I4s", size, b"BIN\0"))
-        for block in blocks:
-            file.write(block)
+    save(path, *document(coloured(solution, look)))
 
 
 def document(mesh: ColouredMesh) -> tuple[dict, list]:
     """Return the JSON document, and the buffer's parts in order."""
-    views, accessors, meshes, nodes, blocks, length = [], [], [], [], [], 0
-
-    def add(array: np.ndarray, kind: str, component: int, target: int, **more) -> int:
-        nonlocal length
-        data = np.ascontiguousarray(array)
-        blocks.append(data.reshape(-1).view(np.uint8))
-        views.append({"buffer": 0, "byteOffset": length, "byteLength": data.nbytes, "target": target})
-        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(data), "type": kind, **more})
-        length += data.nbytes
-        return len(accessors) - 1
-
+    buffer, meshes, nodes = Buffer(), [], []
     for part in mesh.by_surface():
         points = (part.vertices - part.origin).astype("<f4")
         tint = np.full((len(points), 4), 65535, "<u2")
         tint[:, 3] = round((1 - part.transmittance) * 65535)
         tint[:, :3] = np.clip(np.nan_to_num(part.linear), 0, 1) * 65535 + 0.5
         limits = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
-        attributes = {"POSITION": add(points, "VEC3", FLOAT, ARRAY, **limits)}
-        attributes["COLOR_0"] = add(tint, "VEC4", USHORT, ARRAY, normalized=True)
+        attributes = {"POSITION": buffer.add(points, "VEC3", FLOAT, ARRAY, **limits)}
+        attributes["COLOR_0"] = buffer.add(tint, "VEC4", USHORT, ARRAY, normalized=True)
         for band in range(part.values.shape[1]):
             # unknown values are not written: the standard forbids NaN
-            attributes[f"_{mesh.key.upper()}_{band}"] = add(
+            attributes[f"_{mesh.key.upper()}_{band}"] = buffer.add(
                 np.nan_to_num(part.values[:, band]).astype("<f4"), "SCALAR", FLOAT, ARRAY
             )
-        indices = add(part.triangles.astype("<u4").ravel(), "SCALAR", UINT, ELEMENTS)
+        indices = buffer.add(part.triangles.astype("<u4").ravel(), "SCALAR", UINT, ELEMENTS)
         move = {"translation": part.origin.tolist()} if part.origin.any() else {}
         nodes.append({"name": part.name, "mesh": len(meshes), **move})
         meshes.append(
@@ -96,8 +65,6 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         "nodes": [root, *nodes],
         "meshes": meshes,
         "materials": [material, {**material, "name": f"{mesh.key}, panes", "alphaMode": "BLEND"}][: 1 + mesh.transmittance.any()],
-        "accessors": accessors,
-        "bufferViews": views,
-        "buffers": [{"byteLength": length}],
+        **buffer.entries(),
     }
-    return contents, blocks
+    return contents, buffer.blocks

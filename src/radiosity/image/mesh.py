@@ -31,12 +31,17 @@ class SurfacePart:
         It is a point near the surface, in round numbers, where single precision about the scene's origin would lose 1e-6 of the
         surface's size; elsewhere zeros.
         """
-        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
-        extent = float((high - low).max())
-        if extent == 0 or np.abs([low, high]).max() <= FAR * extent:
-            return np.zeros(3)
-        step = 2.0 ** np.ceil(np.log2(extent))
-        return np.round((low + high) / 2 / step) * step
+        return origin_of(self.vertices)
+
+
+def origin_of(vertices: np.ndarray) -> np.ndarray:
+    """Return the origin of coordinates, (3,) metres, about which single precision keeps vertices, (n, 3)."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    extent = float((high - low).max())
+    if extent == 0 or np.abs([low, high]).max() <= FAR * extent:
+        return np.zeros(3)
+    step = 2.0 ** np.ceil(np.log2(extent))
+    return np.round((low + high) / 2 / step) * step
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,11 +132,11 @@ def coloured(solution, look: Look) -> ColouredMesh:
         scale,
         up_axis(patches.scene),
         look.smooth,
-        _transmittances(patches.scene),
+        transmittances(patches.scene),
     )
 
 
-def _transmittances(scene) -> np.ndarray:
+def transmittances(scene) -> np.ndarray:
     """Return the area mean of each surface, (n_surfaces,)."""
     n = len(scene.names)
     if scene.transmittance is None:

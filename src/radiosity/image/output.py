@@ -4,7 +4,7 @@ import os
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..errors import INSTALL, OutputError
+from ..errors import OutputError, installing
 from ..solution.replacing import beside
 from ..solution.whole import refused, standing, try_out
 
@@ -38,14 +38,19 @@ def check_writable(path, suffixes) -> Path:
     return path
 
 
-def require(module: str, purpose: str) -> None:
+def require(module: str, purpose: str, extra: str = "all") -> None:
     """Refuse an output whose optional library is missing.
+
+    Args:
+        module: of the library.
+        purpose: what needs it.
+        extra: that brings it.
 
     Raises:
         OutputError: the library is not installed.
     """
     if find_spec(module) is None:
-        raise OutputError(f"{purpose} needs '{module}', which is not installed; {INSTALL}")
+        raise OutputError(f"{purpose} needs '{module}', which is not installed; {installing(extra)}")
 
 
 def require_results(solution) -> None:

@@ -1,0 +1,1 @@
+"""Lightmaps: light on a texture, with a place for each point of each radiating side, for programs that show textured meshes."""
