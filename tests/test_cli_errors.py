@@ -142,13 +142,14 @@ def test_version_and_help(capsys):
         "conductors",
         "exchange",
         "render",
+        "view",
         "check",
         "experiment",
         "doctor",
     ]
 
 
-@pytest.mark.parametrize("command", ["solve", "measure", "render", "check", "experiment", "doctor"])
+@pytest.mark.parametrize("command", ["solve", "measure", "render", "view", "check", "experiment", "doctor"])
 def test_help_of_each_command_explains_each_option(capsys, command):
     status, out, _ = run(capsys, command, "--help")
     assert status == 0

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from .sensors.model import Sensors
     from .sensors.result import Measurement
     from .solution import RefineCheck, Solution, load_solution
+    from .viewer.view import Viewer, view
 
 llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
 
@@ -99,6 +100,7 @@ _HOMES = {
     "sensors.model": ("Sensors",),
     "sensors.result": ("Measurement",),
     "solution": ("RefineCheck", "Solution", "load_solution"),
+    "viewer.view": ("Viewer", "view"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -130,6 +132,7 @@ __all__ = [
     "Solution",
     "Sun",
     "ViewFactors",
+    "Viewer",
     "check",
     "cie_sky",
     "epw_sky",
@@ -154,6 +157,7 @@ __all__ = [
     "trace_lines",
     "unified_glare_rating",
     "uniform_sky",
+    "view",
     "view_factors",
 ]
 

@@ -22,6 +22,7 @@ from .relight import relight
 from .render import render
 from .solve import solve
 from .streams import say, silence
+from .view import view
 
 FAILED, WRONG_INPUT = 1, 2
 
@@ -41,7 +42,7 @@ app = App(
     suppress_keyboard_interrupt=False,
 )
 for place, command in enumerate(
-    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, check, experiment, doctor)
+    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, view, check, experiment, doctor)
 ):
     app.command(command, sort_key=place)
 
