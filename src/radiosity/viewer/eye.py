@@ -33,7 +33,8 @@ def cameras(subject: Subject) -> dict[str, Camera]:
 
 
 def stand(server: Server, camera: Camera, subject: Subject, frame: Frame) -> None:
-    """Let new pages begin with a camera's view."""
+    """Let new pages begin with a camera's view, in black space."""
+    server.scene.set_background_image(np.zeros((1, 1, 3), np.uint8), format="png")  # empty space is black, as in pictures
     server.scene.set_up_direction("+y" if up_axis(subject.patches.scene) == "y" else "+z")
     size = float(np.ptp(subject.patches.scene.bounds, axis=0).max()) * frame.scale
     eye = server.initial_camera
