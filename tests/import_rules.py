@@ -28,14 +28,14 @@ FLOORS = (  # a folder, or a file of the package's own folder, imports what is a
     "exchange",  # heat from counted lines: it runs them, and its pictures take cameras and false colours
     "sensors",  # light at points: they run a solution's scene once more
     "lightmap",  # light at texels: a gather at each, and the files that hold them
+    "viewer",  # a page in the browser: it shows cameras and false colours of pictures, sensors, and findings
     "lab",
     "",  # __init__.py of the package: the public names, which what is outside the core may use
     "cli",
-    "view",
     "cluster",
     "__main__",
 )
-TO_COME = {"view", "cluster"}
+TO_COME = {"cluster"}
 APART = ("scene.formats",)  # folders within folders that count on their own
 MOST = 0.22  # of all lines may be in one folder
 

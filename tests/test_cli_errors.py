@@ -142,6 +142,7 @@ def test_version_and_help(capsys):
         "conductors",
         "exchange",
         "render",
+        "view",
         "lightmap",
         "compare",
         "check",
@@ -150,7 +151,9 @@ def test_version_and_help(capsys):
     ]
 
 
-@pytest.mark.parametrize("command", ["solve", "measure", "render", "lightmap", "compare", "check", "experiment", "doctor"])
+@pytest.mark.parametrize(
+    "command", ["solve", "measure", "render", "view", "lightmap", "compare", "check", "experiment", "doctor"]
+)
 def test_help_of_each_command_explains_each_option(capsys, command):
     status, out, _ = run(capsys, command, "--help")
     assert status == 0

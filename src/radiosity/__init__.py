@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from .sensors.model import Sensors
     from .sensors.result import Measurement
     from .solution import RefineCheck, Solution, load_solution
+    from .viewer.view import Viewer, view
 
 llvm.point()  # before anything imports Dr.Jit, which loads libLLVM at once
 
@@ -107,6 +108,7 @@ _HOMES = {
     "sensors.model": ("Sensors",),
     "sensors.result": ("Measurement",),
     "solution": ("RefineCheck", "Solution", "load_solution"),
+    "viewer.view": ("Viewer", "view"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -140,6 +142,7 @@ __all__ = [
     "Solution",
     "Sun",
     "ViewFactors",
+    "Viewer",
     "bake_lightmap",
     "check",
     "cie_sky",
@@ -166,6 +169,7 @@ __all__ = [
     "trace_lines",
     "unified_glare_rating",
     "uniform_sky",
+    "view",
     "view_factors",
 ]
 

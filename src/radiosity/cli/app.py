@@ -24,6 +24,7 @@ from .relight import relight
 from .render import render
 from .solve import solve
 from .streams import say, silence
+from .view import view
 
 FAILED, WRONG_INPUT = 1, 2
 
@@ -43,7 +44,23 @@ app = App(
     suppress_keyboard_interrupt=False,
 )
 for place, command in enumerate(
-    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, lightmap, compare, check, experiment, doctor)
+    (
+        solve,
+        measure,
+        methods,
+        lines,
+        relight,
+        factors,
+        conductors,
+        exchange,
+        render,
+        view,
+        lightmap,
+        compare,
+        check,
+        experiment,
+        doctor,
+    )
 ):
     app.command(command, sort_key=place)
 

@@ -62,6 +62,11 @@ def status() -> int:
     return 128 + _ears.number
 
 
+def asked_to_end() -> bool:
+    """Return whether a signal of `ENDS` was heard, and not Ctrl-C alone."""
+    return _ears.number != signal.SIGINT
+
+
 def answer() -> None:
     """Note that the code that caught an interruption reported it, so that `kept` does not raise it again."""
     _ears.raised = False

@@ -9,6 +9,7 @@ from cyclopts import Parameter
 
 from ..errors import OutputError, SceneError, printable
 from . import amounts, outputs
+from .false_colors import range_of
 from .options import Count, Flag, Outputs, Pair, Point, Seed, Stops
 from .streams import tell
 
@@ -70,20 +71,6 @@ class Picture:
     seed: Seed = 0
     denoise: Flag = False
 
-    @property
-    def range(self) -> tuple[float, float] | None:
-        """The limits as numbers.
-
-        Raises:
-            OutputError: options of false colours are given without them.
-        """
-        given = {"--range": self.limits is not None, "--log": self.log, "--color-map": self.color_map is not None}
-        idle = [name for name, there in given.items() if there]
-        if idle and not self.false_color:
-            raise OutputError(f"{' and '.join(idle)}: for false colours only; add --false-color")
-        low_high = None if self.limits is None else amounts.numbers(self.limits, 2)
-        return None if low_high is None else (low_high[0], low_high[1])
-
 
 class Unset:
     """Each group of options where none of them is given."""
@@ -116,7 +103,7 @@ def render(
         raise OutputError("no output; name a picture with -o, such as -o view.png")
     if picture.seed and picture.final_gather is None:
         raise OutputError(f"--seed {picture.seed} is that of a final gather: give --final-gather N, or leave it out")
-    interval = picture.range
+    interval = range_of(picture)
 
     import radiosity as rd
 

@@ -1,6 +1,7 @@
 """False colours: values as colours of a map, with a legend in physical units beside the picture."""
 
 import textwrap
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -28,24 +29,62 @@ def colour(picture: Picture, *, title: str, unit: str, limits=None, log=False, c
     Raises:
         OutputError: the limits are not a range, or the colour map is unknown.
     """
-    import matplotlib
-    from matplotlib.colors import LogNorm, Normalize
-
-    if color_map not in matplotlib.colormaps:
-        raise OutputError(f"colour map '{color_map}' does not exist; take viridis, inferno, turbo or another of matplotlib's")
     values = picture.values[..., 0]
     low, high = _checked(limits, log) if limits is not None else automatic_limits(picture.counted[:, 0], log)
-    norm, shades = (LogNorm if log else Normalize)(low, high, clip=True), matplotlib.colormaps[color_map]
-    display = shades(norm(np.maximum(np.nan_to_num(values), low)))[..., :3]
-    unknown = ~np.isfinite(values) & (picture.cover > 0)
-    display[unknown] = UNKNOWN
+    palette = Palette(low, high, log, color_map)
+    display, seen = palette(values), picture.cover > 0
     display = tone.eight_bits(display * picture.cover[..., None])
-    known = values[(picture.cover > 0) & ~unknown]
-    beyond = known.size and known.max() > high * (1 + 1e-9), known.size and known.min() < low * (1 - 1e-9)
-    extend = {(True, True): "both", (True, False): "max", (False, True): "min"}.get((bool(beyond[0]), bool(beyond[1])), "neither")
-    if unknown.any():
+    if (seen & ~np.isfinite(values)).any():
         title += " (grey: unknown)"
-    return _beside(display, _legend(norm, shades, f"{title} [{unit}]", extend, max(len(display), LOWEST_LEGEND)))
+    return beside(display, palette.legend(f"{title} [{unit}]", values[seen], max(len(display), LOWEST_LEGEND)))
+
+
+@dataclass(frozen=True)
+class Palette:
+    """The colours of values: from ``low`` to ``high`` through a colour map, linear or logarithmic; grey where unknown.
+
+    Raises:
+        OutputError: the colour map is unknown, or the values are no range.
+    """
+
+    low: float
+    high: float
+    log: bool = False
+    color_map: str = "viridis"
+
+    def __post_init__(self):
+        import matplotlib
+
+        if self.color_map not in matplotlib.colormaps:
+            raise OutputError(
+                f"colour map '{self.color_map}' does not exist; take viridis, inferno, turbo or another of matplotlib's"
+            )
+        _checked((self.low, self.high), self.log)
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        """Return sRGB colours, (..., 3) in [0, 1], of values (...), NaN allowed."""
+        display = self._shades(self._norm(np.maximum(np.nan_to_num(values), self.low)))[..., :3]
+        display[~np.isfinite(values)] = UNKNOWN
+        return display
+
+    def legend(self, label: str, values: np.ndarray, height: int) -> np.ndarray:
+        """Return a picture of the scale, (height, width, 3) uint8; arrows say that some of the values lie beyond its ends."""
+        known = values[np.isfinite(values)]
+        beyond = known.size and known.max() > self.high * (1 + 1e-9), known.size and known.min() < self.low * (1 - 1e-9)
+        names = {(True, True): "both", (True, False): "max", (False, True): "min"}
+        return _legend(self._norm, self._shades, label, names.get((bool(beyond[0]), bool(beyond[1])), "neither"), height)
+
+    @property
+    def _norm(self):
+        from matplotlib.colors import LogNorm, Normalize
+
+        return (LogNorm if self.log else Normalize)(self.low, self.high, clip=True)
+
+    @property
+    def _shades(self):
+        import matplotlib
+
+        return matplotlib.colormaps[self.color_map]
 
 
 def automatic_limits(values: np.ndarray, log: bool) -> tuple[float, float]:
@@ -97,7 +136,8 @@ def _legend(norm, shades, label: str, extend: str, height: int) -> np.ndarray:
     return np.asarray(canvas.buffer_rgba())[..., :3]
 
 
-def _beside(picture: np.ndarray, legend: np.ndarray) -> np.ndarray:
+def beside(picture: np.ndarray, legend: np.ndarray) -> np.ndarray:
+    """Return a picture and its legend to the right of it, on white."""
     height = max(len(picture), len(legend))
     pad = [np.pad(part, ((0, height - len(part)), (0, 0), (0, 0)), constant_values=255) for part in (picture, legend)]
     return np.concatenate(pad, axis=1)

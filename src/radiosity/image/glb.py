@@ -2,7 +2,9 @@
 
 import json
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -54,16 +56,23 @@ def save(path, contents: dict, blocks: list) -> None:
     Raises:
         OutputError: it cannot be written, or would pass the 4 GB that GLB can hold.
     """
-    text = json.dumps(contents, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)
+    text = json.dumps(contents, separators=(",", ":"))
     size = sum(len(block) for block in blocks)
-    if 12 + 8 + len(text) + 8 + size >= 2**32:
+    if 12 + 8 + len(text.encode()) + 3 + 8 + size >= 2**32:
         raise OutputError(
             f"{path}: the mesh needs {size / 1e9:.1f} GB, and a GLB file holds 4; export smoothed values or larger patches"
         )
     with replacing(path) as temporary, temporary.open("wb") as file:
-        file.write(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + size))
-        file.write(struct.pack("<I4s", len(text), b"JSON") + text)
-        file.write(struct.pack("<I4s", size, b"BIN\0"))
-        for block in blocks:
-            file.write(block)
+        for part in packed(text, blocks):
+            file.write(part)
+
+
+def packed(text: str, blocks: list) -> Iterator[Any]:
+    """Yield the parts of a GLB file: its head, the JSON document, and the buffer's blocks."""
+    document = text.encode()
+    document += b" " * (-len(document) % 4)
+    size = sum(len(block) for block in blocks)
+    yield struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(document) + 8 + size)
+    yield struct.pack("<I4s", len(document), b"JSON") + document
+    yield struct.pack("<I4s", size, b"BIN\0")
+    yield from blocks

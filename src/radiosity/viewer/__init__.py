@@ -1,0 +1,1 @@
+"""A viewer in the browser: what a solution holds, or a scene before it is solved."""

@@ -1,0 +1,96 @@
+"""Finer triangles where a page would show wrong colours between their corners.
+
+A page interpolates the colours that meshes are given, and then maps tones. So between two corners it shows another colour than
+that of the interpolated value. Edges in whose middle the difference can be seen are halved, in both triangles that share them.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from . import tone_mapping
+from .mesh import Triangles
+
+DIFFERENCE = 1.5 / 255  # of display values: what is left between corners
+SAMPLES = (0.25, 0.5, 0.75)  # places on an edge where colours are compared
+ROUNDS = 7  # of halving: an edge becomes at most 128 pieces
+MOST = 3_000_000  # triangles: above that they are left as they are
+
+
+def refined(triangles: Triangles, linear: Callable[[np.ndarray], np.ndarray]) -> Triangles:
+    """Return triangles whose colours are right along their edges.
+
+    Args:
+        triangles: to show.
+        linear: the linear colours, (n, 3), of values (n, n_bands).
+    """
+    fresh = np.arange(len(triangles.corners))
+    for _ in range(ROUNDS):
+        edges = np.sort(triangles.corners[fresh][:, [[0, 1], [1, 2], [2, 0]]], axis=2)
+        key = edges[..., 0].astype(np.int64) * len(triangles.vertices) + edges[..., 1]
+        unique, place = np.unique(key, return_inverse=True)
+        ends = np.stack([unique // len(triangles.vertices), unique % len(triangles.vertices)])
+        wrong = _wrong(triangles.values[ends[0]], triangles.values[ends[1]], linear)
+        if not wrong.any() or len(triangles.corners) > MOST:
+            return triangles
+        middle = np.where(wrong, len(triangles.vertices) + np.cumsum(wrong) - 1, -1)[place.reshape(key.shape)]
+        triangles, fresh = _halved(triangles, fresh, middle, ends[:, wrong])
+    return triangles
+
+
+def _wrong(first: np.ndarray, second: np.ndarray, linear: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """Return which edges, with values (n, n_bands) at their ends, show wrong colours between them, (n,) bool."""
+    from ..image.tone import srgb
+
+    a, b = linear(first), linear(second)
+    result = np.zeros(len(a), bool)
+    unlike = np.flatnonzero(np.abs(srgb(a) - srgb(b)).max(axis=1) > DIFFERENCE)
+    one, other = tone_mapping.before(a[unlike]), tone_mapping.before(b[unlike])
+    for share in SAMPLES:
+        shown = tone_mapping.after(one + share * (other - one))
+        meant = linear(first[unlike] + share * (second[unlike] - first[unlike]))
+        result[unlike] |= np.abs(srgb(shown) - srgb(meant)).max(axis=1) > DIFFERENCE
+    return result
+
+
+def _halved(triangles: Triangles, rows: np.ndarray, middle: np.ndarray, ends: np.ndarray) -> tuple[Triangles, np.ndarray]:
+    """Return triangles with some edges halved, and the numbers of those that are new.
+
+    Args:
+        rows: (k,) triangles with edges to halve; others have none.
+        middle: (k, 3) the new vertex in the middle of the edges that leave corners 0, 1, 2; -1 where an edge stays.
+        ends: (2, n) vertices between which the new ones lie.
+    """
+    vertices = np.concatenate([triangles.vertices, triangles.vertices[ends].mean(axis=0)])
+    values = np.concatenate([triangles.values, triangles.values[ends].mean(axis=0)])
+    count = (middle >= 0).sum(axis=1)
+    kept = np.ones(len(triangles.corners), bool)
+    kept[rows[count > 0]] = False
+    corners, patch = [triangles.corners[kept]], [triangles.patch[kept]]
+    for halves, template in TEMPLATES.items():
+        here = np.flatnonzero(count == halves)
+        # turned so that its halved edges come first, in the order of the template
+        split = middle[here] >= 0
+        turn = (
+            np.argmax(split, axis=1)
+            if halves == 1
+            else (np.argmin(split, axis=1) + 1) % 3
+            if halves == 2
+            else np.zeros(len(here), int)
+        )
+        order = (turn[:, None] + np.arange(3)) % 3
+        six = np.concatenate(
+            [np.take_along_axis(triangles.corners[rows[here]], order, axis=1), np.take_along_axis(middle[here], order, axis=1)],
+            axis=1,
+        )
+        corners += [six[:, list(part)] for part in template]
+        patch += [triangles.patch[rows[here]]] * len(template)
+    made = Triangles(vertices, values, np.concatenate(corners), np.concatenate(patch))
+    return made, np.arange(int(kept.sum()), len(made.corners))
+
+
+TEMPLATES = {  # number of halved edges: parts, of corners 0, 1, 2 and the middles 3 (of edge 0-1), 4 (1-2), 5 (2-0)
+    1: ((0, 3, 2), (3, 1, 2)),
+    2: ((3, 1, 4), (0, 3, 4), (0, 4, 2)),
+    3: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
+}
