@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .exchange.view_factors import ViewFactors
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
+    from .run.adapt import adapt
     from .run.line_set.loading import load_lines
     from .run.line_set.model import LineSet
     from .run.line_set.trace import trace_lines
@@ -64,7 +65,14 @@ def _gather(*of, **options):
     return Gather.of(*of, **options)
 
 
+def _adapt(*of, **options):
+    from .run.adapt import adapt
+
+    return adapt(*of, **options)
+
+
 HOOKS["export"] = _export  # of `Solution.export`
+HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)`
 HOOKS["gather"] = _gather  # of pictures with a final gather
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
@@ -79,6 +87,7 @@ _HOMES = {
     "exchange.view_factors": ("ViewFactors",),
     "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
     "patches": ("Patches", "subdivide"),
+    "run.adapt": ("adapt",),
     "run.line_set.loading": ("load_lines",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
@@ -130,6 +139,7 @@ __all__ = [
     "Solution",
     "Sun",
     "ViewFactors",
+    "adapt",
     "check",
     "cie_sky",
     "epw_sky",

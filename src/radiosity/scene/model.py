@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from .back import Back
 from .camera import Camera
+from .cut import Cut
 from .heat import Heat
 from .lights.luminaire import Luminaire
 from .lights.model import Lights
@@ -51,6 +52,7 @@ class Scene:
         transmittance: (n_faces,) float64 in [0, 1), the share of lines that goes straight on through each face from either side
             (panes), equal in all bands; None where no face is a pane.
         sensors: what the file asks `measure` for; light does not depend on it.
+        cut: what the faces are parts of, where a mesh follows the light (`subdivide(scene, patches=...)`); else None.
 
     Example:
         >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -81,6 +83,7 @@ class Scene:
     lights: Lights = field(default_factory=Lights)
     transmittance: np.ndarray | None = None
     sensors: tuple[SensorRequest, ...] = ()
+    cut: Cut | None = None
 
     @staticmethod
     def from_arrays(
@@ -264,6 +267,10 @@ class Scene:
             digest.update(_digest(self.transmittance).digest())
         return digest
 
+    def is_cut_of(self, scene: "Scene") -> bool:
+        """Return whether the faces are parts of the faces of that scene."""
+        return self.cut is not None and self.cut.whole == scene.hash
+
     def take(self, keep: np.ndarray) -> "Scene":
         """The scene of a choice of faces (indices or mask)."""
         rows = np.flatnonzero(keep) if np.asarray(keep).dtype == bool else np.asarray(keep)
@@ -279,6 +286,7 @@ class Scene:
             transmittance=panes_or_none(None if self.transmittance is None else self.transmittance[rows]),
             reflectance_paint=self.reflectance_paint and self.reflectance_paint.take(rows),
             emission_paint=self.emission_paint and self.emission_paint.take(rows),
+            cut=self.cut and self.cut.take(rows),
         )
 
     def with_lights(

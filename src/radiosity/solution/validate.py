@@ -90,6 +90,11 @@ def _scene(scene: Scene) -> None:
     if scene.transmittance is not None:
         _array("transmittance", scene.transmittance, "f", (n,))
         _that(((scene.transmittance >= 0) & (scene.transmittance < 1)).all(), "transmittance out of range")
+    if scene.cut is not None:
+        _that(isinstance(scene.cut.whole, str), "a cut of no scene")
+        for name, value in (("cut_face", scene.cut.face), ("cut_region", scene.cut.region)):
+            _array(name, value, "i", (n,))
+            _that((value >= 0).all(), f"{name} out of range")
     for paint in (scene.reflectance_paint, scene.emission_paint):
         if paint is not None:
             _paint(paint, n, bands)
