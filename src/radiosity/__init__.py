@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .lightmap.model import Lightmap
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
+    from .run.adapt import adapt
     from .run.line_set.loading import load_lines
     from .run.line_set.model import LineSet
     from .run.line_set.trace import trace_lines
@@ -69,7 +70,14 @@ def _gather(*of, **options):
     return Gather.of(*of, **options)
 
 
+def _adapt(*of, **options):
+    from .run.adapt import adapt
+
+    return adapt(*of, **options)
+
+
 HOOKS["export"] = _export  # of `Solution.export`
+HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)`
 HOOKS["gather"] = _gather  # of pictures with a final gather
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
@@ -88,6 +96,7 @@ _HOMES = {
     "lightmap.model": ("Lightmap",),
     "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
     "patches": ("Patches", "subdivide"),
+    "run.adapt": ("adapt",),
     "run.line_set.loading": ("load_lines",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
@@ -143,6 +152,7 @@ __all__ = [
     "Sun",
     "ViewFactors",
     "Viewer",
+    "adapt",
     "bake_lightmap",
     "check",
     "cie_sky",

@@ -13,6 +13,7 @@ from .solve_options import (
     MethodName,
     MethodOptions,
     OutputOptions,
+    Running,
     RunOptions,
     SceneOptions,
     Unset,
@@ -67,11 +68,10 @@ def solve(
     loaded = rd.load_scene(scene, **asdict(reading))
     before = None if run.resume is None else rd.load_solution(run.resume)
     keeper = None if cut.refine_check else checkpoints.chosen(run.checkpoint, run.no_checkpoint, output, chosen, run.resume)
-    patches = _patches(loaded, cut, chosen, before)
-
     checked = None
     try:
         with bar() as progress:
+            patches = _patches(loaded, cut, chosen, before, run, progress)
             options = asdict(budget) | {name: getattr(run, name) for name in ("seed", "device", "replicates", "memory")}
             if cut.refine_check:
                 checked = rd.refine_check(patches, chosen, **options, progress=progress)
@@ -97,15 +97,18 @@ def solve(
     return NOT_REACHED if "not reached" in ends else 0
 
 
-def _patches(scene, cut: Cut, method, before):
+def _patches(scene, cut: Cut, method, before, run: Running, progress):
     """Return the scene cut as asked, or else as in the run to continue, or else as it is."""
     import radiosity as rd
 
     from ..run.baseline_budget import cut_for
 
+    if cut.given and cut.follows:
+        options = {name: getattr(run, name) for name in ("seed", "device", "memory")}
+        return rd.adapt(scene, cut.patches, light="all" if cut.adaptive else "direct", progress=progress, **options)
     if cut.given:
         size = {"size": cut.patch_size, "cells": cut.cells} if cut.patch_size or cut.cells else cut_for(method)
         return rd.subdivide(scene, **(size | {"powers_of_two": cut.powers_of_two or method.needs_powers_of_two}))
-    if before is not None and before.patches.scene.hash == scene.hash:
+    if before is not None and (before.patches.scene.hash == scene.hash or before.patches.scene.is_cut_of(scene)):
         return before.patches
     return scene

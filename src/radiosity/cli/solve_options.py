@@ -73,19 +73,35 @@ class Cut(Size):
     """How faces are cut into patches.
 
     Attributes:
+        patches: At most so many patches, such as 50k, which follow the light: faces are cut where other faces touch them, and
+            where the light of lamps varies (docs/meshes.md).
+        adaptive: Cut where all light varies, reflected light included, by pilot runs. Default of --patches: 20 000, or one for
+            each side of a face and 20 000 more.
         powers_of_two: Cut faces into 1, 2, 4, 8 ... cells along each edge. Hierarchical radiosity always does; with this option
             other methods have the same patches, to compare with it.
         refine_check: Solve on patches cut into four, too, and report sampling and discretisation errors apart. With a .csv
             output also as NAME.refine.csv.
     """
 
+    patches: Count = None
+    adaptive: Flag = False
     powers_of_two: Flag = False
     refine_check: Flag = False
 
     @property
     def given(self) -> bool:
         """Patches are cut as these options say, and not as they come."""
-        return self.patch_size is not None or self.cells is not None or self.powers_of_two
+        even = self.patch_size is not None or self.cells is not None or self.powers_of_two
+        if even and self.follows:
+            raise MethodError(
+                "--patches and --adaptive cut where light varies: leave out --patch-size, --cells and --powers-of-two"
+            )
+        return even or self.follows
+
+    @property
+    def follows(self) -> bool:
+        """Patches follow the light."""
+        return self.patches is not None or self.adaptive
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,7 @@ def solve(
     progress: Listener | None = None,
     resume: Solution | None = None,
     error_of: str | None = None,
+    adaptive: bool | int = False,
     checkpoint: str | Path | Checkpoint | None = None,
     checkpoint_every: float = 30.0,
     memory: str | float | None = None,
@@ -84,6 +85,9 @@ def solve(
             budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
             their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
             from a stage that is a power of two.
+        adaptive: True, or a number of patches: the scene is cut first where light varies, by `adapt` with the same seed, and
+            then solved. The pilots that find the mesh come on top of the budget. To go on from its solution (``resume``), leave
+            it out: the mesh is kept.
         checkpoint: an .npz file that is written every now and then, whole or not at all, for ``resume=load_solution(checkpoint)``
             after the process has been killed. Until a first stage is complete it has no results (NaN, 0 quanta). An interruption
             writes it too; at the end it stays, brought up to date.
@@ -106,10 +110,13 @@ def solve(
         >>> solution.radiosity.shape, solution.status
         ((72, 1), 'complete')
     """
+    chosen = resolve(method, **choices)
     with limited(memory), turn():
+        if adaptive is not False:
+            scene = _adapted(scene, chosen, adaptive, seed, device, progress, resume)
         return prepared(
             scene,
-            resolve(method, **choices),
+            chosen,
             rays=rays,
             seconds=seconds,
             error=error,
@@ -162,9 +169,12 @@ def prepared(
     else:
         budget = Budget(rays, seconds, error, quanta)
         budget.check(replicates)
-    scene = patches_of(scene, chosen, "solve")
     if resume is not None and not isinstance(resume, Solution):
         raise MethodError(f"resume takes a Solution, not {type(resume).__name__}; load a file with load_solution")
+    if resume is not None and isinstance(scene, Scene) and resume.patches.scene.is_cut_of(scene):
+        scene = resume.patches
+    scene = patches_of(scene, chosen, "solve")
+    refuse_cut(scene, chosen)
     if resume is not None and len(resume.patches) != len(scene):
         raise MethodError(f"cannot go on from a solution of {len(resume.patches)} patches with {len(scene)}; cut the scene alike")
     if error_of is not None and error is None:
@@ -204,6 +214,32 @@ def patches_of(scene: Scene | Patches, method: Method | Baseline | Auto, caller:
     if not isinstance(scene, Patches):
         raise MethodError(f"{caller} takes a Scene or Patches, not {type(scene).__name__}; load a file with load_scene")
     return scene
+
+
+def _adapted(scene, chosen, adaptive, seed, device, progress, resume) -> Patches:
+    """Return the patches of ``adaptive``; see `solve`."""
+    from .adapt import adapt
+
+    if resume is not None:
+        raise MethodError("adaptive makes a new mesh, and resume keeps that of its solution: leave one of them out")
+    refuse_hierarchical(chosen)
+    count = None if adaptive is True else whole(adaptive, "adaptive", 1)
+    return adapt(scene, count, seed=seed, device=device, progress=progress)  # type: ignore[arg-type]
+
+
+def refuse_cut(patches: Patches, method: Method | Baseline | Auto) -> None:
+    """Raise where patches follow the light and the method makes a mesh of its own."""
+    if patches.scene.cut is not None:
+        refuse_hierarchical(method)
+
+
+def refuse_hierarchical(method: Method | Baseline | Auto) -> None:
+    """Raise where a method refines patches by itself."""
+    if isinstance(method, Baseline) and method.scheme == "hierarchical":
+        raise MethodError(
+            "hierarchical radiosity refines its patches by itself, from whole faces: give it the scene, or patches by size or "
+            "cells, and no mesh that follows the light"
+        )
 
 
 def refuse_open(scene: Scene, method: Method | Baseline) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from .back import Back
 from .camera import Camera
+from .cut import Cut
 from .heat import Heat
 from .lights.luminaire import Luminaire
 from .lights.model import Lights
@@ -53,6 +54,7 @@ class Scene:
         diffuse_transmittance: (n_faces, n_bands) float64 in [0, 1), the share of what falls on either side that leaves the other
             side in all directions (diffusing panes); None where there is none. Both sides of such faces radiate.
         sensors: what the file asks `measure` for; light does not depend on it.
+        cut: what the faces are parts of, where a mesh follows the light (`subdivide(scene, patches=...)`); else None.
 
     Example:
         >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -84,6 +86,7 @@ class Scene:
     transmittance: np.ndarray | None = None
     diffuse_transmittance: np.ndarray | None = None
     sensors: tuple[SensorRequest, ...] = ()
+    cut: Cut | None = None
 
     @staticmethod
     def from_arrays(
@@ -279,6 +282,10 @@ class Scene:
             digest.update(_digest(self.transmittance).digest())
         return digest
 
+    def is_cut_of(self, scene: "Scene") -> bool:
+        """Return whether the faces are parts of the faces of that scene."""
+        return self.cut is not None and self.cut.whole == scene.hash
+
     def take(self, keep: np.ndarray) -> "Scene":
         """The scene of a choice of faces (indices or mask)."""
         rows = np.flatnonzero(keep) if np.asarray(keep).dtype == bool else np.asarray(keep)
@@ -295,6 +302,7 @@ class Scene:
             diffuse_transmittance=panes_or_none(None if self.diffuse_transmittance is None else self.diffuse_transmittance[rows]),
             reflectance_paint=self.reflectance_paint and self.reflectance_paint.take(rows),
             emission_paint=self.emission_paint and self.emission_paint.take(rows),
+            cut=self.cut and self.cut.take(rows),
         )
 
     def with_lights(

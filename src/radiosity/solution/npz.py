@@ -26,6 +26,7 @@ SCENE_ARRAYS = (
     "surface",
     "patch_size",
 )
+CUT_ARRAYS = ("face", "region")  # of scenes whose faces are parts of other faces
 PAINT_ARRAYS = ("image", "uv", "color")
 SOLUTION_ARRAYS = ("irradiance", "irradiance_standard_error", "arrivals")
 POWER_ARRAYS = ("surface_power", "side_power")  # arrays that may be missing

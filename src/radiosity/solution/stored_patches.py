@@ -7,6 +7,7 @@ import numpy as np
 
 from ..patches.model import Patches
 from ..scene.camera import Camera
+from ..scene.cut import Cut
 from ..scene.heat import Heat
 from ..scene.lights.model import Lights
 from ..scene.model import Scene
@@ -14,7 +15,7 @@ from ..scene.paint import Paint
 from ..scene.sampler import Sampler
 from ..scene.sensor_request import SensorRequest
 from . import stored_lights
-from .npz import DIFFUSERS, FORMAT_OF_DIFFUSERS, FORMAT_OF_PANES, OWN_ARRAYS, PAINT_ARRAYS, PANES, SCENE_ARRAYS
+from .npz import CUT_ARRAYS, DIFFUSERS, FORMAT_OF_DIFFUSERS, FORMAT_OF_PANES, OWN_ARRAYS, PAINT_ARRAYS, PANES, SCENE_ARRAYS
 
 
 def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -44,6 +45,9 @@ def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
     }
     if scene.heat is not None:
         facts["heat"] = scene.heat.facts()
+    if scene.cut is not None:
+        arrays |= {f"cut_{name}": getattr(scene.cut, name) for name in CUT_ARRAYS}
+        facts["cut"] = scene.cut.whole
     if scene.assumed:
         facts["assumed"] = scene.assumed
     if scene.sensors:
@@ -85,6 +89,7 @@ def restored(arrays: dict[str, Any], meta: dict[str, Any]) -> Patches:
         lights=stored_lights.restored(arrays, described["lights"]) if "lights" in described else Lights(),
         transmittance=arrays.get(PANES),
         diffuse_transmittance=arrays.get(DIFFUSERS),
+        cut=Cut(described["cut"], *(arrays[f"cut_{name}"] for name in CUT_ARRAYS)) if "cut" in described else None,
         sensors=tuple(SensorRequest.of(facts) for facts in described.get("sensors", ())),
     )
     own = {name: arrays.get(f"patches_{name}") for name in OWN_ARRAYS}

@@ -95,6 +95,11 @@ def _scene(scene: Scene) -> None:
         _array("diffuse_transmittance", scene.diffuse_transmittance, "f", (n, bands))
         sides, of_surface = (scene.reflectance, scene.back_reflectance), (scene.surface, scene.names, scene.source)
         panes.check(scene.transmittance, scene.back, sides, *of_surface, scene.diffuse_transmittance)
+    if scene.cut is not None:
+        _that(isinstance(scene.cut.whole, str), "a cut of no scene")
+        for name, value in (("cut_face", scene.cut.face), ("cut_region", scene.cut.region)):
+            _array(name, value, "i", (n,))
+            _that((value >= 0).all(), f"{name} out of range")
     for paint in (scene.reflectance_paint, scene.emission_paint):
         if paint is not None:
             _paint(paint, n, bands)

@@ -1,0 +1,137 @@
+"""Meshes that follow the light: faces are cut where light varies over them, within a number of patches.
+
+First faces are cut along contact lines. Then pilot runs see, with each patch cut into up to four, where the cells of a patch
+differ by more than noise. The patches are cut that gain most for each patch that is added, and so on, until there are as many as
+asked for. The run itself starts anew on that mesh, so that its bits are a function of seed and inputs.
+"""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from ..device.memory import limited
+from ..device.turn import turn
+from ..errors import MethodError, RadiosityWarning, SceneError
+from ..method import Method, resolve
+from ..patches import Patches, subdivide
+from ..patches.cells_as_faces import cells_as_faces
+from ..patches.contact import cut_at_contacts
+from ..patches.gains import Halves
+from ..patches.relit import relit
+from ..scene.model import Back, Scene
+from .progress import Listener
+from .whole_number import whole
+
+START = 16  # the first mesh has so many times fewer patches
+GROWTH = 1.6  # of the number of patches from one pilot to the next
+CUTS = 8  # contact lines add at most the number of patches over this
+LEAST = 64  # patches are cut until they are so many times smaller than the mean
+LINES = 64  # of each cell of a pilot, replicates together
+REPLICATES = 4  # of pilots
+APART = 1 << 20  # difference of the seeds of pilots and of the run, so that their errors are independent
+LIGHTS = ("all", "direct")
+
+
+def adapt(
+    scene: Scene,
+    patches: int | None = None,
+    *,
+    light: str = "all",
+    seed: int = 0,
+    device: str = "auto",
+    progress: Listener | None = None,
+    memory: str | float | None = None,
+) -> Patches:
+    """Cut a scene where light varies: along contact lines, near lamps, and where shadows end.
+
+    Every patch is a face of the scene of the patches (``patches.scene.cut`` says of which face each is a part). All methods but
+    hierarchical radiosity, which refines by itself, take such patches.
+
+    Args:
+        scene: what to cut.
+        patches: how many patches there may be; default: as many as `subdivide` makes of the scene.
+        light: "all", or "direct": the light of lamps, suns and the sky before it is reflected.
+        seed: with the same inputs, the same mesh.
+        device, progress, memory: as of `solve`.
+
+    Raises:
+        SceneError: nothing emits, or the scene has more faces and sides than there may be patches. MethodError: a value that
+            makes no sense. KeyboardInterrupt: Ctrl-C.
+
+    Example:
+        >>> patches = rd.adapt(rd.load_scene("room"), 400)
+        >>> 300 < len(patches) <= 400, len(patches.scene.names) == len(rd.load_scene("room").names)
+        (True, True)
+    """
+    if not isinstance(scene, Scene):
+        raise MethodError(f"adapt takes a Scene, not {type(scene).__name__}: it cuts the faces anew; load a file with load_scene")
+    if light not in LIGHTS:
+        raise MethodError(f"light is {light!r}; a mesh follows {' or '.join(LIGHTS)}")
+    count = len(subdivide(scene)) if patches is None else whole(patches, "patches", 1)
+    least = int(np.where(scene.back == Back.RADIATES, 2, 1).sum())
+    if least > count:
+        raise SceneError(
+            f"{scene.source}: {count} patches are fewer than its {least} sides of faces; ask for {least} or more, or leave out "
+            "the number"
+        )
+    number = whole(seed, "seed", 0)
+    method: Method | None = None
+    with limited(memory), turn():
+        small = float(scene.area.sum()) / count / LEAST
+        current = _first(scene, count, least)
+        for step in range(1, 64):
+            halves = Halves.of(current, small)
+            here = len(halves.coarse)
+            more = min(int(here * (GROWTH - 1)) + 1, count - here)
+            if more <= 0:
+                break
+            irradiance, method = _pilot(halves.fine, method, light, number + step * APART, device, progress)
+            columns, rows = halves.chosen(irradiance, more)
+            if (columns * rows == 1).all():
+                break
+            current = cells_as_faces(Patches(current, columns, rows))
+        one = np.ones(current.n_faces, np.int32)
+        return Patches(current, one, one)
+
+
+def _first(scene: Scene, count: int, least: int) -> Scene:
+    """Return the scene cut along contact lines, and evenly into few patches."""
+    cut = cut_at_contacts(scene, count, min(count // CUTS, (count - least) // 2))
+    for about in (count // START, 1):
+        even = subdivide(cut, about=max(about, 1))
+        if len(even) <= count:
+            return cells_as_faces(even)
+    return cut
+
+
+def _pilot(
+    patches: Patches, method: Method | None, light: str, seed: int, device: str, progress: Listener | None
+) -> tuple[np.ndarray, Method]:
+    """Return the irradiance of each replicate, (replicates, n_patches, n_bands), and the method that a pilot of the first chose.
+
+    With one randomisation for all patches, cells beside each other have nearly the same noise, which their difference is free of.
+    """
+    from .solve import prepared
+
+    n = len(patches)
+    lit = relit(patches, reflectance=0) if light == "direct" else patches
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RadiosityWarning)  # the run on the mesh tells them
+        run = prepared(
+            lit,
+            resolve("auto") if method is None else method,
+            rays=LINES * n,
+            replicates=REPLICATES,
+            seed=seed,
+            device=device,
+            progress=progress,
+        )
+        run.also = lambda stage: stage.sums(np.arange(n), n)[0]
+        solution = run.solve()
+    if solution.status == "interrupted":
+        raise KeyboardInterrupt
+    assert run.snapshot is not None
+    assert isinstance(run.method, Method)
+    found = replace(run.method, randomisation="shared") if run.method.machine == "gather" else run.method
+    return run.snapshot.asked / patches.area[:, None], found
