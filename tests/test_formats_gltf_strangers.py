@@ -182,7 +182,6 @@ def test_vertex_colours_are_a_base_colour(tmp_path):
 @pytest.mark.parametrize(
     "extension",
     [
-        {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5}},
         {"KHR_materials_clearcoat": {"clearcoatFactor": 1}},
         {"KHR_materials_sheen": {"sheenColorFactor": [0, 1, 0]}},
         {"KHR_materials_iridescence": {"iridescenceFactor": 1}},

@@ -128,11 +128,25 @@ def test_glass_is_a_pane_by_the_formulas_of_fresnel(told):
     assert "coloured panes let all colours through alike, by their luminance: 'n'" in text
 
 
-def test_trans_lets_as_much_through_straight_on_and_says_so(told):
+def test_trans_lets_a_share_straight_on_and_diffuses_the_rest(told):
     scene, text = told("void trans m 0 0 7 .5 .5 .5 .1 0 .4 .25\n" + TILE.format("m", "a"))
-    np.testing.assert_allclose(scene.transmittance, 0.5 * 0.9 * 0.4)
+    np.testing.assert_allclose(scene.transmittance, 0.5 * 0.9 * 0.4 * 0.25)
+    np.testing.assert_allclose(scene.diffuse_transmittance, 0.5 * 0.9 * 0.4 * 0.75)
     np.testing.assert_allclose(scene.reflectance, 0.5 * 0.9 * 0.6)
-    assert "materials that scatter the light they let through (trans) let it straight on here" in text
+    assert scene.back.tolist() == [rd.Back.RADIATES]
+    assert "rough" not in text
+
+
+def test_trans_diffuses_in_colour_and_rough_ones_are_told(told):
+    scene, text = told("void trans m 0 0 7 .6 .5 .4 0 .1 .5 0\n" + TILE.format("m", "a"))
+    np.testing.assert_allclose(scene.diffuse_transmittance, [[0.3, 0.25, 0.2]])
+    assert scene.transmittance is None
+    assert text == ""
+    scene, text = told("void trans m 0 0 7 .6 .6 .6 0 .1 .5 .5\n" + TILE.format("m", "a"))
+    assert "rough materials (trans) let the share that they transmit specularly straight on here" in text
+    scene, text = told("void BRTDfunc m 10 0 0 0 0 0 0 0 0 0 . 0 9 .2 .2 .2 .3 .3 .3 .1 .2 .4\n" + TILE.format("m", "a"))
+    np.testing.assert_allclose(scene.diffuse_transmittance, [[0.1, 0.2, 0.4]])
+    np.testing.assert_allclose([scene.reflectance, scene.back_reflectance], [[[0.2] * 3], [[0.3] * 3]])
 
 
 def test_lights_emit_from_their_front(load):

@@ -1,5 +1,7 @@
 """Panes of scene files: what each format says of transmission."""
 
+import json
+
 import numpy as np
 import pytest
 from mitsuba_rays import scalar_mitsuba
@@ -143,3 +145,120 @@ def test_mitsuba_mask_with_an_image_of_white_keeps_a_loss(tmp_path):
         scene = mitsuba(tmp_path, f'<bsdf type="mask"><float name="opacity" value="0.4"/>{white}</bsdf>')
     assert scene.transmittance.tolist() == [0.6]
     assert scene.reflectance.item() == pytest.approx(0.4 * 0.95)
+
+
+DIFFUSE = "KHR_materials_diffuse_transmission"
+
+
+def test_toml_of_diffuse_light(toml):
+    scene = toml("diffuse_transmittance = 0.5\nsides = 2")
+    assert scene.diffuse_transmittance.tolist() == [[0.5]]
+    assert toml("diffuse_transmittance = [0.5, 0.4, 0.3]").diffuse_transmittance.tolist() == [[0.5, 0.4, 0.3]]
+    assert toml("diffuse_transmittance = 0").diffuse_transmittance is None
+    both = toml("diffuse_transmittance = 0.3\ntransmittance = 0.5")
+    assert (both.transmittance.item(), both.diffuse_transmittance.item()) == (0.5, 0.3)
+    for settings, message in (
+        ("diffuse_transmittance = 0.95", r"'glass/clear' has a diffuse transmittance of 0\.95.*reflectance is 0\.1"),
+        ("diffuse_transmittance = 0.5\ntransmittance = 0.45", r"diffuse transmittance of 0\.5 and a clear one of 0\.45"),
+        ("diffuse_transmittance = -0.1", "diffuse_transmittance"),
+        ("diffuse_transmittance = 0.5\nsides = 1", r"glass/clear.*two-sided"),
+    ):
+        with pytest.raises(rd.SceneError, match=message):
+            toml(settings)
+
+
+def test_gltf_of_diffuse_light(tmp_path):
+    def load(double=True, color=(0.6, 0.6, 0.6), **extensions):
+        gltf = Gltf()
+        metal = {"baseColorFactor": [*color, 1], "metallicFactor": 0, "roughnessFactor": 1}
+        paper = {"name": "paper", "doubleSided": double, "pbrMetallicRoughness": metal, "extensions": extensions}
+        gltf.node(mesh=gltf.mesh(material=paper))
+        return rd.load_scene(gltf.write(tmp_path / "a.glb"))
+
+    scene = load(**{DIFFUSE: {"diffuseTransmissionFactor": 0.25, "diffuseTransmissionColorFactor": [0.8, 0.6, 0.4]}})
+    np.testing.assert_allclose(scene.reflectance, [[0.45] * 3])
+    np.testing.assert_allclose(scene.diffuse_transmittance, [[0.2, 0.15, 0.1]])
+    assert scene.back.tolist() == [rd.Back.RADIATES]
+    with pytest.warns(rd.RadiosityWarning, match="two-sided here, though the file calls them single-sided: 'paper'"):
+        scene = load(double=False, **{DIFFUSE: {"diffuseTransmissionFactor": 0.5}})
+    np.testing.assert_allclose([scene.reflectance, scene.diffuse_transmittance], [[[0.3]], [[0.5]]])
+    with pytest.warns(rd.RadiosityWarning, match="transparency is left out, taken as opaque: 'paper'"):
+        scene = load(**{DIFFUSE: {"diffuseTransmissionFactor": 0.5, "diffuseTransmissionTexture": {"index": 0}}})
+    assert scene.diffuse_transmittance is None
+    assert scene.reflectance.item() == 0.6
+
+
+@pytest.mark.filterwarnings("ignore:.*transmission makes clear panes", "ignore:.*not diffuse")
+def test_gltf_of_both_kinds_of_light(tmp_path):
+    """Half is transmitted straight on, and a quarter of the diffuse rest goes through."""
+    gltf = Gltf()
+    metal = {"baseColorFactor": [0.8, 0.8, 0.8, 1], "metallicFactor": 0, "roughnessFactor": 1}
+    more = {
+        "KHR_materials_transmission": {"transmissionFactor": 0.5},
+        DIFFUSE: {"diffuseTransmissionFactor": 0.25, "diffuseTransmissionColorFactor": [0.4] * 3},
+    }
+    gltf.node(mesh=gltf.mesh(material={"name": "paper", "doubleSided": True, "pbrMetallicRoughness": metal, "extensions": more}))
+    scene = rd.load_scene(gltf.write(tmp_path / "a.glb"))
+    np.testing.assert_allclose(scene.transmittance, [0.5 * 0.96 * 0.8])
+    np.testing.assert_allclose(scene.reflectance, [[0.5 * 0.75 * 0.8]])
+    np.testing.assert_allclose(scene.diffuse_transmittance, [[0.5 * 0.25 * 0.4]])
+
+
+def test_mgf_of_diffuse_light(tmp_path):
+    pytest.importorskip("pyradiance")
+    text = "v a =\n p 0 0 0\nv b =\n p 1 0 0\nv c =\n p 1 1 0\nv d =\n p 0 1 0\nm opal =\n c\n rd 0.3\n {}\nf a b c d\n"
+
+    def load(more):
+        (tmp_path / "a.mgf").write_text(text.format(more))
+        return rd.load_scene(tmp_path / "a.mgf")
+
+    scene = load("td 0.4")
+    assert (scene.reflectance.item(), scene.diffuse_transmittance.item()) == (0.3, 0.4)
+    scene = load("td 0.4\n ts 0.2")
+    assert (scene.transmittance.item(), scene.diffuse_transmittance.item()) == (0.2, 0.4)
+    with pytest.warns(rd.RadiosityWarning, match="sides 1.*td is left out"):
+        assert load("td 0.4\n sides 1").diffuse_transmittance is None
+    with pytest.warns(rd.RadiosityWarning, match="reflectance above 0.95 brought down"):
+        scene = load("td 0.7")
+    np.testing.assert_allclose([scene.reflectance, scene.diffuse_transmittance], [[[0.285]], [[0.665]]])
+
+
+def test_mitsuba_of_diffuse_light(tmp_path):
+    text = (
+        '<scene version="3.0.0"><shape type="rectangle" id="sheet"><bsdf type="principledthin">'
+        '<rgb name="base_color" value="0.6"/><float name="diff_trans" value="0.5"/></bsdf></shape></scene>'
+    )
+    (tmp_path / "a.xml").write_text(text)
+    with pytest.warns(rd.RadiosityWarning, match="not diffuse"):
+        scene = rd.load_scene(tmp_path / "a.xml")
+    np.testing.assert_allclose(scene.reflectance, [[0.45]])
+    np.testing.assert_allclose(scene.diffuse_transmittance, [[0.15]])
+    assert scene.back.tolist() == [rd.Back.RADIATES]
+
+
+def test_mitsuba_agrees(tmp_path):
+    """Mitsuba's own sheet, integrated over directions on both sides, gives what the reader takes from it."""
+    told = {"type": "principledthin", "base_color": {"type": "rgb", "value": 0.6}, "diff_trans": 0.5, "roughness": 1.0}
+    z, turn, found = (np.arange(24) + 0.5) / 24, (np.arange(24) + 0.5) / 24 * 2 * np.pi, []
+    with scalar_mitsuba() as mi:
+        sheet, si = mi.load_dict({**told, "eta": 1.0001}), mi.SurfaceInteraction3f()
+        si.wi = mi.Vector3f(0, 0, 1)
+        for sign in (1, -1):
+            ways = [(np.sqrt(1 - h * h) * np.cos(t), np.sqrt(1 - h * h) * np.sin(t), sign * h) for h in z for t in turn]
+            found.append(np.mean([sheet.eval(mi.BSDFContext(), si, mi.Vector3f(*way))[0] for way in ways]) * 2 * np.pi)
+    assert found == pytest.approx([0.45, 0.15], rel=0.05)
+
+
+def test_honeybee_of_diffuse_light(tmp_path):
+    pytest.importorskip("pydantic")
+    opal = {"type": "Trans", "identifier": "opal", "r_reflectance": 0.8, "g_reflectance": 0.8, "b_reflectance": 0.8}
+    opal |= {"transmitted_diff": 0.5, "transmitted_spec": 0.25}
+    boundary = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    shade = {"type": "Shade", "identifier": "veil", "geometry": {"type": "Face3D", "boundary": boundary}}
+    shade["properties"] = {"type": "ShadePropertiesAbridged", "radiance": {"type": "x", "modifier": "opal"}}
+    model = {"type": "Model", "identifier": "m", "units": "Meters", "orphaned_shades": [shade]}
+    model["properties"] = {"type": "ModelProperties", "radiance": {"type": "x", "modifiers": [opal]}}
+    (tmp_path / "m.hbjson").write_text(json.dumps(model))
+    scene = rd.load_scene(tmp_path / "m.hbjson")
+    np.testing.assert_allclose([scene.reflectance.item(), scene.diffuse_transmittance.item()], [0.4, 0.3])
+    np.testing.assert_allclose(scene.transmittance, [0.1])

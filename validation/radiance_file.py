@@ -23,6 +23,9 @@ def text(scene: rd.Scene) -> str:
         corners = scene.vertices[scene.faces[face][: 4 if scene.is_quad[face] else 3]]
         if scene.back[face] == rd.Back.PASSES:
             raise ValueError(f"face {face} lets light pass from behind, which Radiance has no opaque material for")
+        if scene.panes[face] or scene.diffusers[face]:
+            polygons.append((materials.trans(scene, face), corners))
+            continue
         front = scene.reflectance[face], scene.emission[face]
         back = scene.back_reflectance[face], scene.back_emission[face]
         radiates = scene.back[face] == rd.Back.RADIATES
@@ -61,6 +64,20 @@ class _Materials:
             self.lines.append(f"void glow {name}g 0 0 4 {_numbers(radiance / (1 - share))} 0")
             self.lines.append(f"void mixfunc {name} 4 {name}p {name}g {share:.17g} . 0 0")
         return name
+
+    def trans(self, scene: rd.Scene, face: int) -> str:
+        """A pane: its colour is what it does not absorb, of which a share goes through, and a part of that straight on."""
+        reflected, clear = scene.reflectance[face], 0.0 if scene.transmittance is None else scene.transmittance[face]
+        diffused = 0.0 * reflected if scene.diffuse_transmittance is None else scene.diffuse_transmittance[face]
+        colour = reflected + diffused + clear
+        through, straight = (diffused + clear) / colour, clear / (diffused + clear)
+        if np.ptp(through) > 1e-9 or np.ptp(straight) > 1e-9 or scene.emission[face].any():
+            raise ValueError(f"face {face} divides its light among its sides in another way in each band, or emits")
+        key = ("trans", *np.broadcast_to(colour, 3), through[0], straight[0])
+        if key not in self.known:
+            self.known[key] = name = f"t{len(self.known)}"
+            self.lines.append(f"void trans {name} 0 0 7 {_numbers(key[1:4])} 0 0 {_numbers(key[4:])}")
+        return self.known[key]
 
     def one_sided(self, reflectance, emission) -> str:
         """Black from behind; a light is so by itself."""

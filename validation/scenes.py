@@ -39,6 +39,24 @@ def court() -> rd.Scene:
     )
 
 
+def veiled() -> rd.Scene:
+    """The court with two diffusing sheets in colour: an opal cover under the lamp, and a leaning one by the table."""
+    scene, opal = court(), np.array([0.25, 0.2, 0.1])
+    sheets = [quad((1.3, 0.7, 1.8), (1.4, 0, 0), (0, 1.4, 0)), quad((2.0, 1.1, 0.1), (0.2, 0, 1.2), (0, 1.5, 0.1))]
+    none = np.zeros((scene.n_faces, 3))
+    return rd.Scene.from_arrays(
+        np.concatenate([scene.vertices, *sheets]),
+        np.concatenate([scene.faces, len(scene.vertices) + np.arange(8).reshape(2, 4)]),
+        np.concatenate([scene.reflectance, [opal, opal]]),
+        np.concatenate([scene.emission, np.zeros((2, 3))]),
+        surface=np.append(scene.surface, [len(scene.names)] * 2),
+        back=np.append(scene.back, [rd.Back.RADIATES] * 2),
+        diffuse_transmittance=np.concatenate([none, [2 * opal, 2 * opal]]),
+        names=[*scene.names, "veil"],
+        source="veiled court",
+    )
+
+
 def with_black_lamps(scene: rd.Scene) -> rd.Scene:
     """Lamps that reflect nothing on either side, as Radiance's do."""
     lamp = (scene.emission > 0).any(axis=1)
@@ -65,4 +83,5 @@ def radiance_scenes() -> list[tuple[str, rd.Patches]]:
         *found,
         ("labyrinth-0.9", rd.subdivide(rd.load_scene("labyrinth-0.9"), cells=2)),
         ("court", rd.subdivide(court(), cells=4)),
+        ("veiled court", rd.subdivide(veiled(), cells=4)),
     ]

@@ -39,8 +39,8 @@ def refuse(scene: Scene) -> None:
     """Raise where a scene has no rating of glare.
 
     Raises:
-        MethodError: it is not photometric, has sunlight or a sky, has bands that are not red, green and blue, or a luminaire
-            without a luminous size.
+        MethodError: it is not photometric, has sunlight or a sky, has bands that are not red, green and blue, a luminaire
+            without a luminous size, or panes that diffuse light.
     """
     if not scene.photometric:
         raise MethodError(f"{scene.source}: glare is of luminances in cd/m², and the scene is in W; set photometric = true")
@@ -48,6 +48,12 @@ def refuse(scene: Scene) -> None:
         raise MethodError(f"{scene.source}: glare needs one band, or red, green and blue, not {', '.join(scene.bands)}")
     if scene.lights.suns or scene.lights.sky is not None:
         raise MethodError(f"{scene.source}: UGR is of electric light; leave the sun and the sky out")
+    if scene.diffusers.any():
+        names = shown([scene.names[i] for i in np.unique(scene.surface[scene.diffusers])])
+        raise MethodError(
+            f"{scene.source}: {names} diffuse light from behind (diffuse_transmittance), as a luminaire's cover does, and UGR takes "
+            "only what surfaces emit for sources: give them the exitance that they have, as an emission"
+        )
     points = [one.name for one in scene.lights.luminaires if not one.size.any()]
     if points:
         raise MethodError(

@@ -19,11 +19,11 @@ READ = (
     "KHR_materials_variants",
     "KHR_materials_emissive_strength",
     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_diffuse_transmission",
 )
 # factors beside which a material is not diffuse, and their defaults; what only shapes their light is left out in silence
 GLOSSY = {
     "KHR_materials_transmission": ("transmissionFactor", 0.0),
-    "KHR_materials_diffuse_transmission": ("diffuseTransmissionFactor", 0.0),
     "KHR_materials_clearcoat": ("clearcoatFactor", 0.0),
     "KHR_materials_sheen": ("sheenColorFactor", (0.0, 0.0, 0.0)),
     "KHR_materials_iridescence": ("iridescenceFactor", 0.0),

@@ -58,6 +58,8 @@ class Materials:
     images: dict[int, np.ndarray] = field(default_factory=dict)
     transparent: list[str] = field(default_factory=list)
     panes: dict[str, float] = field(default_factory=dict)  # transmittances
+    diffusers: dict[str, None] = field(default_factory=dict)  # single-sided materials that diffuse light
+    averaged: dict[str, None] = field(default_factory=dict)  # materials whose diffused light has the mean colour of an image
     unlit: list[str] = field(default_factory=list)
     colorless: dict[str, None] = field(default_factory=dict)
     bytes: dict[str, None] = field(default_factory=dict)  # objects whose vertex colours are counted from 0 to 255
@@ -91,6 +93,12 @@ class Materials:
         if self.panes:
             told = shown([f"{name} ({value:.3g})" for name, value in self.panes.items()])
             warn(f"{self.file.path}: transmission makes clear panes, with one transmittance for all angles and colours: {told}")
+        if self.diffusers:
+            text = "materials that transmit diffusely are two-sided here, though the file calls them single-sided"
+            warn(f"{self.file.path}: {text}: {shown(self.diffusers)}")
+        if self.averaged:
+            text = "diffuse transmission has the mean colour of its image everywhere"
+            warn(f"{self.file.path}: {text}: {shown(self.averaged)}")
         if self.transparent:
             text = "transparency is left out, taken as opaque"
             warn(f"{self.file.path}: {text}: {shown(self.transparent)}; transmittance in a .toml makes panes")
@@ -119,11 +127,16 @@ class Materials:
             self.transparent.append(name)
         base = self._texture(texture, what)
         through, transmittance = self._transmission(extensions, factor[:3], base, name)
+        share, diffused = self._diffuse_transmission(extensions, name)
+        if diffused is not None and info.get("doubleSided") is not True:
+            self.diffusers[name] = None
+        kept = (1 - through) * (1 - share)
         material = Material(
-            reflectance=_unless_grey(tuple(value * (1 - through) for value in factor[:3]) if through else factor[:3]),
+            reflectance=_unless_grey(tuple(value * kept for value in factor[:3]) if kept < 1 else factor[:3]),
+            diffuse_transmittance=None if diffused is None else _unless_grey((1 - through) * diffused),
             transmittance=transmittance,
             emission=_unless_grey(np.pi * radiance),
-            back=Back.RADIATES if info.get("doubleSided") is True else Back.ABSORBS,
+            back=Back.RADIATES if info.get("doubleSided") is True or diffused is not None else Back.ABSORBS,
             diffuse=not self._is_glossy(metal, extensions, what),
         )
         emissive = self._texture(info.get("emissiveTexture"), what) if radiance.any() else None
@@ -148,6 +161,30 @@ class Materials:
         mean = np.ones(3) if base is None else np.broadcast_to(base.image.mean(axis=(0, 1)), (3,))
         self.panes[name] = transmittance = factor * NOT_MIRRORED * min(float(luminance_weights() @ (mean * color)), 1.0)
         return factor, transmittance
+
+    def _diffuse_transmission(self, extensions: dict, name: str) -> tuple[float, np.ndarray | None]:
+        """Return the factor of KHR_materials_diffuse_transmission, and the transmittance that it makes, (3,); None: nothing.
+
+        The factor is the share of diffuse light that is transmitted and not reflected, in a colour of its own. A texture of the
+        factor is not read, and one of the colour has its mean everywhere.
+        """
+        what = f"diffuse transmission of '{name}'"
+        held = self.file.dictionary(extensions.get("KHR_materials_diffuse_transmission", {}), what)
+        (factor,) = self.file.numbers({"v": [held.get("diffuseTransmissionFactor", 0.0)]}, "v", (0.0,), what)
+        color = np.array(self.file.numbers(held, "diffuseTransmissionColorFactor", (1.0,) * 3, what))
+        if not (0 <= factor <= 1 and (color >= 0).all() and (color <= 1).all()):
+            raise self.file.fail(
+                f"{what} has the factor {factor:g} and the colour {color.tolist()}; they must lie between 0 and 1"
+            )
+        if factor and "diffuseTransmissionTexture" in held:
+            self.transparent.append(name)
+        if "diffuseTransmissionTexture" in held or not factor * color.any():
+            return 0.0 if "diffuseTransmissionTexture" in held else factor, None
+        texture = self._texture(held.get("diffuseTransmissionColorTexture"), what)
+        if texture is not None:
+            self.averaged[name] = None
+            color = color * texture.image.mean(axis=(0, 1))
+        return factor, factor * color
 
     def _is_glossy(self, metal: dict, extensions: dict, what: str) -> bool:
         """Return whether the file states that the material is glossy.

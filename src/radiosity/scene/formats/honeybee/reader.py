@@ -121,7 +121,8 @@ class Reader:
         material = self._material(f"the other side of {self._second[face.identifier]}", chain)
         if number is not None and material is not None:
             one = self.parts[number].material
-            if material.reflectance != one.reflectance and not material.transmittance and not one.transmittance:
+            opaque = not any(m.transmittance or m.diffuse_transmittance for m in (material, one))
+            if material.reflectance != one.reflectance and opaque:
                 both = replace(one, back_reflectance=material.reflectance)
                 self.parts[number] = replace(self.parts[number], material=both)
 

@@ -1,7 +1,8 @@
 """Read the Materials and Geometry Format (MGF) through the program of Radiance that reduces it to faces.
 
 A surface is object x material: ``desk.drawer/wood``. ``rd`` and ``ed`` count, each with its colour. ``ts`` makes a clear pane, of
-one transmittance for all angles and colours. ``rs`` and ``td`` make a material one that is not diffuse. With ``sides 1`` a face
+one transmittance for all angles and colours, and ``td`` a diffusing one, in colour. ``rs`` makes a material one that is not
+diffuse. With ``sides 1`` a face
 is invisible from behind. A two-sided face, the default, looks identical from both sides (specification, entity ``sides``): it
 reflects, and emits ``ed`` lm/m², on either, as in RenderPark. Curved primitives arrive with 20 edges around, inscribed, so that
 their area is a little small.
@@ -50,6 +51,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
     tinted = {name: None for name, one in reader.polygons if one.transmittance > 0 and not is_neutral(*one.transmittance_color)}
     if tinted:
         warn(f"{path}: coloured panes let all colours through alike, by their luminance (ts): {shown(tinted)}")
+    if one_sided := {name: None for name, one in reader.polygons if one.diffuse_transmittance > 0 and one.one_sided}:
+        warn(f"{path}: materials of one side (sides 1) diffuse nothing here, and their td is left out: {shown(one_sided)}")
     if several := [f"{name} ({len(places)})" for name, places in reader.begun.items() if len(places) > 1]:
         warn(f"{path}: objects of the same name become one: {shown(several)}")
     return assemble(parts, str(path), options, photometric=True)
@@ -61,9 +64,16 @@ def _material(material: MgfMaterial) -> Material:
         emission=_colored(material.emittance, material.emittance_color),
         back=Back.PASSES if material.one_sided else Back.RADIATES,
         diffuse=not material.not_diffuse,
+        diffuse_transmittance=_through(material),
         transmittance=material.transmittance,
         origin=material.file,
     )
+
+
+def _through(material: MgfMaterial) -> tuple[float, ...] | None:
+    """Diffuse transmittance; light behind a face of one side passes it anyway."""
+    value = 0.0 if material.one_sided else material.diffuse_transmittance
+    return _colored(value, material.diffuse_transmittance_color) if value > 0 else None
 
 
 def _colored(value: float, color: tuple[float, float]) -> tuple[float, ...]:

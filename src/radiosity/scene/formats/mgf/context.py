@@ -18,7 +18,9 @@ class MgfMaterial:
     emittance_color: tuple[float, float] = NEUTRAL
     transmittance: float = 0.0  # specular: light goes straight on
     transmittance_color: tuple[float, float] = NEUTRAL
-    not_diffuse: frozenset[bytes] = frozenset()  # those of rs, td that are not zero
+    diffuse_transmittance: float = 0.0
+    diffuse_transmittance_color: tuple[float, float] = NEUTRAL
+    not_diffuse: bool = False  # rs is not zero
     one_sided: bool = False
     defined: bool = True
     file: str = field(default="", compare=False)  # that sets the reflectance
@@ -56,7 +58,7 @@ class NamedContexts:
             b"rd": self._set_reflectance,
             b"ed": self._set_emittance,
             b"rs": self._set_not_diffuse,
-            b"td": self._set_not_diffuse,
+            b"td": self._set_diffuse_transmittance,
             b"ts": self._set_transmittance,
         }
 
@@ -128,10 +130,12 @@ class NamedContexts:
         color = self._colors[self._color]
         self._set(transmittance=_value(words, 1.0), transmittance_color=color, defined=True, file=self.file)
 
+    def _set_diffuse_transmittance(self, words) -> None:
+        value, color = _value(words, 1.0), self._colors[self._color]
+        self._set(diffuse_transmittance=value, diffuse_transmittance_color=color, defined=True, file=self.file)
+
     def _set_not_diffuse(self, words) -> None:
-        kind = {words[0]}
-        others = self.material.not_diffuse
-        self._set(not_diffuse=others | kind if _value(words, 1.0) else others - kind, defined=True)
+        self._set(not_diffuse=_value(words, 1.0) > 0, defined=True)
 
 
 def _value(words: list[bytes], most: float) -> float:

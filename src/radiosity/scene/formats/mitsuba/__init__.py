@@ -137,7 +137,8 @@ class Reader:
             text = "with one transmittance for all places and angles of a shape, the mean"
             warn(f"{self._path}: masks, blends with nothing and thin dielectrics make clear panes, {text}: {shown(shares)}")
         if self._averaged:
-            warn(f"{self._path}: textures averaged where the two sides differ: {shown(self._averaged)}")
+            text = "textures averaged where the two sides differ, or for the light that goes through"
+            warn(f"{self._path}: {text}: {shown(self._averaged)}")
         if any(part.n_bands == 3 for part in self._parts):
             for number in self._equal_energy:
                 self._parts[number] = as_srgb(self._parts[number])

@@ -33,11 +33,15 @@ class Side:
 
 @dataclass(frozen=True)
 class Sides:
-    """Front and back; no back: it absorbs. ``opacity``: the share of the light that meets a surface; the rest goes through."""
+    """Front and back; no back: it absorbs. ``opacity``: the share of the light that meets a surface; the rest goes through.
+
+    ``through`` is the share of diffuse light that leaves the other side, and is not reflected.
+    """
 
     front: Side
     back: Side | None = None
     opacity: float = 1.0
+    through: float = 0.0
 
 
 def of_shape(shape: Node, emits: bool, colors: Colors) -> Sides:
@@ -82,6 +86,9 @@ def read_bsdf(node: Node, colors: Colors) -> Sides:
         return replace(sides, opacity=sides.opacity * (weight if kinds[0] == "null" else 1 - weight))
     if node.plugin == "thindielectric":
         return Sides(_side(node, colors), opacity=1 - thin_pane(node) * _mean(colors.get(node, "specular_transmittance", 1.0)))
+    if node.plugin == "principledthin":  # a sheet that is alike on both sides; diff_trans is 2 where all is transmitted
+        side, through = _side(node, colors), min(max(_mean(colors.get(node, "diff_trans", 0.0)) / 2, 0.0), 1.0)
+        return Sides(side, side, through=through)
     return Sides(_side(node, colors), opacity=0.0 if node.plugin == "null" else 1.0)
 
 

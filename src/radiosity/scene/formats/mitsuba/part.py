@@ -20,6 +20,8 @@ def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None,
     averaged = back is not None and back != front and any(not isinstance(s.albedo, tuple | None) for s in (front, back))
     if back is not None and averaged:
         front, back = (_mean(side, geometry, name) for side in (front, back))
+    diffused = _mean(front, geometry, name).albedo if sides.through > 0 and sides.opacity > 0 else None
+    diffused = diffused if isinstance(diffused, tuple) else None
     image = front.albedo if isinstance(front.albedo, Image) else None
     emission, glow = _emission(emitter, colors)
     held = [value if isinstance(value, VertexColors) else None for value in (front.albedo, glow)]
@@ -27,11 +29,12 @@ def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None,
     glow = glow if isinstance(glow, Image) else None
     uv = geometry.uv
     material = Material(
-        reflectance=_seen(front, sides.opacity),
+        reflectance=_seen(front, sides.opacity * (1 - sides.through)),
         emission=emission,
         back=Back.OPEN if sides.opacity == 0 else Back.ABSORBS if back is None else Back.RADIATES,
         back_reflectance=None if back is None or back == front else _seen(back, sides.opacity),
         transmittance=1 - sides.opacity if 0 < sides.opacity < 1 else 0.0,
+        diffuse_transmittance=None if diffused is None else tuple(value * sides.opacity * sides.through for value in diffused),
         back_emission=(0.0,),
         diffuse=front.diffuse and (back is None or back.diffuse),
     )
@@ -49,7 +52,7 @@ def make_part(name: str, geometry: Geometry, sides: Sides, emitter: Node | None,
         sampler=image.sampler if image else DEFAULT_SAMPLER,
         emission_sampler=glow.sampler if glow else DEFAULT_SAMPLER,
     )
-    return part, averaged
+    return part, averaged or (diffused is not None and not isinstance(front.albedo, tuple))
 
 
 def is_equal_energy(emitter: Node | None) -> bool:
@@ -88,4 +91,4 @@ def _base(side: Side) -> Color | None:
 def _seen(side: Side, opacity: float) -> Color | None:
     """The base of what light meets; the rest goes through."""
     base = _base(side)
-    return base if base is None or opacity in (0, 1) else tuple(value * opacity for value in base)
+    return base if base is None or opacity == 1 else tuple(value * opacity for value in base)

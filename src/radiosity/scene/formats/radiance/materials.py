@@ -88,17 +88,20 @@ class Finisher:
         return replace(self._pane(one, clear_share(numbers[:3], index), np.zeros(3)), diffuse=False)
 
     def _trans(self, one: Primitive, numbers, chain: Chain) -> Material:
-        kept, (share, straight) = numbers[:3] * (1 - numbers[3]), numbers[TRANSMITTED[one.kind] :][:2]
-        if share > 0 and straight < 1:
-            self.told.add(told.STRAIGHT, one.name)
-        return replace(self._pane(one, kept * share, kept * (1 - share)), diffuse=numbers[3] == 0)
+        """Trans: what is not mirrored is reflected diffusely, or goes through: a share straight on, the rest diffusely."""
+        at = TRANSMITTED[one.kind]
+        kept, (share, straight) = numbers[:3] * (1 - numbers[3]), numbers[at:][:2]
+        rough = one.kind in ("trans", "trans2") and numbers[4:at].any()
+        if share > 0 and straight > 0 and (rough or one.kind in ("transfunc", "transdata")):
+            self.told.add(told.ROUGH, one.name)
+        pane = self._pane(one, kept * share * straight, kept * (1 - share))
+        return replace(pane, diffuse_transmittance=_through(kept * share * (1 - straight)), diffuse=numbers[3] == 0)
 
     def _directional(self, one: Primitive, numbers, chain: Chain) -> Material:
         """BRTDfunc: diffuse reflectances of both sides and a diffuse transmittance."""
         front, back, through = numbers[:3], numbers[3:6], numbers[6:9]
-        if through.any():
-            self.told.add(told.STRAIGHT, one.name)
-        return replace(self._pane(one, through, front), back_reflectance=_color(back), diffuse=False)
+        pane = Material(_color(front), back_reflectance=_color(back), diffuse_transmittance=_through(through))
+        return replace(pane, diffuse=False)
 
     def _pane(self, one: Primitive, through: np.ndarray, reflected: np.ndarray) -> Material:
         if np.ptp(through) > 1e-6 * through.max(initial=0):
@@ -121,7 +124,7 @@ class Finisher:
     def _illum(self, one: Primitive, numbers, chain: Chain) -> Material | None:
         light = self._light(one, numbers, chain)
         other = self.material(chain.alternate) if chain.alternate is not None else None
-        if other is not None and other.transmittance > 0 and self.has_sky:
+        if other is not None and (other.transmittance > 0 or other.diffuse_transmittance) and self.has_sky:
             self.told.add(told.WINDOWS, one.name)
             return other
         if any(light.emission):
@@ -129,6 +132,10 @@ class Finisher:
         if other is None:
             return replace(light, back=Back.OPEN) if any(light.emission) else None
         return replace(other, emission=light.emission, back_emission=(0.0,))
+
+
+def _through(values: np.ndarray) -> tuple[float, ...] | None:
+    return _color(values) if values.any() else None
 
 
 def _color(values: np.ndarray) -> tuple[float, ...]:

@@ -129,6 +129,11 @@ class Looks:
             if entry.transmittance is not None:
                 material = replace(material, transmittance=entry.transmittance)
                 clear = entry.transmittance > 0
+            if entry.diffuse_transmittance is not None:
+                some = any(entry.diffuse_transmittance)
+                material = replace(material, diffuse_transmittance=tuple(entry.diffuse_transmittance) if some else None)
+                material = replace(material, back=Back.RADIATES) if some else material
+                clear |= some
             exitance = _exitance(entry)
             if exitance is not None:
                 material = replace(material, emission=exitance, back_emission=None)

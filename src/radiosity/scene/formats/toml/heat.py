@@ -73,7 +73,7 @@ def reflecting(material: Material, emissivity: list[float] | None, source: str, 
     """
     if material.reflectance is not None or emissivity is None or len(emissivity) != 1:
         return material
-    rest = 1 - emissivity[0] - material.transmittance
+    rest = 1 - emissivity[0] - material.transmittance - max(material.diffuse_transmittance or (0.0,))
     if rest < -ROUNDING:
         raise SceneError(
             f"{source}: surface '{name}' has emissivity {emissivity[0]:g} and transmittance {material.transmittance:g}, above 1 "

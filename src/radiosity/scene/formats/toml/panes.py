@@ -16,6 +16,13 @@ def check_pane(part: Part, source: str) -> None:
     paint = [1.0 if a is None or not a.size else float(a.max()) for a in (part.color, part.texture)]
     given = material.reflectance or (DEFAULT_REFLECTANCE,)
     highest = float(np.max([*given, *(material.back_reflectance or given)])) * paint[0] * paint[1]
+    diffuse = max(material.diffuse_transmittance or (0.0,))
+    if diffuse and highest + material.transmittance + diffuse >= 1:
+        whose = "without a material it is taken as" if material.reflectance is None else "its reflectance is"
+        raise SceneError(
+            f"{source}: surface '{part.name}' has a diffuse transmittance of {diffuse:g} and a clear one of "
+            f"{material.transmittance:g}, and {whose} {highest:g}; the sum must be below 1: give its reflectance, too"
+        )
     if highest + material.transmittance >= 1:
         whose = "without a material it is taken as" if material.reflectance is None else "its reflectance is"
         raise SceneError(

@@ -72,6 +72,7 @@ class Surface(_Table):
     name: Annotated[str, Field(min_length=1)]
     reflectance: Bands | None = None
     transmittance: Annotated[NotNegative, AfterValidator(_clear)] | None = None
+    diffuse_transmittance: Bands | None = None
     emission: Bands | None = None
     radiance: Bands | None = None
     power: Bands | None = None
