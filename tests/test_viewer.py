@@ -196,3 +196,19 @@ def test_a_missing_library_is_named(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(rd.OutputError, match=r"the viewer needs 'viser'.*radiosity\[view\]"):
         require()
+
+
+@pytest.mark.parametrize("method", ["gather", "random-walk"])
+def test_who_watches_a_run_changes_nothing(method):
+    """A run of three bands, or one whose lines are known beforehand: the same bits, in as many stages as there are."""
+    patches, seen = rd.subdivide(rd.load_scene("cornell-box"), cells=1), []
+    plain = rd.solve(patches, method, rays=40_000, replicates=2)
+    watched = rd.solve(patches, method, rays=40_000, replicates=2, watch=seen.append)
+    assert len(seen) > 2
+    assert [one.status for one in seen] == ["running"] * len(seen)
+    assert [one.rays for one in seen] == sorted({one.rays for one in seen})
+    np.testing.assert_array_equal(seen[-1].radiosity, plain.radiosity)
+    for name in ("irradiance", "irradiance_standard_error", "arrivals"):
+        np.testing.assert_array_equal(getattr(watched, name), getattr(plain, name))
+    assert all(np.array_equal(plain.state[key], watched.state[key]) for key in plain.state)
+    assert (watched.quanta, watched.status) == (plain.quanta, "complete")
