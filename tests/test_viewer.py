@@ -196,3 +196,21 @@ def test_a_missing_library_is_named(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(rd.OutputError, match=r"the viewer needs 'viser'.*radiosity\[view\]"):
         require()
+
+
+@pytest.mark.parametrize(
+    ("method", "order", "rays", "stages"), [("gather", "gather", 1.1e6, 2), ("random-walk", "staged", 2e4, 5)]
+)
+def test_who_watches_a_run_changes_nothing(method, order, rays, stages):
+    """Three bands, by a method whose lines are known beforehand, and by counts: the same bits, whatever the stages."""
+    patches, seen = rd.subdivide(rd.load_scene("cornell-box"), cells=1), []
+    plain = rd.solve(patches, method, order=order, rays=rays, replicates=1)
+    watched = rd.solve(patches, method, order=order, rays=rays, replicates=1, watch=seen.append)
+    assert len(seen) == stages
+    assert [one.status for one in seen] == ["running"] * len(seen)
+    assert [one.rays for one in seen] == sorted({one.rays for one in seen})
+    np.testing.assert_array_equal(seen[-1].radiosity, plain.radiosity)
+    for name in ("irradiance", "irradiance_standard_error", "arrivals"):
+        np.testing.assert_array_equal(getattr(watched, name), getattr(plain, name))
+    assert all(np.array_equal(plain.state[key], watched.state[key]) for key in plain.state)
+    assert (watched.quanta, watched.status) == (plain.quanta, "complete")

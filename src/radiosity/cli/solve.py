@@ -4,7 +4,8 @@ from dataclasses import asdict, replace
 from functools import partial
 
 from ..errors import MethodError
-from . import checkpoints, interrupts, outputs
+from . import checkpoints, interrupts, live, outputs
+from .live import UNSEEN, LiveOptions
 from .solve_options import (
     BaselineOptions,
     BudgetOptions,
@@ -29,6 +30,7 @@ def solve(
     /,
     *,
     files: OutputOptions = Unset.output,
+    seen: LiveOptions = UNSEEN,
     budget: BudgetOptions = Unset.budget,
     run: RunOptions = Unset.run,
     method: MethodName = "auto",
@@ -52,6 +54,7 @@ def solve(
         below change a part of the method. Without a method they change random-walk.
     """
     given = budget.given
+    seen.check(refines=cut.refine_check)
     if cut.refine_check and (run.resume is not None or run.checkpoint is not None):
         raise MethodError("--refine-check solves anew on two meshes; it cannot --resume a run, and keeps no --checkpoint")
     output = files.output
@@ -68,29 +71,34 @@ def solve(
     loaded = rd.load_scene(scene, **asdict(reading))
     before = None if run.resume is None else rd.load_solution(run.resume)
     keeper = None if cut.refine_check else checkpoints.chosen(run.checkpoint, run.no_checkpoint, output, chosen, run.resume)
-    checked = None
-    try:
-        with bar() as progress:
-            patches = _patches(loaded, cut, chosen, before, run, progress)
-            options = asdict(budget) | {name: getattr(run, name) for name in ("seed", "device", "replicates", "memory")}
-            if cut.refine_check:
-                checked = rd.refine_check(patches, chosen, **options, progress=progress)
-                solution = checked.coarse
-            else:
-                solution = rd.solve(patches, chosen, **options, progress=progress, resume=before, checkpoint=keeper)
-        also: list = [("the report", lambda: tell(solution.report()))]
-        if checked is not None:
-            also += [("the refine check's report", lambda: tell(f"\n{checked.report()}"))]
-            also += [(path, partial(checked.export, path)) for path in tables]
-        kept = None if keeper is None else keeper.path
-        outputs.write(solution, output, exposure=files.exposure, checkpoint=kept, also=also)
-    except KeyboardInterrupt:
-        if keeper is None or not keeper.written:
-            raise
-        return checkpoints.left_behind(keeper)
-    left = checkpoints.finish(keeper, solution, output, named=run.checkpoint is not None, resume=run.resume)
-    if left is not None:
-        say(solution.status, f"stopped before the end; --resume {left} goes on from there")
+    with bar() as progress:
+        patches = _patches(loaded, cut, chosen, before, run, progress)
+
+    with live.page(seen, patches) as shown:
+        checked = None
+        try:
+            with bar() as progress:
+                options = asdict(budget) | {name: getattr(run, name) for name in ("seed", "device", "replicates", "memory")}
+                if cut.refine_check:
+                    checked = rd.refine_check(patches, chosen, **options, progress=progress)
+                    solution = checked.coarse
+                else:
+                    told = live.listeners(shown, progress)
+                    solution = rd.solve(patches, chosen, **options, **told, resume=before, checkpoint=keeper)
+            also: list = [("the report", lambda: tell(solution.report()))]
+            if checked is not None:
+                also += [("the refine check's report", lambda: tell(f"\n{checked.report()}"))]
+                also += [(path, partial(checked.export, path)) for path in tables]
+            kept = None if keeper is None else keeper.path
+            outputs.write(solution, output, exposure=files.exposure, checkpoint=kept, also=also)
+        except KeyboardInterrupt:
+            if keeper is None or not keeper.written:
+                raise
+            return checkpoints.left_behind(keeper)
+        left = checkpoints.finish(keeper, solution, output, named=run.checkpoint is not None, resume=run.resume)
+        if left is not None:
+            say(solution.status, f"stopped before the end; --resume {left} goes on from there")
+        live.finish(shown, solution)
     if solution.status == "interrupted":
         return interrupts.status()
     ends = [solution.status] if checked is None else [checked.coarse.status, checked.fine.status]

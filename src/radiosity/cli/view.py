@@ -118,11 +118,11 @@ def view(
     return interrupts.status() if interrupts.asked_to_end() else 0
 
 
-def address_told(url: str, asked: int) -> str:
-    """Return the lines that say where the page is."""
+def address_told(url: str, asked: int, ends: str = "ends it") -> str:
+    """Return the lines that say where the page is, and what Ctrl-C does."""
     port = int(url.rpartition(":")[2])
     taken = f" (port {asked} is taken)" if asked not in (0, port) else ""
-    return f"{url}{taken}\nCtrl-C ends it; over ssh, forward the port: ssh -L {port}:localhost:{port} MACHINE"
+    return f"{url}{taken}\nCtrl-C {ends}; over ssh, forward the port: ssh -L {port}:localhost:{port} MACHINE"
 
 
 def _subject(scene: str, size: Size, reading):

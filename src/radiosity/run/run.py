@@ -11,7 +11,7 @@ from ..algorithms.merging import merge as merge_states
 from ..algorithms.state import AbstractState
 from ..algorithms.table import make
 from ..device.backend import choose, give_back_memory
-from ..device.turn import turn
+from ..device.turn import aside, turn
 from ..errors import MethodError, result_kept
 from ..method import Baseline, Method
 from ..patches import Patches
@@ -69,6 +69,7 @@ class Run(Generic[R]):
         self.replicates, self.resume, self.checkpoint = part.replicates, resume, checkpoint
         self.snapshot: Snapshot | None = None  # of the last complete stage
         self.also: Callable[[Snapshot], Any] | None = None  # what else is read of a stage
+        self.watch: Callable[[R], None] | None = None  # is given the result of each complete stage
         self.seconds_before = 0.0 if resume is None else resume.seconds
         self.problem = Problem.of(patches, through=method.machine == "firing") if problem is None else problem
         bands = self.problem.groups.n_groups
@@ -147,6 +148,8 @@ class Run(Generic[R]):
             margin = self._margin(snapshot)
             lines = snapshot.lines if known or large else round(snapshot.about_lines)
             self.teller.complete(lines, target, error, margin, algorithm.tally.swept_lines(self.problem, snapshot.state))
+            if self.watch is not None:
+                self._watched(self.watch, snapshot)
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
                 break
@@ -205,6 +208,12 @@ class Run(Generic[R]):
             share = self.problem.source.share
             check_stages(self.method, quanta, self.rung, [(part, part.rung(self.method.order, share)) for _, part in parts])
         return self._solution(Snapshot(self.problem, algorithm.tally, state, self.replicates), "complete", None)
+
+    def _watched(self, watch: Callable[[R], None], snapshot: Snapshot) -> None:
+        """Give the result of a stage to who watches the run; nothing of it comes back."""
+        solution = self.record.result(snapshot, "running", snapshot.state, self.teller.elapsed + self.seconds_before)
+        with aside():
+            watch(solution)
 
     @property
     def _had_results(self) -> bool:
@@ -280,7 +289,7 @@ class Run(Generic[R]):
         """Return N of the first stage: the ladder's first rung, or less where the budget asks for less."""
         if self.ladder.quanta is not None:
             known = int(self.ladder.quanta)
-            at_once = self.ladder is not self.budget and known * self.replicates <= AT_ONCE
+            at_once = self.watch is None and self.ladder is not self.budget and known * self.replicates <= AT_ONCE
             return known if at_once else min(self.rung, known)
         if isinstance(self.method, Baseline):
             return self.rung

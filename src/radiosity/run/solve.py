@@ -1,5 +1,6 @@
 """`solve`, which makes a solution from a scene."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -47,6 +48,7 @@ def solve(
     all_replicates: int | None = None,
     device: str = "auto",
     progress: Listener | None = None,
+    watch: Callable[[Solution], None] | None = None,
     resume: Solution | None = None,
     error_of: str | None = None,
     adaptive: bool | int = False,
@@ -81,6 +83,8 @@ def solve(
             since the first stage depends on the number of replicates.
         device: "auto", "cpu" or "cuda".
         progress: called with a `Progress` after each wavefront.
+        watch: called after each complete stage with the solution so far, whose status is "running". The result stays the same to
+            the last bit.
         resume: a solution of the same scene, method, seed and replicates to go on from, also an interrupted one; the
             budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
             their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
@@ -114,7 +118,7 @@ def solve(
     with limited(memory), turn():
         if adaptive is not False:
             scene = _adapted(scene, chosen, adaptive, seed, device, progress, resume)
-        return prepared(
+        run = prepared(
             scene,
             chosen,
             rays=rays,
@@ -131,7 +135,9 @@ def solve(
             error_of=error_of,
             checkpoint=checkpoint,
             checkpoint_every=checkpoint_every,
-        ).solve()
+        )
+        run.watch = watch
+        return run.solve()
 
 
 def prepared(

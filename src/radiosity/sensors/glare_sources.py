@@ -51,7 +51,7 @@ def refuse(scene: Scene) -> None:
     if scene.diffusers.any():
         names = shown([scene.names[i] for i in np.unique(scene.surface[scene.diffusers])])
         raise MethodError(
-            f"{scene.source}: {names} diffuse light from behind (diffuse_transmittance), as a luminaire's cover does, and UGR takes "
+            f"{scene.source}: {names} diffuse light from behind (diffuse_transmittance), as a luminaire's cover does; UGR takes "
             "only what surfaces emit for sources: give them the exitance that they have, as an emission"
         )
     points = [one.name for one in scene.lights.luminaires if not one.size.any()]

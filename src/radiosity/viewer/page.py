@@ -1,7 +1,8 @@
 """The page: the meshes that it has been sent, and the thread that sends others when something changes."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from hashlib import blake2b
 from typing import Any
@@ -81,12 +82,22 @@ class Page:
             try:
                 self.draw(look, content)
             except RadiosityError as error:
-                self.failed(str(error))
+                self._tell(str(error))
             except Exception as error:  # the page of a run must never end the run
-                self.failed(f"a fault of the program, not of your input: {type(error).__name__}: {error}")
+                self._tell(f"a fault of the program, not of your input: {type(error).__name__}: {error}")
             with self._wake:
                 self._done = asked
                 self._wake.notify_all()
+
+    def _tell(self, text: str) -> None:
+        with suppress(Exception):  # the page may have gone, which is no fault
+            self.failed(text)
+
+    @contextmanager
+    def paused(self) -> Iterator[None]:
+        """Draw nothing during a block, which changes the panel."""
+        with self._lock:
+            yield
 
     def draw(self, look: Look, content: contents.Content) -> Colours:
         """Send what a look shows of a content, as far as it differs from what was sent before."""

@@ -22,7 +22,15 @@ STEPS = 200  # of the cut's slider
 
 @dataclass(eq=False)
 class Panel:
-    """The panel of a page; ``told`` is text about the scene, as Markdown."""
+    """The panel of a page.
+
+    Attributes:
+        page: that it changes.
+        told: text about the scene, as Markdown.
+        views: cameras by name.
+        parts: what can be chosen, by name.
+        colours: those that were drawn last.
+    """
 
     page: Page
     told: str
@@ -46,9 +54,8 @@ class Panel:
         with gui.add_folder("View", expand_by_default=False):
             self._view(gui)
         with gui.add_folder("About", expand_by_default=self.page.content.subject.solution is None):
-            gui.add_markdown(self.told)
-        page.drawn, page.failed = self._drawn, self._failed
-        page.server.scene.on_click()(self._clicked)
+            self.parts["about"] = gui.add_markdown(self.told)
+        page.failed = self._failed
 
     def _light(self, gui) -> None:
         look, subject = self.page.look, self.page.content.subject
@@ -186,7 +193,8 @@ class Panel:
         for name in ("scale", "map", "low", "high"):
             self.parts[name].visible = false
 
-    def _drawn(self, colours: Colours) -> None:
+    def drawn(self, colours: Colours) -> None:
+        """Show the legend of the colours that were drawn."""
         self.colours = colours
         legend, message = self.parts["legend"], self.parts["message"]
         picture = colours.legend()
@@ -198,7 +206,8 @@ class Panel:
     def _failed(self, text: str) -> None:
         self.parts["message"].content, self.parts["message"].visible = f"**{numbers.plain(text)}**", True
 
-    def _clicked(self, event) -> None:
+    def clicked(self, event) -> None:
+        """Tell the numbers of the patch at a click."""
         content, look = self.page.content, self.page.look
         patches = content.subject.patches
         hidden = np.isin(np.arange(len(patches.scene.names)), list(look.hidden))

@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Iterable
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 
@@ -17,7 +18,7 @@ from .look import Look
 from .page import Page
 from .panel import Panel
 from .server import HERE, PORT, address, serving
-from .shades import Shades
+from .shades import Colours, Shades
 from .subject import Subject
 
 WAIT = 600.0  # seconds for a page to be made
@@ -43,8 +44,11 @@ class Viewer:
             lines = marks.add(server, subject.patches.scene, content.frame)
             eye.stand(server, next(iter(views.values())), subject, content.frame)
             self.server, self.page = server, Page(server, content, look)
+            self._marks, self._views = lines, views
             self.panel = Panel(self.page, about.text(subject, findings, lines), views)
             self.panel.build()
+            self.page.drawn, self.added = self._drawn, lambda: None
+            server.scene.on_click()(lambda event: self.panel.clicked(event))
             self.page.start()
             stack.callback(self.page.end)
             self.page.show()
@@ -56,8 +60,23 @@ class Viewer:
         return address(self.server)
 
     def show(self, solution: Solution) -> None:
-        """Show another solution, such as a better one of the same patches."""
-        self.page.show(subject=Subject.of(solution))
+        """Show another solution, such as a better one of the same scene."""
+        subject, before = Subject.of(solution), self.page.content.subject
+        if subject.names == before.names:
+            self.page.show(subject=subject)
+            self.panel.parts["about"].content = about.text(subject, (), self._marks)
+            return
+        with self.page.paused(), self.server.atomic():  # there are other quantities to choose from
+            self.page.show(replace(self.page.look, quantity=None, band=None), subject)
+            self.server.gui.reset()
+            self.panel = Panel(self.page, about.text(subject, (), self._marks), self._views)
+            self.panel.build()
+            self.page.drawn = self._drawn
+
+    def _drawn(self, colours: Colours) -> None:
+        """Bring the panel up to date after the page, and what `Live` adds to it."""
+        self.panel.drawn(colours)
+        self.added()
 
     def save_html(self, path) -> Path:
         """Write the page as it is now to one HTML file, which needs no server and no network.
@@ -73,7 +92,12 @@ class Viewer:
 
     def wait(self) -> None:
         """Wait until Ctrl-C."""
-        threading.Event().wait()
+        while True:
+            self.pause(3600.0)
+
+    def pause(self, seconds: float) -> None:
+        """Let the page work for some time."""
+        threading.Event().wait(seconds)
 
     def close(self) -> None:
         """End the page."""
