@@ -236,14 +236,6 @@ def test_meshes_have_no_final_gather(standing, tmp_path):
         export(solved(standing, rays=2000), tmp_path / "a.glb", final_gather=64)
 
 
-def test_backs_that_let_lines_pass_are_refused(standing):
-    scene = standing
-    passing = replace(scene, back=np.full_like(scene.back, rd.Back.PASSES))
-    solution = rd.solve(rd.subdivide(passing, cells=1), "random-walk", rays=2000, replicates=2)
-    with pytest.raises(rd.MethodError, match=r"some backs let lines pass.*final gather"):
-        render(solution, camera=ABOVE, final_gather=64)
-
-
 def test_the_command(tmp_path, standing):
     solved(standing, rays=2000).save(tmp_path / "a.npz")
     options = [tmp_path / "a.npz", "-o", tmp_path / "a.png", "--width", 8, "--height", 6, "--final-gather", 32, "--seed", 5]

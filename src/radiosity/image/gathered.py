@@ -66,7 +66,7 @@ class Gathered:
             options: seed and progress.
 
         Raises:
-            OutputError: the quantity is not one of light. MethodError: some backs let lines pass.
+            OutputError: the quantity is not one of light.
         """
         if quantity not in SHOWN:
             raise OutputError(f"a final gather finds {', '.join(SHOWN)}, not '{quantity}'; leave it out")

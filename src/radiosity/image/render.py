@@ -71,7 +71,6 @@ def render(
     Raises:
         OutputError: the file cannot be written, or an option makes no sense.
         SceneError: the camera is not one that can take a picture.
-        MethodError: a final gather of a scene whose backs let lines pass.
         DeviceError: rays cannot be traced here.
     """
     path = None if path is None else check_writable(path, SUFFIXES)

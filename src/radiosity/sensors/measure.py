@@ -61,7 +61,7 @@ def measure(
         What was measured. Ctrl-C ends the run early and returns the last complete stage.
 
     Raises:
-        MethodError: a choice or budget that makes no sense, or a scene whose backs let lines pass. SceneError: nothing emits.
+        MethodError: a choice or budget that makes no sense. SceneError: nothing emits.
 
     Example:
         >>> room = rd.load_scene("room")

@@ -17,7 +17,7 @@ from ..tracing.geometry import Geometry
 from .model import Sensors
 from .reflected import mean_reflected
 from .result import in_bands
-from .run import AT_ONCE, refuse_passing
+from .run import AT_ONCE
 from .tracing import PILOT, Tracing
 
 PIECE = 1 << 18  # points at once
@@ -58,11 +58,10 @@ class Gather:
             points: how many there are at most; progress is told as a part of them.
 
         Raises:
-            MethodError: some backs let lines pass. DeviceError: rays cannot be traced here.
+            DeviceError: rays cannot be traced here.
         """
         number = whole(seed, "seed", 0)
         geometry = Geometry(solution.patches.solid, choose(device))
-        refuse_passing(geometry, "the points of a final gather")
         problem = Problem.of(solution.patches)
         light = mean_reflected(solution, problem)
         if unknown := int(np.isnan(light).any(axis=1).sum()):

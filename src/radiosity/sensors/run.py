@@ -61,7 +61,7 @@ class Run:
         """Trace the lines; the status says whether the error was reached.
 
         Raises:
-            MethodError: other replicates than the solution's, an error without replicates, or backs that let lines pass.
+            MethodError: other replicates than the solution's, or an error without replicates.
         """
         solution, begun = self.solution, perf_counter()
         count = self.replicates or (solution.replicates if solution.replicates > 1 else 8)
@@ -72,7 +72,6 @@ class Run:
         if count < 2 and self.budget.error is not None:
             raise MethodError("an error is found from replicates: give 2 or more, or rays in place of the error")
         geometry = Geometry(solution.patches.solid, choose(self.device))
-        refuse_passing(geometry, "sensors")
         problem, stop = Problem.of(solution.patches), Stop()
         teller = Teller(self.budget, self.progress)
         with stop.listening():
@@ -82,22 +81,6 @@ class Run:
         inside = tracing.behind() > BEHIND
         found = Measurement.of(solution, self.sensors, problem, values, inside, tracing.traced, perf_counter() - begun, status)
         return found if reached or status != "complete" else replace(found, status="not reached")
-
-
-def refuse_passing(geometry: Geometry, what: str) -> None:
-    """Refuse scenes with backs that let lines pass.
-
-    Args:
-        what: points whose light is asked for.
-
-    Raises:
-        MethodError: there are such backs.
-    """
-    if geometry.some_backs_pass:
-        raise MethodError(
-            f"{geometry.scene.source}: some backs let lines pass, so what a point sees is not what sees the point; "
-            f"{what} need both to be equal: make these surfaces radiate or absorb on both sides"
-        )
 
 
 def traced(

@@ -12,13 +12,15 @@ from ...method import Method
 from ...problem.model import Problem
 from ...sampling.numbers import AbstractNumbers, ready
 from ...sampling.streams import Seed, stream
-from ...tracing.hits import first_hit, patch_of
+from ...tracing.against import light_along, sends
+from ...tracing.hits import Hit, first_hit, patch_of
 from ...tracing.ray_generation import before, place_number
 from .chances import Chances
 from .glow import Glow
 from .packets import ESCAPED, LOST, Packets
 from .targets import Targets
 
+UNKNOWN = 0xFFFFFFFF  # in place of a place: nothing was met yet
 UNITS = 2.0**30  # fixed point units of one line
 
 
@@ -102,18 +104,41 @@ class Lines:
         one, none = UInt32(1), UInt32(0)
         dr.eval(start, count, row, base)
 
-        def body(number, escaped, lost, *sums):
-            u = points(number)
-            origin, direction = frame.leave(*position_of(u), u)
-            hit = first_hit(geometry, origin, direction, coherent=packets.coherent)
-            met = patch_of(geometry, hit, packets.n + 1, packets.n)
+        def values_of(hit: Hit, met, origin, direction):
+            """Return the place of the patch that a line meets, or a code, and what the line finds there."""
             values = self.targets.met(met, hit, origin, direction, normal, row)
             where = dr.gather(UInt32, packets.place_on_device, met)
-            if keep is not None:
-                dr.scatter(keep, where, (start + number) * lanes + lane)
             if read is not None:
                 there = where < packets.read_width
                 values = [value + dr.gather(Float, b, base + where, there) for value, b in zip(values, read, strict=True)]
+            return where, values
+
+        def nearest(origin, direction):
+            hit = first_hit(geometry, origin, direction, coherent=packets.coherent)
+            return values_of(hit, patch_of(geometry, hit, packets.n + 1, packets.n), origin, direction)
+
+        def through_fronts(origin, direction):
+            def visit(hit, stops, met, where, *sums):
+                side = patch_of(geometry, hit, packets.n + 1, packets.n)
+                side = dr.select(hit.valid & ~sends(hit), packets.n + 1, side)
+                place, values = values_of(hit, side, origin, direction)
+                counts = met & (where == UNKNOWN) & (stops | sends(hit))
+                more = (total + dr.select(met, value, 0) for total, value in zip(sums, values, strict=True))
+                return dr.select(counts, place, where), *more
+
+            zeros = (dr.zeros(Float, packets.lanes) for _ in range(self.groups))
+            state = (dr.full(UInt32, UNKNOWN, packets.lanes), *zeros)
+            where, *values = light_along(geometry, origin, direction, visit, state, coherent=packets.coherent)
+            return where, values
+
+        found = through_fronts if geometry.some_backs_pass else nearest
+
+        def body(number, escaped, lost, *sums):
+            u = points(number)
+            origin, direction = frame.leave(*position_of(u), u)
+            where, values = found(origin, direction)
+            if keep is not None:
+                dr.scatter(keep, where, (start + number) * lanes + lane)
             gone = [total + dr.select(where == code, one, none) for total, code in ((escaped, ESCAPED), (lost, LOST))]
             if squares:
                 return (number + 1, *gone, *_squared(sums, values))

@@ -14,6 +14,7 @@ import drjit as dr
 import numpy as np
 
 from ...sampling.hemisphere import triangle
+from ...tracing.against import light_along, sends
 from ...tracing.faces import COLUMN_BITS, QUAD
 from ...tracing.hits import first_hit, patch_of
 from ...tracing.ray_generation import MASK, Frame
@@ -97,8 +98,8 @@ class Targets:
         Args:
             u: numbers; the fifth chooses the target, the first two a point of it.
         """
-        packets, types, chances = self.packets, self.types, self.chances
-        geometry, Float, beams, openings = packets.geometry, types.Float, chances.beams, chances.lamps.openings
+        types, chances = self.types, self.chances
+        Float, beams, openings = types.Float, chances.beams, chances.lamps.openings
         lamp, density = chances.choose(row, u[4])
         end, facing, first, cells = self._point_of(lamp, u)
         way = end - origin
@@ -117,13 +118,12 @@ class Targets:
             faces = dr.select(aimed, (above > 0) & (share > 0), faces)
             arrival = aimed, light, distance, above * share / density, beams.powers
         own = () if beams is None else (u[0], u[1])  # rays of a sensor to a point lamp are all the same
-        hit = first_hit(geometry, origin, direction, coherent=packets.coherent, active=faces, own=own)
-        met = patch_of(geometry, hit, packets.n + 1, packets.n)
+        met, escapes, end = self._end(origin, direction, faces, own, first, cells)
         seen = faces & (met - first < cells)
         part = dr.select(seen, kernel / bound, 0)
         values = [part * dr.gather(Float, column, met, seen) for column in self.emission]
         if openings is not None and self.sky is not None:
-            through = faces & (lamp >= chances.lamps.n_faces) & (lamp < chances.n_lamps) & ~hit.valid
+            through = faces & (lamp >= chances.lamps.n_faces) & (lamp < chances.n_lamps) & escapes
             number, _, front = openings.nearest(origin, direction, through)
             side = number + dr.select(front, types.UInt32(0), openings.count)
             through &= side == lamp - chances.lamps.n_faces
@@ -131,10 +131,33 @@ class Targets:
             values = [dr.select(through, kernel / bound * one, old) for one, old in zip(sky, values, strict=True)]
         if arrival is not None:
             aimed, light, distance, part, powers = arrival
-            arrives = faces & aimed & (~hit.valid | (hit.distance >= distance * TOUCHES))
+            arrives = faces & aimed & (escapes | (end >= distance * TOUCHES))
             of_lights = [part * dr.gather(Float, column, light, aimed) for column in powers]
             values = [dr.select(arrives, one, old) for one, old in zip(of_lights, values, strict=True)]
         return values
+
+    def _end(self, origin, direction, active, own, first, cells):
+        """Return the patch that shadow rays end on, whether they leave the scene, and how far they go; called in a kernel.
+
+        Against the light (`tracing.against`) they go on through fronts, and the patch is the first of ``cells`` that they meet.
+        """
+        packets, geometry, types = self.packets, self.packets.geometry, self.types
+        if not geometry.some_backs_pass:
+            hit = first_hit(geometry, origin, direction, coherent=packets.coherent, active=active, own=own)
+            return patch_of(geometry, hit, packets.n + 1, packets.n), ~hit.valid, hit.distance
+        width, nobody = packets.lanes, packets.n + 1
+
+        def visit(hit, stops, met, found, escapes, end):
+            patch = dr.select(met & sends(hit), patch_of(geometry, hit, nobody, nobody), nobody)
+            ends = stops & hit.valid
+            return (
+                dr.select(patch - first < cells, patch, found),
+                escapes | (stops & ~hit.valid),
+                dr.select(ends, hit.distance, end),
+            )
+
+        state = (dr.full(types.UInt32, nobody, width), dr.full(types.Bool, False, width), dr.full(types.Float, np.inf, width))
+        return light_along(geometry, origin, direction, visit, state, coherent=packets.coherent, active=active, own=own)
 
     def _point_of(self, lamp, u):
         """Return a point of a lamp, the lamp's normal, its first patch and their number; called in a kernel."""
