@@ -143,13 +143,14 @@ def test_version_and_help(capsys):
         "exchange",
         "render",
         "compare",
+        "convert",
         "check",
         "experiment",
         "doctor",
     ]
 
 
-@pytest.mark.parametrize("command", ["solve", "measure", "render", "compare", "check", "experiment", "doctor"])
+@pytest.mark.parametrize("command", ["solve", "measure", "render", "compare", "convert", "check", "experiment", "doctor"])
 def test_help_of_each_command_explains_each_option(capsys, command):
     status, out, _ = run(capsys, command, "--help")
     assert status == 0

@@ -12,6 +12,7 @@ from . import interrupts
 from .check import check
 from .compare import compare
 from .conductors import conductors
+from .convert import convert
 from .doctor import doctor
 from .exchange import exchange
 from .experiment import experiment
@@ -42,7 +43,7 @@ app = App(
     suppress_keyboard_interrupt=False,
 )
 for place, command in enumerate(
-    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, compare, check, experiment, doctor)
+    (solve, measure, methods, lines, relight, factors, conductors, exchange, render, compare, convert, check, experiment, doctor)
 ):
     app.command(command, sort_key=place)
 

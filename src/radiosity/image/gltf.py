@@ -29,7 +29,15 @@ def write(solution, path, look: Look) -> None:
     Raises:
         OutputError: the file cannot be written, or would pass the 4 GB that GLB can hold.
     """
-    contents, blocks = document(coloured(solution, look))
+    write_glb(path, *document(coloured(solution, look)))
+
+
+def write_glb(path, contents: dict, blocks: list) -> None:
+    """Write a JSON document and the parts of its buffer as a GLB file.
+
+    Raises:
+        OutputError: the file cannot be written, or would pass the 4 GB that GLB can hold.
+    """
     text = json.dumps(contents, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     size = sum(len(block) for block in blocks)
