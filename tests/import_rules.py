@@ -25,6 +25,7 @@ FLOORS = (  # a folder, or a file of the package's own folder, imports what is a
     "run",
     "image",
     "comparison",  # of two solutions; its pictures take cameras and false colours
+    "conversion",  # writers of scene files; GLB is packed as that of solutions
     "exchange",  # heat from counted lines: it runs them, and its pictures take cameras and false colours
     "sensors",  # light at points: they run a solution's scene once more
     "lightmap",  # light at texels: a gather at each, and the files that hold them

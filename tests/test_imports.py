@@ -44,6 +44,7 @@ TABLES = {  # modules that are imported by name: a table of their names and, whe
     "": ("_HOMES", "keys"),
     "algorithms.firing.orders": ("FIRED", "values"),
     "algorithms.table": ("ALGORITHMS", "values"),
+    "conversion.save": ("SUFFIXES", "values"),
     "factors.solvers": ("SOLVERS", "values"),
     "factors.sources": ("ROWS", "values"),
     "image": ("FORMATS", "values"),

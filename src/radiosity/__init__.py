@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from .comparison.compare import compare
     from .comparison.result import Comparison
+    from .conversion.save import save_scene
     from .diagnostics.check import check
     from .exchange.compute import view_factors
     from .exchange.gebhart import GebhartFactors, gebhart_factors
@@ -84,6 +85,7 @@ HOOKS["gather"] = _gather  # of pictures with a final gather
 _HOMES = {
     "comparison.compare": ("compare",),
     "comparison.result": ("Comparison",),
+    "conversion.save": ("save_scene",),
     "diagnostics.check": ("check",),
     "exchange.compute": ("view_factors",),
     "exchange.gebhart": ("GebhartFactors", "gebhart_factors"),
@@ -172,6 +174,7 @@ __all__ = [
     "radiative_exchange",
     "read_luminaire",
     "refine_check",
+    "save_scene",
     "solve",
     "subdivide",
     "sun",

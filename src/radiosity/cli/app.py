@@ -12,6 +12,7 @@ from . import interrupts
 from .check import check
 from .compare import compare
 from .conductors import conductors
+from .convert import convert
 from .doctor import doctor
 from .exchange import exchange
 from .experiment import experiment
@@ -57,6 +58,7 @@ for place, command in enumerate(
         view,
         lightmap,
         compare,
+        convert,
         check,
         experiment,
         doctor,

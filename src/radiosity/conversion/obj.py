@@ -1,0 +1,73 @@
+"""Wavefront OBJ with an MTL file beside it: an object for each surface. Numbers keep all their digits.
+
+Its faces have two sides, so backs are those of fronts. Reflectance is ``Kd``, and emission ``Ke``, a radiance.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import printable
+from ..scene.formats.obj.tables import NO_NAME
+from ..scene.model import Scene
+from ..solution.whole import whole_file
+from .pieces import Piece, pieces, tell_of_rest
+from .plain import plain
+from .told import Told
+
+HOLDS = frozenset({"names", "reflectance", "emission"})
+
+
+def write(scene: Scene, path: Path, told: Told) -> None:
+    """Write the file and its materials.
+
+    Raises:
+        OutputError: one of them cannot be written.
+    """
+    tell_of_rest(scene, told, HOLDS)
+    parts = pieces(plain(scene, of_surfaces=True), told, pairs=False)
+    names, library, lines = object_names(parts, told), path.with_suffix(".mtl"), []
+    for piece, name in zip(parts, names, strict=True):
+        lines += [f"newmtl {name}", f"Kd {_numbers(piece.reflectance)}", f"Ke {_numbers(piece.emission / np.pi)}", "illum 1"]
+    with whole_file(library) as file:
+        file.write(("\n".join(lines) + "\n").encode())
+    write_geometry(scene, path, parts, names, library.name)
+
+
+def write_geometry(scene: Scene, path: Path, parts: list[Piece], names: list[str], library: str = "") -> None:
+    """Write the faces of pieces as objects of these names, with materials of the same names where there is a library.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    with whole_file(path) as file:
+        head = "# written by radiosity; lengths in metres\n" + (f"mtllib {library}\n" if library else "")
+        file.write(head.encode())
+        file.write("".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in scene.vertices.tolist()).encode())
+        for piece, name in zip(parts, names, strict=True):
+            file.write(f"o {name}\n{f'usemtl {name}' if library else 's off'}\n".encode())
+            for row in (piece.corners + 1).tolist():
+                file.write(f"f {row[0]} {row[1]} {row[2]}{f' {row[3]}' if row[3] > 0 else ''}\n".encode())
+
+
+def object_names(parts: list[Piece], told: Told) -> list[str]:
+    """Return a name for each piece that an OBJ file can hold; each is another one."""
+    result: list[str] = []
+    taken = {piece.name for piece in parts}
+    for piece in parts:
+        name = " ".join(printable(piece.name).split())
+        if name.lower() in NO_NAME or name.startswith("#") or " #" in name or name.endswith("\\"):
+            name = f"surface {piece.surface}"
+        if piece.number:
+            told.add("surfaces of several materials become one for each, called NAME.2 and so on", [piece.name])
+            name = f"{name}.{piece.number + 1}"
+        elif name != piece.name:
+            told.add("names that the format cannot hold are changed", [f"{piece.name} -> {name}"])
+        while name in result or (name in taken and name != piece.name):
+            name += "'"
+        result.append(name)
+    return result
+
+
+def _numbers(values: np.ndarray) -> str:
+    return " ".join(map(repr, values.tolist()))

@@ -1,0 +1,66 @@
+"""`save_scene`: a scene as a file that reads back as the same scene.
+
+A new format is one new module with ``write(scene, path, told)`` and one line in `SUFFIXES`.
+"""
+
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError
+from ..image.output import check_writable
+from ..scene.model import Scene
+from .told import Told
+
+SUFFIXES = {
+    ".toml": "toml",
+    ".glb": "gltf",
+    ".gltf": "gltf",
+    ".obj": "obj",
+    ".ply": "ply",
+    ".stl": "stl",
+}
+KNOWN_BANDS = (("grey",), ("red", "green", "blue"))
+
+
+def files_of(path) -> tuple[Path, ...]:
+    """The files that `save_scene` writes for a path, without images: itself, and what it refers to."""
+    path = Path(path)
+    beside = {".toml": (".obj",), ".obj": (".mtl",)}.get(path.suffix.lower(), ())
+    return (path, *(path.with_suffix(suffix) for suffix in beside))
+
+
+def save_scene(scene: Scene, path) -> None:
+    """Write a scene as .toml (with an .obj beside it), .glb, .gltf, .obj (with an .mtl beside it), .ply or .stl.
+
+    A warning for each kind of thing that the format cannot hold names what it is. A .toml holds most.
+
+    Args:
+        scene: to write.
+        path: of the file.
+
+    Raises:
+        OutputError: another suffix, a file that cannot be written, or a scene of other bands than files hold.
+
+    Example:
+        >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+        >>> lamp = rd.Scene.from_arrays(corners, [[0, 1, 2, 3]], reflectance=0.5, emission=100, names=["lamp"])
+        >>> rd.save_scene(lamp, "lamp.toml")
+        >>> rd.load_scene("lamp.toml").hash == lamp.hash
+        True
+    """
+    path = Path(path)
+    for file in files_of(path):
+        check_writable(file, (*SUFFIXES, ".mtl"))
+    if scene.n_bands not in (1, 3):
+        raise OutputError(
+            f"{path}: the scene has {scene.n_bands} bands ({', '.join(scene.bands)}), and scene files hold one, or red, green "
+            "and blue; take fewer bands"
+        )
+    told = Told()
+    if scene.bands not in KNOWN_BANDS:
+        told.add("bands read back as grey, or as red, green and blue", scene.bands)
+    with np.errstate(all="ignore"):
+        import_module(f".{SUFFIXES[path.suffix.lower()]}", __package__).write(scene, path, told)
+    told.report(path)
