@@ -67,7 +67,9 @@ def varied(axis: str, value: str) -> list[rd.Method]:
     return sorted(dict.fromkeys(found), key=str)
 
 
-def each(of: Callable[[str, str], list[rd.Method]], *axes: str):
-    """Parametrise a test by the ``method`` of every member of some tables, each method once."""
+def each(of: Callable[[str, str], list[rd.Method]], *axes: str, slow: Callable[[rd.Method], bool] = lambda method: False):
+    """Parametrise a test by the ``method`` of every member of some tables, each method once; ``slow`` says which run with the
+    slow tests alone."""
     methods = dict.fromkeys(method for axis in axes for value in CHOICES[axis] for method in of(axis, value))
-    return pytest.mark.parametrize("method", methods, ids=str)
+    marked = [pytest.param(method, marks=pytest.mark.slow) if slow(method) else method for method in methods]
+    return pytest.mark.parametrize("method", marked, ids=str)

@@ -1,10 +1,10 @@
 """Contract of an estimator and of an absorption: the mean is the exact solution, with each process, order, kind of lines, option
 and preset that goes with it (`members.varied`).
 
-The furnace cube (B = 2 everywhere) for all, and for the discrete equation a cube of unlike walls, whose solution by exact form
-factors is known (`cube_irradiance`). Power of each wall, mean of 32 replicates, by Student's t at alpha = 1e-4 for all walls of
-a test together (`methods.critical`): with some hundred tests a false alarm has a chance of 1 %, and seeds are fixed. Estimators
-that leave out a probability fail the same comparison.
+The furnace cube (B = 2 everywhere) for the continuous equation, and with the slow tests for all; for the discrete one a cube of
+unlike walls, whose solution by exact form factors is known (`cube_irradiance`). Power of each wall, mean of 32 replicates, by
+Student's t at alpha = 1e-4 for all walls of a test together (`methods.critical`): with some hundred tests a false alarm has a
+chance of 1 %, and seeds are fixed. Estimators that leave out a probability fail the same comparison.
 """
 
 import drjit as dr
@@ -50,13 +50,18 @@ def test_some_process_takes_the_absorption(absorption):
     assert plainest("absorption", absorption)
 
 
-@each(varied, "estimator", "absorption")
+def discrete(method: rd.Method) -> bool:
+    return method.equation == "discrete"
+
+
 class TestContract:
+    @each(varied, "estimator", "absorption", slow=discrete)
     def test_the_mean_is_exact_in_the_furnace(self, method):
         assert off(method, 0.5, 1.0, 2.0) < BOUND
 
+    @each(varied, "estimator", "absorption", slow=lambda method: not discrete(method))
     def test_the_mean_is_exact_between_unlike_walls(self, method):
-        if method.equation == "discrete":
+        if discrete(method):
             assert off_of_unlike_walls(method) < BOUND
 
 

@@ -107,9 +107,22 @@ def test_powers_of_two_leave_every_bit(load, solved, name, exponent):
     assert metres(there) == pytest.approx(scale * metres(here), rel=6e-3)  # they are told in three digits
 
 
-@pytest.mark.parametrize("name", SCENES)
+PLACES = {"small": (1e-4, (3, -2, 5)), "large": (1e6, (-3, 0.2, 4)), "far": (1.0, (900, -400, 100))}
+USUAL = (("corridor.mgf", "far"), ("office2/office2.mgf", "small"))  # the others of these two with the slow tests
+
+
 @pytest.mark.parametrize(
-    ("scale", "move"), [(1e-4, (3, -2, 5)), (1e6, (-3, 0.2, 4)), (1.0, (900, -400, 100))], ids=["small", "large", "far"]
+    ("name", "scale", "move"),
+    [
+        pytest.param(
+            name,
+            *PLACES[place],
+            marks=pytest.mark.slow if name in STRANGE and (name, place) not in USUAL else (),
+            id=f"{place}-{name}",
+        )
+        for place in PLACES
+        for name in SCENES
+    ],
 )
 def test_scaled_turned_and_moved(load, solved, name, scale, move):
     scene = load(name)
