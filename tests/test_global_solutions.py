@@ -126,10 +126,10 @@ def test_like_local_lines(references, method, name):
 def test_light_goes_one_way_through_a_back_that_lets_it_pass():
     """The receiver sees the sheet's front, and gets the emitter's light through the sheet."""
     patches = rd.subdivide(stack(rd.Back.PASSES), cells=3)
-    reference = rd.solve(patches, "random-walk", rays=1_500_000, replicates=16, seed=9)
+    reference = rd.solve(patches, "random-walk", rays=2_000_000, replicates=16, seed=9)
     for lines in ("global", "spans"):
         for order in ("multipath", "regular"):
-            same(rd.solve(patches, rd.Method(lines=lines, order=order), rays=500_000, replicates=16), reference)
+            same(rd.solve(patches, rd.Method(lines=lines, order=order), rays=1_000_000, replicates=16), reference)
 
 
 def test_exchange_is_what_whole_numbers_say(random):
