@@ -15,11 +15,13 @@ from radiosity.algorithms.iterations.control import SHARE, median, source_consta
 from radiosity.run import budget
 
 SIGMAS = 6.0
+SLOW = pytest.mark.slow
+LONGER = ("incremental", "regular, warm-up", "regular, both ends", "regular, control variate")  # others have each choice, too
 COLORS = [[0.8, 0.5, 0.1], [0.2, 0.5, 0.7], [0.6, 0.3, 0.3], [0.1, 0.7, 0.2], [0.5, 0.5, 0.6], [0.3, 0.3, 0.75]]
 LIGHT = [[1.0, 1.0, 1.0], [0.0, 0.0, 0.0], [0.5, 0.1, 0.0], [0.0, 0.0, 0.0], [0.0, 0.2, 0.9], [0.0, 0.0, 0.0]]
 
 
-@pytest.mark.parametrize("mean_reflectance", [0.1, pytest.param(0.5, marks=pytest.mark.slow), 0.9])
+@pytest.mark.parametrize("mean_reflectance", [pytest.param(0.1, marks=SLOW), pytest.param(0.5, marks=SLOW), 0.9])
 @pytest.mark.parametrize("name", VARIANTS)
 def test_labyrinth_furnace_is_one_everywhere(name, mean_reflectance):
     patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean_reflectance}"), cells=1)
@@ -58,7 +60,7 @@ def reference():
     return walked()
 
 
-@pytest.mark.parametrize("name", VARIANTS)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=SLOW) if name in LONGER else name for name in VARIANTS])
 def test_each_band_is_its_own_problem(name):
     """Alpha as in `test_bands`: 96 patches, Student with about 30 degrees of freedom."""
     method = rd.Method(**VARIANTS[name])

@@ -49,13 +49,14 @@ def reference(room, plates):
 SLOW = pytest.mark.slow
 
 
-# combinations that test_axis_estimator.py puts into a furnace of its own
+# combinations that test_axis_estimator.py puts into closed scenes of its own
 VARIED = {method for axis in ("estimator", "absorption") for value in CHOICES[axis] for method in varied(axis, value)}
 ELSEWHERE = {name for name, method in COMBINATIONS.items() if method in VARIED}
+SOME = pytest.mark.parametrize("name", [pytest.param(name, marks=SLOW) if name in ELSEWHERE else name for name in METHODS])
 
 
 @pytest.mark.parametrize("mean_reflectance", [pytest.param(0.1, marks=SLOW), pytest.param(0.5, marks=SLOW), 0.9])
-@pytest.mark.parametrize("name", [pytest.param(name, marks=SLOW) if name in ELSEWHERE else name for name in METHODS])
+@SOME
 def test_furnace(name, mean_reflectance):
     patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean_reflectance}"), cells=1)
     solution = rd.solve(patches, METHODS[name], rays=RAYS, replicates=REPLICATES)
@@ -66,9 +67,9 @@ def test_furnace(name, mean_reflectance):
     assert np.average(np.abs(solution.radiosity[:, 0] - 1), weights=patches.area) < 0.1
 
 
-@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
-def test_room(method, room, reference):
-    compare(method, room, reference("room", method.equation))
+@SOME
+def test_room(name, room, reference):
+    compare(METHODS[name], room, reference("room", METHODS[name].equation))
 
 
 @pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
