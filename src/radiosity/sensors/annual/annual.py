@@ -93,16 +93,17 @@ def annual(
             pass, or bands are not red, green and blue.
 
     Example:
-        >>> room = rd.load_scene("room")
-        >>> desk = rd.Sensors.of([[3, 2, 2.9]])
-        >>> rows = [f"2005,{m},{d},{h},60,-,20,14,50,101000,0,0,300,0,{600 * (8 < h < 17)},{150 * (6 < h < 19)}"
-        ...         for m, n in zip(range(1, 13), (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31))
-        ...         for d in range(1, n + 1) for h in range(1, 25)]
-        >>> head = "LOCATION,Town,-,DEU,made,0,52.5,13.4,1,35"
-        >>> _ = pathlib.Path("town.epw").write_text(chr(10).join([head, *rows]))
-        >>> found = rd.annual(rd.subdivide(room, cells=2), "town.epw", desk, rays=50_000)
-        >>> found.values["DA"].shape
-        (1,)
+        >>> from datetime import date, timedelta
+        >>> from pathlib import Path
+        >>> days = [date(2025, 1, 1) + timedelta(number) for number in range(365)]
+        >>> light = {11: "500,120", 12: "600,150"}  # direct and diffuse, W/m²
+        >>> row = "2005,{0.month},{0.day},{1},60,-,20,14,50,101000,0,0,300,9999,{2}"
+        >>> rows = [row.format(day, hour, light.get(hour, "0,0")) for day in days for hour in range(1, 25)]
+        >>> _ = Path("town.epw").write_text("\\n".join(["LOCATION,Town,-,DEU,made,0,52.5,13.4,1,35", *rows]))
+        >>> roof = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.5, 0.0)
+        >>> found = rd.annual(rd.subdivide(roof, cells=1), "town.epw", rd.Sensors.of([0.3, 0.3, 0.1]), rays=10_000)
+        >>> found.values["DA"].round(3).tolist(), found.table()[0]["sDA"]
+        ([0.2], 0.0)
     """
     given = scene_of(scene, "annual")
     if sensors is None:

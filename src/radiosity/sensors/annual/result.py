@@ -34,7 +34,18 @@ class AnnualDaylight:
         status: "complete", "interrupted" or "not reached".
         source: of the scene.
 
-    Example: see `radiosity.annual`.
+    Example:
+        >>> from datetime import date, timedelta
+        >>> from pathlib import Path
+        >>> days = [date(2025, 1, 1) + timedelta(number) for number in range(365)]
+        >>> light = {11: "500,120", 12: "600,150"}  # direct and diffuse, W/m²
+        >>> row = "2005,{0.month},{0.day},{1},60,-,20,14,50,101000,0,0,300,9999,{2}"
+        >>> rows = [row.format(day, hour, light.get(hour, "0,0")) for day in days for hour in range(1, 25)]
+        >>> _ = Path("town.epw").write_text("\\n".join(["LOCATION,Town,-,DEU,made,0,52.5,13.4,1,35", *rows]))
+        >>> roof = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.5, 0.0)
+        >>> found = rd.annual(rd.subdivide(roof, cells=1), "town.epw", rd.Sensors.of([0.3, 0.3, 0.1]), rays=10_000)
+        >>> found.coefficients.straight.shape, round(float(found.coefficients.whole[0].sum()), 1)
+        ((8, 1, 146), 3.1)
     """
 
     sensors: Sensors
