@@ -34,7 +34,7 @@ class Replicate:
         """
         grey = problem.scalar
         self.problem = problem
-        self.weights = np.zeros((len(sensors), 0), np.float32)  # of lanes of patches, see `reflections.weights`
+        self.places, self.weights = np.zeros(0, np.int64), np.zeros((len(sensors), 0), np.float32)  # of patches that count
         self.receivers = Receivers(geometry, 1, sensors=sensors, seed=seed)
         self.patches = Gathering.of(Packets(geometry, 1), grey, seed, PATCHES, sky, axes)
         self.sensors = Gathering.of(self.receivers, grey, seed, SENSORS, sky, axes)
@@ -49,9 +49,8 @@ class Replicate:
         seen, factors = self.receivers.mean_of_planes(self.sensors.shares()), self.patches.shares()
         parts = (np.float32(share) * weights(seen, factors, rho) for share, rho in photopic_reflectances(self.problem))
         of_patches = np.sum(list(parts), axis=0)
-        packets = self.patches.lines.packets
-        self.weights = np.zeros((len(of_patches), packets.width), np.float32)
-        self.weights[:, packets.place] = of_patches
+        seen_at_all = np.flatnonzero(of_patches.any(axis=0))
+        self.places, self.weights = self.patches.lines.packets.place[seen_at_all], of_patches[:, seen_at_all]
         straight = self.receivers.mean_of_planes(self.sensors.from_sky())
         return straight, of_patches @ self.patches.from_sky()
 
@@ -65,9 +64,9 @@ class Replicate:
         Args: see `Sunlight.shares`.
         """
         samples = 1 if self.receivers.geometry.panes is None else IN_PANES
-        straight = Sunlight(self.sensors.of_suns, samples).shares(towards, first)
-        lit = Sunlight(self.patches.of_suns).shares(towards, first)
-        return self.receivers.mean_of_planes(straight.T[self.receivers.place]), self.weights @ lit.T
+        straight = Sunlight(self.sensors.of_suns, self.receivers.place, samples).shares(towards, first)
+        lit = Sunlight(self.patches.of_suns, self.places).shares(towards, first)
+        return self.receivers.mean_of_planes(straight.T), self.weights @ lit.T
 
 
 def photopic_reflectances(problem: Problem) -> list[tuple[float, np.ndarray]]:

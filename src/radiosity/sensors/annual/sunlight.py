@@ -6,6 +6,7 @@ import drjit as dr
 import numpy as np
 
 from ...algorithms.gather.lines import Lines
+from ...device.backend import upload
 from ...problem.lights.ball import Ball
 from ...problem.lights.suns import Suns
 from ...scene.lights.sun import DIAMETER
@@ -19,19 +20,23 @@ class Sunlight:
 
     Attributes:
         lines: have the receivers, of one replicate, and the numbers of their rays.
+        places: (n_places,) int64, the places of receivers that are asked, see `Packets`.
         samples: rays of each receiver to each sun: panes let some of them through.
     """
 
     lines: Lines
+    places: np.ndarray
     samples: int = 1
 
     def shares(self, towards: np.ndarray, first: int) -> np.ndarray:
-        """Return what each lane gets of a unit of normal irradiance by each sun, (n_suns, lanes) float32.
+        """Return what the receivers get of a unit of normal irradiance by each sun, (n_suns, n_places) float32.
 
         Args:
             towards: (n_suns, 3) unit directions to the suns.
             first: the number of the first sun among all: rays are a function of it, the receiver and the seed.
         """
+        if not len(self.places):
+            return np.zeros((len(towards), 0), np.float32)
         found = self._cosines(towards, first * self.samples)
         for number in range(1, self.samples):
             found += self._cosines(towards, first * self.samples + number * len(towards))
@@ -45,10 +50,10 @@ class Sunlight:
         suns.prepare(packets.geometry)
         _, replicate, place, patch = packets.read()
         dr.eval(replicate, place, patch)
-        width = dr.opaque(types.UInt32, packets.width)
-        ray = dr.arange(types.UInt32, packets.width * n)
+        width = dr.opaque(types.UInt32, len(self.places))
+        ray = dr.arange(types.UInt32, len(self.places) * n)
         sun = ray // width
-        lane = ray - sun * width
+        lane = dr.gather(types.UInt32, upload(types.UInt32, self.places.astype(np.uint32)), ray - sun * width)
         patch, replicate = dr.gather(types.UInt32, patch, lane), dr.gather(types.UInt32, replicate, lane)
         record = packets.record(patch)
         points = self.lines.points_of(self.lines.keys[0], replicate, record, patch, dr.opaque(types.UInt32, start), start + n + 1)
@@ -58,8 +63,8 @@ class Sunlight:
         direction = suns.towards_of(sun, u[0], u[1])
         cosine = dr.dot(direction, normal)
         origin = before(frame.origin + frame.first * s + frame.second * t, normal, frame.offset)
-        up = (cosine > 0) & (lane < dr.opaque(types.UInt32, packets.receivers))
+        up = cosine > 0
         hit = first_hit(packets.geometry, origin, direction, active=up, own=(u[2], u[3]))
         brought = dr.select(up & ~hit.valid, cosine, 0)
         dr.eval(brought)
-        return np.array(brought).reshape(n, packets.width)
+        return np.array(brought).reshape(n, len(self.places))
