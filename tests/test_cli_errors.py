@@ -135,6 +135,7 @@ def test_version_and_help(capsys):
     assert listed == [
         "solve",
         "measure",
+        "annual",
         "methods",
         "lines",
         "relight",

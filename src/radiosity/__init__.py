@@ -49,6 +49,8 @@ if TYPE_CHECKING:
     from .scene.lights.sun import Sun, sun
     from .scene.lights.sun_position import sun_position
     from .scene.lights.weather import epw_sky, perez_sky
+    from .sensors.annual.annual import annual
+    from .sensors.annual.result import AnnualDaylight
     from .sensors.glare import GlareRating, unified_glare_rating
     from .sensors.measure import measure
     from .sensors.model import Sensors
@@ -114,6 +116,8 @@ _HOMES = {
     "scene.lights.sun": ("Sun", "sun"),
     "scene.lights.sun_position": ("sun_position",),
     "scene.lights.weather": ("epw_sky", "perez_sky"),
+    "sensors.annual.annual": ("annual",),
+    "sensors.annual.result": ("AnnualDaylight",),
     "sensors.glare": ("GlareRating", "unified_glare_rating"),
     "sensors.measure": ("measure",),
     "sensors.model": ("Sensors",),
@@ -126,6 +130,7 @@ _HOME = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = [
     "BASELINES",
     "PRESETS",
+    "AnnualDaylight",
     "Back",
     "Baseline",
     "Camera",
@@ -155,6 +160,7 @@ __all__ = [
     "ViewFactors",
     "Viewer",
     "adapt",
+    "annual",
     "bake_lightmap",
     "check",
     "cie_sky",

@@ -9,6 +9,7 @@ from cyclopts import App, CoercionError, CycloptsError
 
 from ..errors import INSTALL, DeviceError, RadiosityError, RadiosityWarning
 from . import interrupts
+from .annual import annual
 from .check import check
 from .compare import compare
 from .conductors import conductors
@@ -48,6 +49,7 @@ for place, command in enumerate(
     (
         solve,
         measure,
+        annual,
         methods,
         lines,
         relight,

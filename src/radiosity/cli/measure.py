@@ -88,18 +88,7 @@ def measure(
     cut = {"size": options.pop("patch_size"), "cells": options.pop("cells")}
     if options["rays"] is not None and options["error"] is not None:
         raise MethodError("give one of --rays and --error, not both")
-    given = {f"--{name}": value for name, value in (("patch-size", cut["size"]), ("cells", cut["cells"])) if value is not None}
-    if len(given) > 1:
-        raise MethodError("give one of --patch-size and --cells, not both")
-    if Path(scene).suffix.lower() == ".npz":
-        if given:
-            raise MethodError(f"{scene} holds a solution, whose patches are there already: leave {', '.join(given)} out")
-        loaded = rd.load_solution(scene)
-        scene_read = loaded.patches.scene
-    else:
-        loaded = rd.load_scene(scene, **asdict(reading))
-        scene_read = loaded
-        loaded = rd.subdivide(loaded, **cut) if given else loaded
+    loaded, scene_read = cut_of(scene, cut, reading)
     observers = [observer_of(text) for text in places.ugr]
     only_glare = bool(observers) and replace(places, ugr=(), dim=()) == NOWHERE and not scene_read.sensors
     if only_glare:
@@ -126,6 +115,29 @@ def measure(
     if found.status == "interrupted":
         return interrupts.status()
     return NOT_REACHED if found.status == "not reached" else 0
+
+
+def cut_of(scene: str, cut: dict, reading) -> tuple:
+    """Return the scene, patches or solution that a command names, and its scene.
+
+    Args:
+        cut: size and cells of patches, at most one of which is given.
+
+    Raises:
+        MethodError: both are given, or one for a solution, which has its patches.
+    """
+    import radiosity as rd
+
+    given = {f"--{name}": value for name, value in (("patch-size", cut["size"]), ("cells", cut["cells"])) if value is not None}
+    if len(given) > 1:
+        raise MethodError("give one of --patch-size and --cells, not both")
+    if Path(scene).suffix.lower() == ".npz":
+        if given:
+            raise MethodError(f"{scene} holds a solution, whose patches are there already: leave {', '.join(given)} out")
+        solution = rd.load_solution(scene)
+        return solution, solution.patches.scene
+    read = rd.load_scene(scene, **asdict(reading))
+    return rd.subdivide(read, **cut) if given else read, read
 
 
 def _rate(loaded, observers: list[tuple[float, ...]], options: dict) -> int:

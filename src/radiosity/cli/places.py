@@ -1,6 +1,6 @@
 """The places where ``radiosity measure`` measures: grids, points, observers."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -17,41 +17,52 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
 
 @dataclass(frozen=True)
-class Places:
-    """The places where light is measured. Default: what the [[sensors]] of a .toml scene say.
+class Points:
+    """The points where light is measured. Default: what the [[sensors]] of a .toml scene say.
 
     Attributes:
         grid: Grids in front of surfaces, as NAME,HEIGHT,SPACING, such as floor,0.8,0.5 or floor,80cm. They follow the surface's
             outline. Without SPACING it is that of EN 12464-1, without HEIGHT sensors lie on the surface.
         points: Tables of points, .csv: x,y,z in metres and, where the planes do not look up, nx,ny,nz.
         margin: How far the sensors of grids stay away from the outline, in metres.
-        dim: Levels of groups of lights, such as "row 1=0.5" window=0, of which each is measured by itself: luminaires by group or
-            name, suns, the sky, and surfaces that emit by name. Others stay at 1.
         kind: plane, or cylindrical: the mean of all planes that contain the axis, as on an upright cylinder.
-        ugr: Observers whose unified glare rating is found, as X,Y,Z,DX,DY,DZ: the eye in metres, and the line of sight.
-            Give the option again for another one.
     """
 
     grid: Texts = ()
     points: Tables = ()
     margin: Length = None
-    dim: Texts = ()
     kind: Literal["plane", "cylindrical"] = "plane"
+
+
+@dataclass(frozen=True)
+class Places(Points):
+    """The points where light is measured, and what else is asked there.
+
+    Attributes:
+        dim: Levels of groups of lights, such as "row 1=0.5" window=0, of which each is measured by itself: luminaires by group or
+            name, suns, the sky, and surfaces that emit by name. Others stay at 1.
+        ugr: Observers whose unified glare rating is found, as X,Y,Z,DX,DY,DZ: the eye in metres, and the line of sight.
+            Give the option again for another one.
+    """
+
+    dim: Texts = ()
     ugr: Observers = ()
 
 
-PlaceOptions = Annotated[Places, Parameter(name="*", group=Group("The sensors", sort_key=1))]
+SENSORS = Group("The sensors", sort_key=1)
+PointOptions = Annotated[Points, Parameter(name="*", group=SENSORS)]
+PlaceOptions = Annotated[Places, Parameter(name="*", group=SENSORS)]
 NOWHERE = Places()
 
 
-def sensors_of(scene, places: Places):
+def sensors_of(scene, places: Points):
     """Return the sensors that options ask for, or those of the scene's file."""
     import radiosity as rd
 
     from ..scene.up import up_vector
 
     if not places.grid and not places.points:
-        if replace(places, ugr=(), dim=()) != NOWHERE:
+        if (places.margin, places.kind) != (None, NOWHERE.kind):
             raise SceneError("--margin and --kind need sensors: give --grid or --points")
         if not scene.sensors:
             raise SceneError(

@@ -63,6 +63,11 @@ class Purpose(IntEnum):
     SENSORS_PILOT = 15  # cosine lines of the pilot of sensors
     SENSORS_PILOT_SHADOW = 16  # shadow rays of it
     SENSORS_TURN = 17  # by how much upright planes of sensors for cylindrical illuminance are turned
+    YEAR_PATCHES = 18  # annual daylight: cosine lines of patches
+    YEAR_PATCHES_SHADOW = 19  # shadow rays of patches through openings
+    YEAR_SENSORS = 20  # cosine lines of sensors
+    YEAR_SENSORS_SHADOW = 21  # shadow rays of sensors through openings
+    YEAR_SUN = 22  # where rays to the sun begin on patches, and where on its disc they end
     ROUNDING = 2  # iterations: how many lines a patch fires, a child each step; they never meet the other purpose of this number
 
 

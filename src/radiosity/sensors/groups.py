@@ -28,7 +28,7 @@ def parts_of(given: Scene | Patches, groups: dict[str, list[str]]) -> dict[str, 
     names = list(dict.fromkeys([*groups, *owners])) if groups else list(dict.fromkeys(owners))
     of_lights = owners[len(lit) :]
     return {
-        name: _only(
+        name: only(
             given,
             scene,
             [surface for surface, owner in zip(lit, owners, strict=False) if owner == name],
@@ -85,7 +85,7 @@ def _matches(name: str, pattern: str) -> bool:
     return name == pattern or fnmatchcase(name, pattern)
 
 
-def _only(given: Scene | Patches, scene: Scene, surfaces: list[int], kept: list[bool]) -> Scene | Patches:
+def only(given: Scene | Patches, scene: Scene, surfaces: list[int], kept: list[bool]) -> Scene | Patches:
     """Return what is given with the light of these surfaces and of the lights that are kept."""
     on = np.isin(scene.surface, surfaces)[:, None]
     lights, chosen = scene.lights, {id(one) for one, keep in zip(scene.lights.all, kept, strict=True) if keep}

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -44,6 +45,15 @@ class Receivers(Packets):
     @cached_property
     def receivers(self) -> int:
         return len(self.sensor)
+
+    def mean_of_planes(self, values: Any) -> Any:
+        """Return the means over the planes of each sensor, (planes, ...) to (n_sensors, ...), of an array or a sparse array."""
+        from scipy.sparse import csr_array
+
+        if self.receivers == len(self.sensors):
+            return values
+        share = 1 / np.bincount(self.sensor)[self.sensor]
+        return csr_array((share, (self.sensor, np.arange(self.receivers)))) @ values
 
     @cached_property
     def normals(self) -> np.ndarray:

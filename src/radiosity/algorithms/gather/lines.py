@@ -80,7 +80,7 @@ class Lines:
 
     # ---- cosine lines ----------------------------------------------------------------------------------------------
 
-    def cosine(self, done, counts, read=None, keep=None, squares: bool = False) -> tuple[list, list]:
+    def cosine(self, done, counts, read=None, keep=None, squares: bool = False, bins=None) -> tuple[list, list]:
         """Trace cosine lines. Return sums of what they meet, of each group: Int64, or Float with squares; and how many lines
         escaped and were lost, UInt32 each.
 
@@ -91,13 +91,14 @@ class Lines:
             read: of each group, the reflected radiosity of each lane, Float.
             keep: UInt32, line number times lanes plus lane: takes the lane's place where the line hits, or
                 `packets.ESCAPED` or `LOST`.
+            bins: ``bins(lane, direction, value)`` is called with what each line brings of the first group, in fixed point.
         """
         packets, chances, types = self.packets, self.targets.chances, self.types
         geometry, UInt32, Float = packets.geometry, types.UInt32, types.Float
         lane, replicate, place, patch = packets.read()
         start, count = packets.of_packets(done, place), packets.of_packets(counts, place)
         record = packets.record(patch)
-        points = self._points(self.keys[0], replicate, record, patch, start, int((done + counts).max()))
+        points = self.points_of(self.keys[0], replicate, record, patch, start, int((done + counts).max()))
         frame, position_of = packets.frame(record)
         normal, row = frame.normal * frame.side, chances.row(place)
         base, lanes, scale = replicate * packets.read_width, dr.opaque(UInt32, packets.lanes), dr.opaque(Float, self.unit)
@@ -143,6 +144,8 @@ class Lines:
             if squares:
                 return (number + 1, *gone, *_squared(sums, values))
             fixed = [self._fixed(types.Int64, value * scale + 0.5) for value in values]
+            if bins is not None:
+                bins(lane, direction, fixed[0])
             return (number + 1, *gone, *(total + value for total, value in zip(sums, fixed, strict=True)))
 
         zeros = [dr.zeros(UInt32, packets.lanes) for _ in range(2)]
@@ -152,16 +155,16 @@ class Lines:
 
     # ---- shadow rays -----------------------------------------------------------------------------------------------
 
-    def shadow(self, done, counts, squares: bool = False):
+    def shadow(self, done, counts, squares: bool = False, bins=None):
         """Trace shadow rays, and return the sums of what they bring, of each group: UInt64, or Float with their squares.
 
         Args: see `cosine`.
         """
         packets, chances, types, Float = self.packets, self.targets.chances, self.types, self.types.Float
-        _, replicate, place, patch = packets.read()
+        lane, replicate, place, patch = packets.read()
         start, count = packets.of_packets(done, place), packets.of_packets(counts, place)
         record = packets.record(patch)
-        points = self._points(self.keys[1], replicate, record, patch, start, int((done + counts).max()))
+        points = self.points_of(self.keys[1], replicate, record, patch, start, int((done + counts).max()))
         frame, position_of = packets.frame(record)
         normal, row = frame.normal * frame.side, chances.row(place)
         kind = Float if squares else types.UInt64
@@ -174,10 +177,12 @@ class Lines:
             u = points(number)
             s, t = position_of(u)
             origin = before(frame.origin + frame.first * s + frame.second * t, normal, frame.offset)
-            brought = self.targets.brought(origin, normal, row, u)
+            brought, direction = self.targets.brought(origin, normal, row, u)
             if squares:
                 return (number + 1, *_squared(sums, brought))
             fixed = [self._fixed(types.UInt64, value * UNITS + 0.5) for value in brought]
+            if bins is not None:
+                bins(lane, direction, fixed[0])
             return (number + 1, *(total + value for total, value in zip(sums, fixed, strict=True)))
 
         return self._summed(count, body, zeros)
@@ -195,7 +200,7 @@ class Lines:
         dr.eval(sums, *([] if keep is None else [keep]))
         return sums
 
-    def _points(self, keys, replicate, record, patch, start, largest: int):
+    def points_of(self, keys, replicate, record, patch, start, largest: int):
         """Return a function from the number of a line to its numbers."""
         numbers = self.numbers
         halves = [dr.gather(self.types.Array4u, keys, replicate * 2 + half) for half in (0, 1)]

@@ -9,6 +9,7 @@ alone.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -92,8 +93,8 @@ class Targets:
 
     # ---- shadow rays -----------------------------------------------------------------------------------------------
 
-    def brought(self, origin, normal, row, u) -> list:
-        """Trace a shadow ray from each receiver, and return what it brings; called in a kernel.
+    def brought(self, origin, normal, row, u) -> tuple[list, Any]:
+        """Trace a shadow ray from each receiver, and return what it brings, and its direction; called in a kernel.
 
         Args:
             u: numbers; the fifth chooses the target, the first two a point of it.
@@ -134,7 +135,7 @@ class Targets:
             arrives = faces & aimed & (escapes | (end >= distance * TOUCHES))
             of_lights = [part * dr.gather(Float, column, light, aimed) for column in powers]
             values = [dr.select(arrives, one, old) for one, old in zip(of_lights, values, strict=True)]
-        return values
+        return values, direction
 
     def _end(self, origin, direction, active, own, first, cells):
         """Return the patch that shadow rays end on, whether they leave the scene, and how far they go; called in a kernel.

@@ -61,26 +61,12 @@ def read_hour(path: str | Path, month: int, day: int, hour: int) -> EpwHour:
     Raises:
         SceneError: no such file or hour, or a value that is missing or no number.
     """
-    try:
-        lines = Path(path).read_text(encoding="latin-1").splitlines()
-    except OSError as error:
-        raise SceneError(f"{path}: cannot be read ({error.strerror or error})") from None
-    first = lines[0].split(",") if lines else []
-    if len(first) < 10 or first[0].strip().upper() != "LOCATION":
-        raise SceneError(f"{path}: is no weather file (.epw): its first line does not begin with LOCATION, or is cut short")
-    latitude, longitude, timezone = (
-        _number(path, 1, what, first[at]) for at, what in ((6, "latitude"), (7, "longitude"), (8, "time zone"))
-    )
+    lines, (place, latitude, longitude, timezone) = lines_of(path)
     number, row = _row(path, lines, month, day, hour)
-    if len(row) <= DIFFUSE:
-        raise SceneError(f"{path}: line {number} is cut short; it has {len(row)} columns of 35")
-    values = {column: _number(path, number, NAMES[column], row[column]) for column in MISSING}
-    for column in (DIRECT, DIFFUSE):
-        if values[column] >= MISSING[column] or values[column] < 0:
-            raise SceneError(f"{path}: line {number}: {NAMES[column]} irradiance is missing (it is {values[column]:g})")
+    values = values_of(path, number, row)
     known = values[DEW_POINT] < MISSING[DEW_POINT]
     found = EpwHour(
-        first[1].strip(),
+        place,
         latitude,
         longitude,
         timezone,
@@ -93,6 +79,40 @@ def read_hour(path: str | Path, month: int, day: int, hour: int) -> EpwHour:
     )
     _compare(path, number, found, values[GLOBAL])
     return found
+
+
+def lines_of(path: str | Path) -> tuple[list[str], tuple[str, float, float, float]]:
+    """Return the lines of a weather file, and the city, its latitude and longitude, and the time zone.
+
+    Raises:
+        SceneError: the file cannot be read, or is none.
+    """
+    try:
+        lines = Path(path).read_text(encoding="latin-1").splitlines()
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read ({error.strerror or error})") from None
+    first = lines[0].split(",") if lines else []
+    if len(first) < 10 or first[0].strip().upper() != "LOCATION":
+        raise SceneError(f"{path}: is no weather file (.epw): its first line does not begin with LOCATION, or is cut short")
+    latitude, longitude, timezone = (
+        _number(path, 1, what, first[at]) for at, what in ((6, "latitude"), (7, "longitude"), (8, "time zone"))
+    )
+    return lines, (first[1].strip(), latitude, longitude, timezone)
+
+
+def values_of(path: str | Path, number: int, row: list[str]) -> dict[int, float]:
+    """Return the values of a row by the numbers of their columns.
+
+    Raises:
+        SceneError: the row is cut short, or a direct or diffuse irradiance is missing or no number.
+    """
+    if len(row) <= DIFFUSE:
+        raise SceneError(f"{path}: line {number} is cut short; it has {len(row)} columns of 35")
+    values = {column: _number(path, number, NAMES[column], row[column]) for column in MISSING}
+    for column in (DIRECT, DIFFUSE):
+        if values[column] >= MISSING[column] or values[column] < 0:
+            raise SceneError(f"{path}: line {number}: {NAMES[column]} irradiance is missing (it is {values[column]:g})")
+    return values
 
 
 def _row(path: str | Path, lines: list[str], month: int, day: int, hour: int) -> tuple[int, list[str]]:

@@ -6,6 +6,7 @@ there: the sun stands where its light comes from.
 """
 
 from datetime import date
+from typing import Any
 
 import numpy as np
 
@@ -45,12 +46,18 @@ def sun_position(
     ):
         if not low <= value <= high:
             raise SceneError(f"{name}: it is {value}; expected {low} to {high}")
-    right_ascension, declination, sidereal = _place(_days(year, month, day) + (hour - timezone) / 24)
+    altitude, azimuth = sun_positions(latitude, longitude, days_after_2000(year, month, day) + (hour - timezone) / 24)
+    return float(altitude), float(azimuth)
+
+
+def sun_positions(latitude: float, longitude: float, time: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return altitudes and azimuths, degrees, as `sun_position` does, at times in days after noon of 2000-01-01, UTC."""
+    right_ascension, declination, sidereal = _place(time)
     turn, north = np.radians(sidereal + longitude) - right_ascension, np.radians(latitude)
     height = np.sin(declination) * np.sin(north) + np.cos(declination) * np.cos(north) * np.cos(turn)
     level = np.sin(declination) * np.cos(north) - np.cos(declination) * np.sin(north) * np.cos(turn)
-    altitude = float(np.degrees(np.arcsin(np.clip(height, -1, 1))))
-    azimuth = float(np.degrees(np.arctan2(-np.cos(declination) * np.sin(turn), level)) % 360)
+    altitude = np.degrees(np.arcsin(np.clip(height, -1, 1)))
+    azimuth = np.degrees(np.arctan2(-np.cos(declination) * np.sin(turn), level)) % 360
     return altitude + _refraction(altitude), azimuth
 
 
@@ -68,12 +75,12 @@ def day_of_year(month: int, day: int, year: int = YEAR) -> int:
         raise SceneError(f"month, day: there is no day {day} in month {month}") from None
 
 
-def _days(year: int, month: int, day: int) -> float:
+def days_after_2000(year: int, month: int, day: int) -> float:
     """Return the days from noon of the first of January 2000 to the beginning of a day."""
     return (date(year, 1, 1) - date(2000, 1, 1)).days + day_of_year(month, day, year) - 1.5
 
 
-def _place(time: float) -> tuple[float, float, float]:
+def _place(time: Any) -> tuple[Any, Any, Any]:
     """Return the sun's right ascension and declination, rad, and Greenwich's sidereal time, degrees.
 
     Args:
@@ -85,12 +92,11 @@ def _place(time: float) -> tuple[float, float, float]:
     right_ascension = np.arctan2(np.cos(obliquity) * np.sin(longitude), np.cos(longitude))
     declination = np.arcsin(np.sin(obliquity) * np.sin(longitude))
     hours = (time + 0.5) % 1 * 24
-    return float(right_ascension), float(declination), float((6.697375 + 0.0657098242 * time + hours) * 15 % 360)
+    return right_ascension, declination, (6.697375 + 0.0657098242 * time + hours) * 15 % 360
 
 
-def _refraction(altitude: float) -> float:
+def _refraction(altitude: np.ndarray) -> np.ndarray:
     """Return by how much air lifts the sun, degrees, from its true altitude."""
-    if altitude <= -0.56:
-        return 0.56
-    top = 0.1594 + 0.0196 * altitude + 0.00002 * altitude**2
-    return 3.51561 * top / (1 + 0.505 * altitude + 0.0845 * altitude**2)
+    seen = np.maximum(altitude, -0.56)
+    top = 0.1594 + 0.0196 * seen + 0.00002 * seen**2
+    return np.where(altitude <= -0.56, 0.56, 3.51561 * top / (1 + 0.505 * seen + 0.0845 * seen**2))

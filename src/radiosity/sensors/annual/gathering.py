@@ -1,0 +1,119 @@
+"""The lines of receivers, patches or sensors, into the sky and to patches."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from ...algorithms.gather.chances import Chances
+from ...algorithms.gather.lamps import Lamps
+from ...algorithms.gather.lines import UNITS, Lines
+from ...algorithms.gather.packets import Packets
+from ...method.presets import PRESETS
+from ...problem.model import Problem
+from ...sampling.streams import Purpose, Seed
+from ...scene.lights.sky_patches import SkyPatches
+from .bins import Bins
+
+AT_ONCE = 1 << 23  # lines of a launch
+
+
+@dataclass(eq=False)
+class Gathering:
+    """Lines of the receivers of one replicate.
+
+    Attributes:
+        lines: what traces them.
+        of_suns: the same receivers, with the numbers of rays to suns.
+        bins: what they bring from sky patches: a table of cosine lines, and one of shadow rays through openings.
+        seen: counts of hits, a sparse array (receivers, n_patches).
+        counts: cosine lines and shadow rays of each receiver so far.
+        lost: (receivers,) cosine lines that met absorbing backs.
+        unit: what makes shares of light of fixed point numbers, see `Problem.unit`.
+    """
+
+    lines: Lines
+    of_suns: Lines
+    bins: tuple[Bins, Bins]
+    seen: Any
+    counts: tuple[int, int]
+    lost: np.ndarray
+    unit: float
+
+    @staticmethod
+    def of(
+        packets: Packets,
+        problem: Problem,
+        seed: Seed,
+        purposes: tuple[Purpose, Purpose],
+        sky: SkyPatches,
+        axes: np.ndarray,
+    ) -> "Gathering":
+        """Make what traces lines; none is traced yet.
+
+        Args:
+            packets: the receivers, of one replicate.
+            problem: of one group of bands, whose only light is a sky of radiance 1.
+            purposes: of streams, for cosine lines and shadow rays.
+            axes: of the sky, see `Bins`.
+        """
+        from scipy.sparse import csr_array
+
+        chances = Chances(Lamps(packets.geometry, problem), packets)
+        lines, of_suns = (
+            Lines.of(packets, chances, problem, PRESETS["gather"].method, seed, two)
+            for two in (purposes, (Purpose.YEAR_SUN, Purpose.YEAR_SUN))
+        )
+        one, other = (Bins(sky, axes, packets.lanes, packets.types) for _ in range(2))
+        none, lost = csr_array((packets.receivers, packets.n)), np.zeros(packets.receivers)
+        return Gathering(lines, of_suns, (one, other), none, (0, 0), lost, float(problem.unit[0]))
+
+    def advance(self, cosine: int, shadow: int) -> int:
+        """Trace until each receiver has so many lines of both kinds; return the number of new lines."""
+        packets, before = self.lines.packets, self.counts
+        shadow = shadow if self.lines.targets.chances.targets else 0
+        step = max(AT_ONCE // packets.lanes, 1)
+        for at in range(before[0], cosine, step):
+            self._cosine(at, min(at + step, cosine))
+        for at in range(before[1], shadow, step):
+            few = np.full(packets.count, at), np.full(packets.count, min(at + step, shadow) - at)
+            dr.eval(self.lines.shadow(*few, bins=self.bins[1]), self.bins[1].table)
+        self.counts = max(cosine, before[0]), max(shadow, before[1])
+        return (sum(self.counts) - sum(before)) * packets.receivers
+
+    def _cosine(self, begin: int, end: int) -> None:
+        from scipy.sparse import coo_array
+
+        packets = self.lines.packets
+        few = np.full(packets.count, begin), np.full(packets.count, end - begin)
+        keep = dr.zeros(packets.types.UInt32, end * packets.lanes)
+        _, (_, lost) = self.lines.cosine(*few, keep=keep, bins=self.bins[0])
+        dr.eval(self.bins[0].table, keep)
+        self.lost = self.lost + packets.patch_values(np.array(lost))[0]
+        hits = np.array(keep).reshape(end, packets.lanes)[begin:, packets.place]  # (lines, receivers) numbers
+        line, receiver = np.nonzero(hits < packets.n)
+        patches = self._patch_at[hits[line, receiver]]
+        entries = coo_array((np.ones(len(patches)), (receiver, patches)), shape=self.seen.shape)
+        self.seen = self.seen + entries.tocsr()
+
+    @cached_property
+    def _patch_at(self) -> np.ndarray:
+        """The patch of each number that `Lines.cosine` keeps, (n_patches,)."""
+        packets = self.lines.packets
+        return np.argsort(np.array(packets.place_on_device)[: packets.n])
+
+    def from_sky(self) -> np.ndarray:
+        """Return what each receiver gets from each sky patch of radiance 1 straight, (receivers, n_sky_patches) sr."""
+        packets = self.lines.packets
+        scales = self.lines.unit, UNITS
+        tables = [
+            bins.values()[packets.place] / (max(count, 1) * scale)
+            for bins, count, scale in zip(self.bins, self.counts, scales, strict=True)
+        ]
+        return (tables[0] + tables[1]) * self.unit
+
+    def shares(self) -> Any:
+        """Return the share of each receiver's cosine lines that hit each patch, a sparse array (receivers, n_patches)."""
+        return self.seen * (1 / max(self.counts[0], 1))
