@@ -17,8 +17,9 @@ from ..method import Method, resolve
 from ..patches import Patches, subdivide
 from ..patches.cells_as_faces import cells_as_faces
 from ..patches.contact import cut_at_contacts
-from ..patches.gains import Halves
+from ..patches.halves import Halves
 from ..patches.relit import relit
+from ..patches.variation import Variation
 from ..scene.model import Back, Scene
 from .progress import Listener
 from .whole_number import whole
@@ -80,6 +81,7 @@ def adapt(
     with limited(memory), turn():
         small = float(scene.area.sum()) / count / LEAST
         current = _first(scene, count, least)
+        expected: Variation | None = None
         for step in range(1, 64):
             halves = Halves.of(current, small)
             here = len(halves.coarse)
@@ -87,10 +89,11 @@ def adapt(
             if more <= 0:
                 break
             irradiance, method = _pilot(halves.fine, method, light, number + step * APART, device, progress)
-            columns, rows = halves.chosen(irradiance, more)
+            found = halves.variation(irradiance).given(expected)
+            columns, rows = halves.chosen(found, more)
             if (columns * rows == 1).all():
                 break
-            current = cells_as_faces(Patches(current, columns, rows))
+            current, expected = cells_as_faces(Patches(current, columns, rows)), found.after(columns, rows)
         one = np.ones(current.n_faces, np.int32)
         return Patches(current, one, one)
 

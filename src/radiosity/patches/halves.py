@@ -1,0 +1,102 @@
+"""Cutting the faces that gain most by it: they are cut in halves, in quarters, or not at all."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..scene.model import Back, Scene
+from .model import Patches
+from .variation import Variation
+
+LONGEST = 8.0  # of a patch, over its width
+
+
+@dataclass(frozen=True, eq=False)
+class Halves:
+    """Faces of one cell, and how they may be cut: parallelograms in up to 2 x 2 cells, triangles in four.
+
+    Attributes:
+        coarse: patches, one cell a face.
+        fine: the same, cut.
+    """
+
+    coarse: Patches
+    fine: Patches
+
+    @staticmethod
+    def of(scene: Scene, least: float) -> "Halves":
+        """Return the halves of a scene's faces.
+
+        Args:
+            least: m², smaller faces are not cut.
+        """
+        one = np.ones(scene.n_faces, np.int32)
+        _, first, second = scene.frames
+        length, width = (np.linalg.norm(edge, axis=1) for edge in (first, second))
+        cut = scene.area >= least
+        columns = 1 + (cut & (~scene.is_quad | (2 * scene.area <= LONGEST * length**2)))
+        rows = 1 + (cut & (~scene.is_quad | (2 * scene.area <= LONGEST * width**2)))
+        return Halves(Patches(scene, one, one), Patches(scene, columns.astype(np.int32), rows.astype(np.int32)))
+
+    def variation(self, irradiance: np.ndarray) -> Variation:
+        """Return how far light varies over the faces, less noise.
+
+        Args:
+            irradiance: (replicates, n_fine, n_bands) of the fine patches.
+        """
+        columns, rows, quad = self.fine.columns, self.fine.rows, self.coarse.scene.is_quad
+        along, across, rest, noise = (np.zeros(len(quad)) for _ in range(4))
+        four = np.flatnonzero((columns == 2) & (rows == 2))
+        cells = self._cells(irradiance, four, 4)
+        one, two, both = (0.5 * (cells @ np.array(signs)) / 2 for signs in ((1, -1, 1, -1), (1, 1, -1, -1), (1, -1, -1, 1)))
+        (along[four], noise[four]), across[four], rest[four] = _square(one), _square(two)[0], _square(both)[0]
+        bent = four[~quad[four]]
+        cells = self._cells(irradiance, bent, 4)
+        squares = [_square(cells[..., i] - cells.mean(axis=-1)) for i in range(4)]
+        along[bent] = across[bent] = 0.0
+        rest[bent], noise[bent] = (sum(square[i] for square in squares) / 4 for i in (0, 1))
+        for into, some in ((along, (columns == 2) & (rows == 1)), (across, (columns == 1) & (rows == 2))):
+            face = np.flatnonzero(some)
+            into[face], noise[face] = _square(0.5 * (self._cells(irradiance, face, 2) @ np.array((1, -1))))
+        return Variation(along, across, rest, noise)
+
+    def chosen(self, light: Variation, more: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return columns and rows of the faces, (n_faces,) int32 each: the cuts that gain most for each patch that they add.
+
+        Args:
+            more: the largest number of patches that cuts may add.
+        """
+        scene, columns, rows = self.coarse.scene, self.fine.columns, self.fine.rows
+        sides = np.where(scene.back == Back.RADIATES, 2, 1)
+        along, across = light.along * (columns == 2), light.across * (rows == 2)
+        better, first = np.maximum(along, across), along >= across
+        second = np.where((columns == 2) & (rows == 2), (np.minimum(along, across) + light.rest) / 2, 0.0)
+        second = np.minimum(second, better)  # halves come before quarters
+        better, second = (np.where(scene.is_quad, value, light.rest / 3) for value in (better, second))
+        cost = np.concatenate([np.where(scene.is_quad, 1, 3) * sides, np.where(scene.is_quad, 2, 0) * sides])
+        rate = np.concatenate([better, second]) * np.tile(scene.area / sides, 2)
+        order = np.argsort(-rate, kind="stable")
+        order = order[(rate[order] > 0) & (cost[order] > 0)]
+        order = order[np.cumsum(cost[order]) <= more]
+        whole = order[(order >= scene.n_faces) | ~scene.is_quad[order % scene.n_faces]] % scene.n_faces
+        half = order[order < scene.n_faces]
+        new = np.ones((2, scene.n_faces), np.int32)
+        new[0, half], new[1, half] = 1 + first[half], 2 - first[half]
+        new[:, whole] = 2
+        return new[0], new[1]
+
+    def _cells(self, irradiance: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
+        """Return reflected light of the cells of some faces, (replicates, m, 2 n_bands, cells): fronts, then radiating backs."""
+        rho, first = self.coarse.reflectance, self.fine.first[faces][:, None] + np.arange(count)
+        rho = rho if rho.any() else np.ones_like(rho)
+        back = self.coarse.scene.back[faces] == Back.RADIATES
+        at = self.coarse.first[faces]
+        front = irradiance[:, first] * rho[at][:, None]
+        behind = irradiance[:, first + count * back[:, None]] * (rho[at + back] * back[:, None])[:, None]
+        return np.concatenate([front, behind], axis=3).transpose(0, 1, 3, 2)
+
+
+def _square(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return squares of means over replicates less noise, and the noise, summed over bands, (m,) each."""
+    noise = (values.var(axis=0, ddof=1) / len(values)).sum(axis=1)
+    return (values.mean(axis=0) ** 2).sum(axis=1) - noise, noise

@@ -1,0 +1,50 @@
+"""How far light varies over faces: measured by a pilot, and expected from the pilot before."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SURE = 8.0  # times its noise: a variation that is larger is taken as measured, whatever was expected
+
+
+@dataclass(frozen=True, eq=False)
+class Variation:
+    """Variances of reflected light over faces, and the noise in them; summed over sides and bands, (n_faces,) float64 each.
+
+    Attributes:
+        along, across: between the halves of a parallelogram along its first and its second edge.
+        rest: what its four quarters differ by beyond that; of a triangle all that its four cells differ by.
+        noise: variance that noise alone would give a half.
+    """
+
+    along: np.ndarray
+    across: np.ndarray
+    rest: np.ndarray
+    noise: np.ndarray
+
+    def given(self, before: "Variation | None") -> "Variation":
+        """Return the best estimate, in which what is lost in noise comes from an estimate before."""
+        if before is None:
+            along, across, rest = (np.maximum(now, 0.0) for now in (self.along, self.across, self.rest))
+        else:
+            along = _best(self.along, before.along, self.noise)
+            across = _best(self.across, before.across, self.noise)
+            rest = _best(self.rest, before.rest, self.noise)
+        return Variation(along, across, rest, self.noise)
+
+    def after(self, columns: np.ndarray, rows: np.ndarray) -> "Variation":
+        """Return what is expected of the parts of faces that are cut: where light is smooth, a half varies by a quarter."""
+        parts = np.repeat(np.arange(len(columns)), columns * rows)
+        long, wide = columns > 1, rows > 1
+        along, across = np.where(long, self.along / 4, self.along), np.where(wide, self.across / 4, self.across)
+        rest = np.where(long | wide, self.rest / 4, self.rest)
+        return Variation(along[parts], across[parts], rest[parts], self.noise[parts])
+
+
+def _best(now: np.ndarray, expected: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    """Return the mean of what was measured and expected, weighted by what either may err by."""
+    variance = 2 * noise**2 + 4 * noise * np.maximum(now, 0)
+    total = expected**2 + variance
+    weight = np.divide(expected**2, total, out=np.ones_like(total), where=total > 0)
+    weight = np.where(now > SURE * noise, 1.0, weight)
+    return np.maximum(weight * now + (1 - weight) * expected, 0.0)

@@ -1,0 +1,238 @@
+"""Meshes that follow the light: cuts along contact lines, cuts where light varies, and what takes such meshes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+from radiosity.cli.app import run as command
+from radiosity.patches.cells_as_faces import cells_as_faces
+from radiosity.patches.contact import cut_at_contacts
+from radiosity.patches.contact.convex import area, cut, parts, width
+from radiosity.patches.halves import Halves
+from radiosity.patches.model import Patches
+from radiosity.patches.variation import Variation
+from radiosity.scene.paint import Paint
+from radiosity.scene.shapes import box
+
+TURN = 0.4  # radians, of the block on the floor
+
+
+def block_on_floor(height=0.0, two_sided=False) -> rd.Scene:
+    """A room of 4 x 4 x 3 m, whose ceiling is a lamp, and a turned block of 1 x 1 x 1 m that stands on the floor, or in it."""
+    outer, inner = np.concatenate(box((0, 0, 0), (4, 4, 3), inward=True)), np.concatenate(box((-0.5, -0.5, 0), (0.5, 0.5, 1)))
+    c, s = np.cos(TURN), np.sin(TURN)
+    inner = inner @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + (2.1, 1.8, height)
+    corners = np.concatenate([outer, inner])
+    quads = np.arange(48).reshape(12, 4)
+    up = np.array([np.cross(corners[q[1]] - corners[q[0]], corners[q[3]] - corners[q[0]])[2] for q in quads])
+    names = ["floor" if k < 6 and z > 0 else "ceiling" if k < 6 and z < 0 else f"face {k}" for k, z in enumerate(up)]
+    emission = [float(name == "ceiling") for name in names]
+    return rd.Scene.from_arrays(corners, quads, 0.5, emission, surface=range(12), names=names, two_sided=two_sided)
+
+
+def under_block(points: np.ndarray) -> np.ndarray:
+    """How far points lie within the block's outline, in metres; below zero outside."""
+    c, s = np.cos(TURN), np.sin(TURN)
+    offset = (points[..., :2] - (2.1, 1.8)) @ np.array([[c, -s], [s, c]])
+    return 0.5 - np.abs(offset).max(axis=-1)
+
+
+def floor_of(patches: Patches) -> np.ndarray:
+    return np.flatnonzero(patches.surface == patches.scene.names.index("floor"))
+
+
+@pytest.mark.parametrize("height", [0.0, -0.3])
+def test_a_face_is_cut_where_a_block_touches_or_pierces_it(height):
+    scene = block_on_floor(height)
+    patches = rd.subdivide(cut_at_contacts(scene, 1000, 100), cells=1)
+    rows = floor_of(patches)
+    within = under_block(patches.corners[rows])
+    covered = (within > -1e-9).all(axis=1)
+    assert (covered | (within < 1e-9).all(axis=1)).all()
+    assert patches.area[rows][covered].sum() == pytest.approx(1, abs=1e-9)
+    assert patches.area.sum() == pytest.approx(scene.area.sum())
+    assert len(np.unique(patches.scene.cut.region[patches.face[rows]])) == 5  # the covered part, and one beside each edge
+    assert (np.diff(patches.scene.cut.face) >= 0).all()
+    assert patches.scene.is_cut_of(scene)
+
+
+def test_no_light_leaks_under_a_block():
+    """Of patches that lie half under a block some lines end on its inside. Cut along the contact line, none does."""
+    scene = block_on_floor()
+    lost, dark = [], []
+    for patches in (rd.subdivide(scene, cells=6), rd.subdivide(cut_at_contacts(scene, 216, 50), size=0.67)):
+        solution = rd.solve(patches, "random-walk", rays=60_000)
+        lost.append(solution.books[0]["lost"])
+        rows = floor_of(patches)
+        dark.append(solution.arrivals[rows[(under_block(patches.corners[rows]) > -1e-9).all(axis=1)]].sum())
+    assert lost[0] > 0
+    assert lost[1] == 0
+    assert dark[1] == 0
+
+
+def test_polygons_are_cut_and_put_together_again(random):
+    outline = np.array([[0.0, 0], [3, 0], [3, 2], [0, 2]])
+    polygons = [outline]
+    for _ in range(6):
+        angle = random.uniform(0, np.pi)
+        cuts = [cut(p, random.uniform(0.5, 1.5, 2), np.array([np.cos(angle), np.sin(angle)]), 1e-6) for p in polygons]
+        polygons = [half for p, two in zip(polygons, cuts, strict=True) for half in (two or (p,))]
+    pieces = [piece for p in polygons for piece in parts(p)]
+    assert len(polygons) > 6
+    assert sum(map(area, pieces)) == pytest.approx(6)
+    assert min(map(area, pieces)) > 0
+    assert {len(piece) for piece in pieces} <= {3, 4}
+    assert [len(part) for part in parts(outline)] == [4]
+    assert width(np.array([[0, 0], [1, 0], [0.5, 0.75**0.5]])) == pytest.approx(0.75**0.5)
+
+
+@pytest.mark.parametrize("corners", [4, 3])
+def test_parts_of_painted_faces_have_the_same_reflectance(corners, random):
+    """Colours of corners, bilinear over a parallelogram: the means over cells are those of the face cut at once."""
+    square = np.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0]], float)[:corners]
+    scene = rd.Scene.from_arrays(square, [range(corners)], 0.8, 1.0)
+    paint = Paint((), np.full(1, -1, np.int32), np.zeros((1, 4, 2), np.float32), random.random((1, 4, 1)))
+    painted = replace(scene, reflectance_paint=paint)
+    at_once = rd.subdivide(painted, cells=6)
+    twice = cells_as_faces(rd.subdivide(cells_as_faces(rd.subdivide(painted, cells=2)), cells=3))
+    by_place = [p.reflectance[np.lexsort(p.centroid.round(9).T)] for p in (at_once, rd.subdivide(twice, cells=1))]
+    assert by_place[0] == pytest.approx(by_place[1], rel=1e-6)
+    assert twice.cut.face.tolist() == [0] * twice.n_faces
+    assert twice.cut.whole == painted.hash
+
+
+def halves_of(two_sided=False) -> Halves:
+    """Four unit squares beside each other, and a triangle."""
+    corners = [[x, y, 0] for x in range(5) for y in (0, 1)] + [[9, 0, 0], [10, 0, 0], [9, 1, 0]]
+    faces = [[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(4)] + [[10, 11, 12, -1]]
+    return Halves.of(rd.Scene.from_arrays(corners, faces, 0.5, 1.0, two_sided=two_sided), 0.0)
+
+
+def test_faces_are_cut_across_the_gradient():
+    """Light that rises along the first, second and both edges, along none, and over a triangle."""
+    halves = halves_of()
+    point, face = halves.fine.centroid, halves.fine.face
+    x, y = point[:, 0] % 1, point[:, 1]
+    light = np.select([face == 0, face == 1, face == 2, face == 3], [x, y, x + y, 0.7], 0.3 * x)
+    found = halves.variation(np.stack([light[:, None]] * 4))
+    assert found.along == pytest.approx([0.25 / 16, 0, 0.25 / 16, 0, 0])  # (reflectance x half the step)²
+    assert found.across == pytest.approx([0, 0.25 / 16, 0.25 / 16, 0, 0])
+    columns, rows = halves.chosen(found, 100)
+    assert columns.tolist() == [2, 1, 2, 1, 2]
+    assert rows.tolist() == [1, 2, 2, 1, 2]
+    columns, rows = halves.chosen(found, 2)  # the best two of them alone
+    assert (columns * rows).sum() == 7
+    assert columns[4] == columns[3] == rows[4] == 1
+
+
+def test_noise_is_not_taken_for_light(random):
+    """Noise alone, 100 times over four squares: its mean square is left out, to within 4 standard errors."""
+    halves = halves_of(two_sided=True)
+    found = [halves.variation(random.normal(1, 0.1, (4, len(halves.fine), 1))).along[:4] for _ in range(100)]
+    noise = 2 * (0.5 * 0.1) ** 2 / 4 / 4  # of two sides; half the difference of means of two cells, each of four replicates
+    error = np.std(found) / np.sqrt(400)
+    assert abs(np.mean(found)) < 4 * error
+    assert error < noise / 4
+
+
+def test_what_is_lost_in_noise_is_expected_from_before():
+    one = np.ones(3)
+    before = Variation(4 * one, one, one, one).after(np.array([2, 1, 1]), np.ones(3, int))
+    assert before.along.tolist() == [1, 1, 4, 4]
+    assert before.across.tolist() == [1, 1, 1, 1]
+    noise = np.array([1e-6, 1e6, 1.0])
+    now = Variation(np.array([2.0, -5.0, 50.0]), np.zeros(3), np.zeros(3), noise)
+    best = now.given(Variation(one, 0 * one, 0 * one, one))
+    assert best.along == pytest.approx([2, 1, 50], rel=1e-3)  # measured; expected; far above its noise
+    assert best.across.tolist() == [0, 0, 0]
+
+
+@pytest.fixture(scope="module")
+def adapted():
+    return rd.adapt(block_on_floor(), 300, seed=3)
+
+
+def test_a_mesh_follows_scene_number_and_seed(adapted):
+    scene = block_on_floor()
+    assert 280 < len(adapted) <= 300
+    assert adapted.area.sum() == pytest.approx(scene.area.sum())
+    assert rd.adapt(scene, 300, seed=3).scene.hash == adapted.scene.hash
+    direct = rd.subdivide(scene, patches=300)
+    assert direct.scene.hash != adapted.scene.hash
+    assert 280 < len(direct) <= 300
+
+
+def test_patches_are_small_near_a_lamp():
+    """A floor of 10 x 10 m, half a metre below a point light: its light is known. What patches miss of it, by points of each,
+    falls by at least 3 against equal squares of the same number."""
+    floor = [[-4, -3, 0], [6, -3, 0], [6, 7, 0], [-4, 7, 0]]
+    scene = rd.Scene.from_arrays(floor, [[0, 1, 2, 3]], 0.5, 0.0, photometric=True)
+    lit = scene.with_lights([rd.point_light(position=(0, 0, 0.5), lumens=400)])
+    at = (np.arange(6) + 0.5) / 6
+
+    def missed(patches):
+        origin, first, second = (
+            edge[:, None] for edge in (patches.corners[:, 0], *np.diff(patches.corners[:, :3], axis=1).swapaxes(0, 1))
+        )
+        u, v = (x.ravel()[:, None] for x in np.meshgrid(at, at))
+        points = origin + u * first + v * second
+        light = ((points - (0, 0, 0.5)) ** 2).sum(axis=2) ** -1.5
+        return float((patches.area * light.var(axis=1)).sum() ** 0.5)
+
+    even, follows = rd.subdivide(lit, cells=14), rd.subdivide(lit, patches=196)
+    assert len(follows) <= 196
+    assert missed(even) > 3 * missed(follows)
+
+
+def test_runs_on_such_meshes_go_on_from_files(adapted, tmp_path):
+    scene = block_on_floor()
+    whole = rd.solve(adapted, "random-walk", quanta=8192, replicates=2)
+    rd.solve(adapted, "random-walk", quanta=2048, replicates=2).save(tmp_path / "part.npz")
+    part = rd.load_solution(tmp_path / "part.npz")
+    assert part.patches.scene.is_cut_of(scene)
+    assert np.array_equal(part.patches.scene.cut.region, adapted.scene.cut.region)
+    more = rd.solve(scene, "random-walk", quanta=8192, replicates=2, resume=part)  # the mesh is that of the solution
+    assert np.array_equal(more.arrivals, whole.arrivals)
+
+
+@pytest.mark.parametrize("method", ["global-multipath-first-shot", "stochastic-jacobi", "gather", "full-matrix"])
+def test_methods_take_such_meshes(adapted, method):
+    budget = {} if method == "full-matrix" else {"rays": 100_000}
+    solution = rd.solve(adapted, method, **budget)
+    rows = floor_of(adapted)
+    covered = under_block(adapted.centroid[rows]) > 0
+    power = (solution.irradiance[:, 0] * adapted.area)[rows]
+    assert power[covered].sum() < 1e-3 * power[~covered].sum()
+    assert 0.3 < power[~covered].sum() / adapted.area[rows][~covered].sum() < 1.5
+
+
+def test_what_makes_no_sense_is_refused():
+    scene = block_on_floor()
+    with pytest.raises(rd.SceneError, match="11 patches are fewer than its 12 sides"):
+        rd.adapt(scene, 11)
+    with pytest.raises(rd.MethodError, match="light is 'some'"):
+        rd.adapt(scene, 100, light="some")
+    with pytest.raises(rd.MethodError, match="takes a Scene, not Patches"):
+        rd.adapt(rd.subdivide(scene, cells=1), 100)
+    with pytest.raises(rd.SceneError, match="leave out size"):
+        rd.subdivide(scene, patches=100, cells=2)
+    with pytest.raises(rd.MethodError, match="refines its patches by itself"):
+        rd.solve(scene, "hierarchical", adaptive=True)
+    cut_scene = Patches(cut_at_contacts(scene, 1000, 100), *[np.ones(16, np.int32)] * 2)
+    with pytest.raises(rd.MethodError, match="refines its patches by itself"):
+        rd.solve(cut_scene, "hierarchical")
+
+
+def test_the_command_line_cuts_and_solves(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert command(["solve", "room", "--patches", "200", "--adaptive", "--rays", "20k", "-o", "a.npz"]) == 0
+    patches = rd.load_solution("a.npz").patches
+    assert 150 < len(patches) <= 200
+    assert patches.scene.is_cut_of(rd.load_scene("room"))
+    assert command(["solve", "room", "--resume", "a.npz", "--rays", "40k", "-o", "b.npz"]) == 0
+    assert len(rd.load_solution("b.npz").patches) == len(patches)
+    capsys.readouterr()
+    assert command(["solve", "room", "--patches", "200", "--cells", "2"]) == 2
+    assert "leave out --patch-size" in capsys.readouterr().err
