@@ -100,9 +100,12 @@ class Halves:
         rho, number = self.coarse.reflectance, self.fine.first[faces][:, None] + np.arange(count)
         rho = rho if rho.any() else np.ones_like(rho)
         back = self.coarse.scene.back[faces] == Back.RADIATES
-        front = irradiance[:, number] * rho[self.coarse.first[faces]][:, None]
-        behind = irradiance[:, np.where(back[:, None], number + count, number)]
-        behind = behind * (rho[self.coarse.first[faces] + back] * back[:, None])[:, None]
+        above, below = irradiance[:, number], irradiance[:, np.where(back[:, None], number + count, number)]
+        front = above * rho[self.coarse.first[faces]][:, None]
+        behind = below * (rho[self.coarse.first[faces] + back] * back[:, None])[:, None]
+        if self.coarse.diffuse_transmittance is not None:
+            through = self.coarse.diffuse_transmittance[self.coarse.first[faces]][:, None]
+            front, behind = front + through * below, behind + through * above
         return np.concatenate([front, behind], axis=3)
 
     def _square(self, values: np.ndarray) -> np.ndarray:
