@@ -115,6 +115,11 @@ def other_light(a: Scene, b: Scene) -> list[str]:
         if unlike.any():
             surfaces = [a.names[i] for i in np.unique(a.surface[unlike])]
             found.append(f"the scenes differ in the {what} of {shown(surfaces, SHOWN)}")
+    shares = [np.zeros(1) if one.diffuse_transmittance is None else one.diffuse_transmittance for one in (a, b)]
+    unlike = np.broadcast_to((shares[0] != shares[1]).any(axis=-1), (a.n_faces,))
+    if unlike.any():
+        surfaces = [a.names[i] for i in np.unique(a.surface[unlike])]
+        found.append(f"the scenes differ in the diffuse transmittance of {shown(surfaces, SHOWN)}")
     if not found and a.hash != b.hash:
         found.append("the scenes differ in their lights or textures")
     return found

@@ -73,6 +73,8 @@ def surface_rows(patches) -> tuple[Surface, ...]:
         sides = " or ".join(SIDES[back] for back in Back if kinds[back][i])
         if through is not None and through[scene.surface == i].any():
             sides += f"; a pane, {through[scene.surface == i].max():.3g} clear"
+        if scene.diffusers[scene.surface == i].any():
+            sides += f"; diffuses up to {scene.diffuse_transmittance[scene.surface == i].max():.3g}"
         means = tuple(reflected[i] / total[i]), tuple(power[i] / total[i])
         rows.append(Surface(scene.names[i], int(faces[i]), float(total[i]), *means, tuple(power[i]), sides))
     return tuple(rows)

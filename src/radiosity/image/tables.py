@@ -16,7 +16,7 @@ from ..solution.replacing import replacing
 from .look import Look
 
 CHUNK = 1 << 16
-POWERS = ("emitted", "received", "reflected", "absorbed", "left", "net", "net error", "net low", "net high")
+POWERS = ("emitted", "received", "reflected", "transmitted", "absorbed", "left", "net", "net error", "net low", "net high")
 
 
 def write(solution, path, look: Look | None = None) -> None:

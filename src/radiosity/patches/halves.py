@@ -86,13 +86,17 @@ class Halves:
         return new[0], new[1]
 
     def _cells(self, irradiance: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
-        """Return reflected light of the cells of some faces, (replicates, m, 2 n_bands, cells): fronts, then radiating backs."""
+        """Return light that leaves the cells of some faces, (replicates, m, 2 n_bands, cells): fronts, then radiating backs."""
         rho, first = self.coarse.reflectance, self.fine.first[faces][:, None] + np.arange(count)
         rho = rho if rho.any() else np.ones_like(rho)
         back = self.coarse.scene.back[faces] == Back.RADIATES
         at = self.coarse.first[faces]
-        front = irradiance[:, first] * rho[at][:, None]
-        behind = irradiance[:, first + count * back[:, None]] * (rho[at + back] * back[:, None])[:, None]
+        above, below = irradiance[:, first], irradiance[:, first + count * back[:, None]]
+        front = above * rho[at][:, None]
+        behind = below * (rho[at + back] * back[:, None])[:, None]
+        if self.coarse.diffuse_transmittance is not None:
+            through = self.coarse.diffuse_transmittance[at][:, None]
+            front, behind = front + through * below, behind + through * above
         return np.concatenate([front, behind], axis=3).transpose(0, 1, 3, 2)
 
 

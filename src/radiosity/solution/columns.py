@@ -26,6 +26,10 @@ def patch_columns(solution) -> dict[str, np.ndarray]:
     ):
         if title == "emission" and patches.scene.transmittance is not None:
             columns["transmittance"] = patches.transmittance
+        if title == "emission" and patches.diffuse_transmittance is not None:
+            for i, band in enumerate(bands):
+                label = f"diffuse transmittance {band}" if len(bands) > 1 else "diffuse transmittance"
+                columns[label] = patches.diffuse_transmittance[:, i]
         for i, band in enumerate(bands):
             label = f"{title} {band}" if len(bands) > 1 else title
             columns[f"{label} [{measure}]" if measure else label] = np.asarray(values)[:, i]

@@ -94,7 +94,7 @@ class RefineCheck:
         patches, area = self.coarse.patches, self.coarse.patches.area[here]
         size = np.sqrt(area @ (self.coarse.radiosity - patches.emission)[here] ** 2)
         usual = np.sqrt(area @ self.coarse.radiosity[here] ** 2)
-        black = ~(patches.reflectance[here] > 0).any(axis=0)  # other patches reflect light of unknown size
+        black = ~(patches.scatter.albedo[here] > 0).any(axis=0)  # other patches reflect light of unknown size
         size = np.where(size > 0, size, np.where((usual > 0) & black, usual, np.nan))
 
         def relative(square: np.ndarray) -> float:

@@ -67,7 +67,7 @@ def _error(solution) -> str:
         return "unknown: no line hit a patch"
     if not math.isfinite(solution.error):
         return "unknown: no line hit where light would be reflected" + (" in some band" if len(solution.bands) > 1 else "")
-    reflected = (solution.patches.reflectance * solution.irradiance).any()
+    reflected = solution.patches.scatter.of(solution.irradiance).any()
     return f"{percent(solution.error)} of the {'reflected light' if reflected else 'irradiance (nothing is reflected)'}"
 
 

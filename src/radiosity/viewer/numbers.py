@@ -25,6 +25,9 @@ def told(subject: Subject, patch: int, point) -> str:
     ]
     if scene.transmittance is not None:
         rows.append(("transmittance", _number(patches.transmittance[patch])))
+    if patches.diffuse_transmittance is not None:
+        through = _bands(scene, patches.diffuse_transmittance[patch])
+        rows += [(_of("diffuse transmittance", band, scene.bands), _number(value)) for band, value in through]
     rows += [(_of("reflectance", band, scene.bands), _number(v)) for band, v in _bands(scene, patches.reflectance[patch])]
     rows += [
         (_of("emission", band, scene.bands), f"{_number(v)} {scene.unit}") for band, v in _bands(scene, patches.emission[patch])
