@@ -14,6 +14,7 @@ from ..sampling.streams import Seed
 from ..scene.habits import warn
 from ..solution.model import Solution
 from ..tracing.geometry import Geometry
+from .bright import with_bright
 from .model import Sensors
 from .reflected import mean_reflected
 from .result import in_bands
@@ -68,7 +69,8 @@ class Gather:
             warn(f"{solution.patches.scene.source}: the light of {unknown} patches is unknown; a final gather takes it as 0")
         teller = Teller(Budget(rays=max(lines * points, 1)), progress)
         teller.begin(0)
-        return Gather(solution, geometry, problem, np.nan_to_num(light), lines, number, teller)
+        problem, light = with_bright(solution, problem, np.nan_to_num(light))
+        return Gather(solution, geometry, problem, light, lines, number, teller)
 
     def irradiance(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return what falls on points of patches, (m, n_bands) float64, W/m² or lx.

@@ -73,9 +73,14 @@ class Lamps:
 
     @cached_property
     def emission(self) -> np.ndarray:
-        """Emission of each lamp's first patch, or of the sky in the mean, (n_lamps, n_groups) float64, in shares of the unit."""
+        """Mean emission of each lamp, or of the sky, (n_lamps, n_groups) float64, in shares of the unit."""
         groups, unit = self.problem.groups, np.maximum(self.problem.unit, 1e-300)
-        emission = (groups.emission / unit)[self.first]
+        shares = groups.emission / unit
+        emission = shares[self.first]
+        lit = np.flatnonzero(self.of_patch[:-2] >= 0)
+        uneven = np.flatnonzero(np.bincount(self.of_patch[lit], (shares[lit] != emission[self.of_patch[lit]]).any(axis=1)))
+        for lamp in uneven:
+            emission[lamp] = shares[self.first[lamp] : self.first[lamp] + self.cells[lamp]].mean(axis=0)
         if self.openings is None:
             return emission
         sky = self.problem.patches.scene.lights.sky
