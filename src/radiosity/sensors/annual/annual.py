@@ -32,7 +32,7 @@ from ...tracing.geometry import Geometry
 from ..groups import only
 from ..measure import scene_of
 from ..model import Sensors
-from ..run import BEHIND, refuse_passing
+from ..run import BEHIND
 from ..target import worst
 from .coefficients import Coefficients, Replicate
 from .figures import Figures
@@ -146,7 +146,11 @@ class _Run:
     def found(self, hourly: bool) -> AnnualDaylight:
         begun, stop, teller = perf_counter(), Stop(), Teller(self.budget, self.progress)
         geometry = Geometry(self.patches.solid, choose(self.device))
-        refuse_passing(geometry, "sensors")
+        if geometry.some_backs_pass:
+            raise MethodError(
+                f"{self.patches.scene.source}: some backs let lines pass, so what a sensor sees is not what sees the sensor; "
+                "daylight of a year needs both to be equal: make these surfaces radiate or absorb on both sides"
+            )
         geometry.prepare()
         problem = Problem.of(self.patches)
         teller.begin(0)
