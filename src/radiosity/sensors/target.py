@@ -11,12 +11,12 @@ DARK = 1e-9  # of the brightest sensor: darker ones have no relative error
 
 def half_width(values: np.ndarray, level: float = LEVEL) -> np.ndarray:
     """Return half the width of Student's interval of means over replicates, from (replicates, ...) values; NaN with one."""
-    from scipy.stats import t
+    from scipy.special import stdtrit
 
     count = len(values)
     if count < 2:
         return np.full(values.shape[1:], np.nan)
-    return t.ppf((1 + level) / 2, count - 1) * values.std(axis=0, ddof=1) / count**0.5
+    return stdtrit(count - 1, (1 + level) / 2) * values.std(axis=0, ddof=1) / count**0.5
 
 
 def worst(values: np.ndarray, sensors: Sensors, of: str, inside: np.ndarray) -> float:

@@ -28,9 +28,9 @@ def student(level: float, replicates: int) -> float:
         raise MethodError(f"level is {level!r}; it must be above 0 and strictly below 1, such as 0.95")
     if replicates < 2:
         return float("nan")
-    from scipy.stats import t
+    from scipy.special import stdtrit  # `scipy.stats` has the same, and takes half a second to import
 
-    return float(t.ppf(0.5 + level / 2, replicates - 1))
+    return float(stdtrit(replicates - 1, 0.5 + level / 2))
 
 
 def power_of_a_line(emission: np.ndarray, area: np.ndarray, lines: float) -> np.ndarray:
@@ -95,11 +95,11 @@ def count_bounds(count: np.ndarray, level: float, cluster: np.ndarray | float = 
 
     Without hits they are 0 and -ln(1 - level).
     """
-    from scipy.stats import chi2
+    from scipy.special import gammaincinv
 
     groups = np.asarray(count / cluster, np.float64)
-    low = np.where(groups > 0, chi2.ppf(1 - level, 2 * np.maximum(groups, 1e-9)), 0.0)
-    return cluster * low / 2, cluster * chi2.ppf(level, 2 * (groups + 1)) / 2
+    low = np.where(groups > 0, gammaincinv(np.maximum(groups, 1e-9), 1 - level), 0.0)
+    return cluster * low, cluster * gammaincinv(groups + 1, level)
 
 
 def irradiance_bounds(
