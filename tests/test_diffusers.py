@@ -12,6 +12,8 @@ import pytest
 
 import radiosity as rd
 from radiosity.algorithms.firing.orders import FIRED
+from radiosity.problem.model import Problem
+from radiosity.problem.quanta import phases, target_counts
 
 RHO, TAU = 0.3, 0.25
 A, B, SHEET = 0, 1, 2
@@ -143,6 +145,9 @@ def test_bits_do_not_depend_on_order_stages_or_threads(radiosities, sheet):
     if radiosities is GREY:  # colours go on from stages of their own alone
         half = rd.solve(patches, "random-walk", quanta=1_000, replicates=2)
         found.append(rd.solve(patches, "random-walk", quanta=1 << 12, replicates=2, resume=half))
+    source, state = Problem.of(patches).source, found[0].state
+    wanted = target_counts(source, 1 << 12, state["arrivals"], phases(0, 2, len(patches)))
+    assert np.array_equal(state["fired"], wanted)  # floor(E A / delta + rho h + tau h' + phase) of each patch
     before = dr.thread_count()
     dr.set_thread_count(1)
     found.append(rd.solve(patches, rd.Method(), quanta=1 << 12, replicates=2))

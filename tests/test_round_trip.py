@@ -60,10 +60,12 @@ def everything() -> rd.Scene:
     heat = Heat(known, np.where(isothermal, 5.0, np.nan), emissivity, isothermal, 290.0, (3.0,))
     paints = {"reflectance_paint": paint(random, n, 0.9), "emission_paint": paint(random, n, 7.0)}
     through = np.where((back == Back.RADIATES) | (back == Back.ABSORBS), (np.arange(n) % 4 + 1) / 16, 0.0)
+    diffused = np.where(back == Back.RADIATES, 1 / 16, 0.0)[:, None] * [1.0, 2.0]
     point = SensorRequest("point", points=((1.0, 2.0, 3.0),), normals=((0.0, 0.0, 1.0),))
     asked = (SensorRequest("plane", surface="floor", spacing=0.5), point)
     plain = {"patch_size": sizes, "scale": 0.01, "heat": heat, "assumed": room.names[:2]}
-    return replace(scene, transmittance=through, sensors=asked, **plain, **paints)
+    panes = {"transmittance": through, "diffuse_transmittance": diffused}
+    return replace(scene, sensors=asked, **panes, **plain, **paints)
 
 
 def same(one, other, name: str) -> None:
@@ -188,14 +190,16 @@ def test_what_does_not_fit_together_is_refused(solution, tmp_path, damage):
         rd.load_solution(tmp_path / "b.npz")
 
 
-FACE_FIELDS = {"transmittance", "faces", "reflectance", "emission", "back", "back_reflectance", "back_emission", "surface"}
+FACE_FIELDS = {"faces", "reflectance", "emission", "back", "back_reflectance", "back_emission", "surface"}
+FACE_FIELDS |= {"transmittance", "diffuse_transmittance"}
 PAINT_FIELDS = {"image", "uv", "color"}
 
 
 def test_files_with_values_of_patches_are_refused_by_versions_that_do_not_know_them(solution, tmp_path):
-    clear = replace(everything(), transmittance=None)
-    own = replace(solution.patches, scene=clear)
-    for patches, number in ((own, 2), (rd.subdivide(clear, size=2.5), 1), (solution.patches, 4)):
+    panes = replace(everything(), diffuse_transmittance=None)
+    clear = replace(panes, transmittance=None)
+    own, other = replace(solution.patches, scene=clear), replace(solution.patches, scene=panes)
+    for patches, number in ((own, 2), (rd.subdivide(clear, size=2.5), 1), (other, 4), (solution.patches, 5)):
         replace(solution, patches=patches).save(tmp_path / "a.npz")
         with np.load(tmp_path / "a.npz") as file:
             assert json.loads(str(file["meta"]))["format"] == number

@@ -629,7 +629,13 @@ MISTAKES = (
         ("test_formats_mgf.py",),
         "-i repeats once",
     ),
-    Mistake("scene/formats/mgf/context.py", "else others - kind", "else others", ("test_formats_mgf.py",), "rs 0 stays specular"),
+    Mistake(
+        "scene/formats/mgf/context.py",
+        "not_diffuse=_value(words, 1.0) > 0",
+        "not_diffuse=True",
+        ("test_formats_mgf.py",),
+        "rs 0 stays specular",
+    ),
     Mistake(
         "scene/formats/mgf/source.py",
         'startswith(b"#"):\n            result.append(Statement(text, name, number - len(parts) + 1))',
@@ -1015,8 +1021,8 @@ MISTAKES = (
     ),
     Mistake(
         "solution/table.py",
-        'columns[f"net{tail}"] = total(emitted) + total(reflected) - total(power)',
-        'columns[f"net{tail}"] = total(power) - total(emitted) - total(reflected)',
+        'columns[f"net{tail}"] = total(emitted) + total(reflected) + through - total(power)',
+        'columns[f"net{tail}"] = total(power) - total(emitted) - total(reflected) - through',
         ("test_surface_table.py",),
         "net power is what comes in",
     ),
@@ -2058,8 +2064,8 @@ MISTAKES = (
     ),
     Mistake(
         "factors/solvers/gauss_seidel.py",
-        "reflectance.any(axis=1)",
-        "reflectance.all(axis=1)",
+        "albedo.any(axis=1)",
+        "albedo.all(axis=1)",
         ("test_solvers.py",),
         "patches that are black in one band reflect in none",
     ),

@@ -124,11 +124,11 @@ def _from_beyond(solution, scatter, some, here, area, level: float, bunches, usu
     n, other = len(area), scatter.other[some]
     its_area = solution.patches.solid.area[some]
     arrivals = np.bincount(here, solution.arrivals[other], n)
-    got = np.stack([np.bincount(here, its_area * band, n) for band in solution.irradiance[other].T], axis=1) / area[:, None]
-    share = np.zeros(got.shape)
+    light = np.stack([np.bincount(here, its_area * band, n) for band in solution.irradiance[other].T], axis=1) / area[:, None]
+    share = np.zeros(light.shape)
     np.maximum.at(share, here, scatter.through[some])
-    _, most = irradiance_bounds(got, arrivals, area, 0.5 + level / 2, bunches, usual)
-    return most * share, (share > 0) & ((arrivals < FEW)[:, None] | (got == 0))
+    _, most = irradiance_bounds(light, arrivals, area, 0.5 + level / 2, bunches, usual)
+    return most * share, (share > 0) & ((arrivals < FEW)[:, None] | (light == 0))
 
 
 def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
