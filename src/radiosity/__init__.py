@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from .exchange.radiative import radiative_exchange
     from .exchange.result import RadiativeExchange
     from .exchange.view_factors import ViewFactors
+    from .image.projections import Orthographic, Panorama, plan
     from .lightmap.bake import bake_lightmap
     from .lightmap.model import Lightmap
     from .method import BASELINES, PRESETS, Baseline, Method
@@ -96,6 +97,7 @@ _HOMES = {
     "exchange.radiative": ("radiative_exchange",),
     "exchange.result": ("RadiativeExchange",),
     "exchange.view_factors": ("ViewFactors",),
+    "image.projections": ("Orthographic", "Panorama", "plan"),
     "lightmap.bake": ("bake_lightmap",),
     "lightmap.model": ("Lightmap",),
     "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
@@ -144,7 +146,9 @@ __all__ = [
     "Measurement",
     "Method",
     "MethodError",
+    "Orthographic",
     "OutputError",
+    "Panorama",
     "Patches",
     "Photometry",
     "RadiativeExchange",
@@ -176,6 +180,7 @@ __all__ = [
     "measure",
     "merge",
     "perez_sky",
+    "plan",
     "point_light",
     "radiative_exchange",
     "read_luminaire",

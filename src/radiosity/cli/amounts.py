@@ -65,6 +65,18 @@ def length(text: str) -> float:
     return _measured(text, LENGTH, form, f"'{text}' must be a finite length above zero, in metres")
 
 
+def height(text: str) -> float:
+    """``1.5``, ``-20cm``: a finite height.
+
+    Raises:
+        ValueError: it is none; the message says what to write.
+    """
+    parts = _split(text)
+    if parts is None or parts[1] not in LENGTH or not math.isfinite(parts[0]):
+        raise ValueError(f"'{text}' is no height; write metres such as 1.5, or 150cm")
+    return parts[0] * LENGTH[parts[1]]
+
+
 def density(text: str) -> float:
     """``20``: a finite number of texels per metre above zero.
 

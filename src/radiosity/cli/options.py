@@ -36,6 +36,7 @@ DeviceName = Literal["auto", "cpu", "cuda"]
 Seconds = Annotated[float | None, Parameter(converter=_by(amounts.seconds))]
 Share = Annotated[float | None, Parameter(converter=_by(amounts.share))]
 Length = Annotated[float | None, Parameter(converter=_by(amounts.length))]
+Height = Annotated[float | None, Parameter(converter=_by(amounts.height), allow_leading_hyphen=True)]
 Density = Annotated[float | None, Parameter(converter=_by(amounts.density))]
 Point = Annotated[str | None, Parameter(converter=_by(_point), allow_leading_hyphen=True)]  # -1,0,2 is a point, not an option
 Pair = Annotated[str | None, Parameter(converter=_by(_pair), allow_leading_hyphen=True)]

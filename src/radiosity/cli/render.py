@@ -3,14 +3,14 @@
 from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
 from ..errors import OutputError, SceneError, printable
 from . import amounts, outputs
 from .false_colors import range_of
-from .options import Count, Flag, Outputs, Pair, Point, Seed, Stops
+from .options import Count, Flag, Height, Outputs, Pair, Point, Seed, Stops
 from .streams import tell
 
 
@@ -24,6 +24,8 @@ class Viewpoint:
         target: What it looks at, in metres.
         up: Its upward direction. Default: the one usual in the scene's format.
         fov: Its vertical field of view, in degrees.
+        plan: A plan from above instead: the height at which it cuts the scene, in metres, such as 1.5. What is above is not seen.
+        panorama: A view all around from --origin, with --target in the middle.
     """
 
     camera: int | None = None
@@ -31,6 +33,8 @@ class Viewpoint:
     target: Point = None
     up: Point = None
     fov: float | None = None
+    plan: Height = None
+    panorama: Flag = False
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,7 @@ class Picture:
             and others read the solution. Shadows are sharp then, whatever the size of patches. Default: no such lines.
         seed: Of the final gather. Equal seeds give equal pictures.
         denoise: Of the final gather: filter its noise within surfaces.
+        tone_map: What is done with bright light: clip it, or let it roll off as film does (filmic, or agx with less contrast).
     """
 
     width: int | None = None
@@ -70,6 +75,7 @@ class Picture:
     final_gather: Count = None
     seed: Seed = 0
     denoise: Flag = False
+    tone_map: Literal["clip", "filmic", "agx"] = "clip"
 
 
 class Unset:
@@ -111,7 +117,7 @@ def render(
     from .progress import bar
 
     loaded = rd.load_solution(solution)
-    view = _view(loaded.patches.scene, viewpoint)
+    view = _view(loaded.patches.scene, viewpoint, picture.width, picture.height)
 
     def written(path: Path) -> None:
         with bar() as progress:
@@ -133,6 +139,7 @@ def render(
                 final_gather=picture.final_gather,
                 seed=picture.seed,
                 denoise=picture.denoise,
+                tone_map=picture.tone_map,
                 progress=progress if picture.final_gather else None,
             )
         tell(f"wrote {printable(path)}")
@@ -144,14 +151,22 @@ def render(
         raise OutputError("; ".join(outputs.told(failures)))
 
 
-def _view(scene, viewpoint: Viewpoint):
+def _view(scene, viewpoint: Viewpoint, width: int | None = None, height: int | None = None):
     """The camera asked for: a `Camera`, the number of one of the scene's, or None for what the renderer chooses."""
     from dataclasses import replace
 
     from ..scene import Camera
-    from ..scene.up import up_axis
+    from ..scene.up import up_vector
 
-    number, origin, target, up, fov = (getattr(viewpoint, field.name) for field in fields(viewpoint))
+    number, origin, target, up, fov, cut, around = (getattr(viewpoint, field.name) for field in fields(viewpoint))
+    if cut is not None:
+        if any(value is not None for value in (number, origin, target, up, fov)) or around:
+            raise SceneError("--plan chooses its own view: leave --camera, --origin, --target, --up, --fov and --panorama out")
+        from ..image.projections import plan
+
+        return plan(scene, cut=cut, width=width, height=height)
+    if around and (origin is None or fov is not None):
+        raise SceneError("--panorama needs --origin and --target, and takes no --fov")
     if (origin is None) != (target is None):
         raise SceneError("--origin and --target go together: where the camera stands and what it looks at")
     if number is not None and origin is not None:
@@ -162,8 +177,12 @@ def _view(scene, viewpoint: Viewpoint):
     if fov is not None:
         changes["fov"] = fov
     if origin is not None:
-        usual = (0.0, 1.0, 0.0) if up_axis(scene) == "y" else (0.0, 0.0, 1.0)
-        return Camera(**changes) if up else Camera(up=usual, **changes)
+        changes = {"up": up_vector(scene), **changes}
+        if around:
+            from ..image.projections import Panorama
+
+            return Panorama(**changes)
+        return Camera(**changes)
     if not changes or (number is not None and not 0 <= number < len(scene.cameras)):
         return number
     if not scene.cameras:

@@ -57,6 +57,8 @@ def export(
     exposure=None,
     scale=None,
     final_gather=None,
+    denoise=False,
+    tone_map="clip",
     seed=0,
     progress=None,
 ) -> Path:
@@ -70,7 +72,7 @@ def export(
         path: of the file, which appears whole or not at all.
         smooth: values are smoothed within surfaces where the format has colours; otherwise one value a patch.
         quantity, band, exposure, scale: of the colours, see `radiosity.image.look.Look`; .vtp, .csv and .npz hold everything.
-        final_gather, seed, progress: of pictures, see `radiosity.image.render`.
+        final_gather, denoise, tone_map, seed, progress: of pictures, see `radiosity.image.render`.
 
     Returns:
         The path.
@@ -81,10 +83,13 @@ def export(
     path = check_writable(path)
     look, suffix = Look(quantity, band, smooth, exposure, scale), path.suffix.lower()
     if suffix in PICTURES:
-        still.write(solution, path, look, final_gather=final_gather, seed=seed, progress=progress)
+        of_pictures = {"final_gather": final_gather, "denoise": denoise, "tone_map": tone_map}
+        still.write(solution, path, look, **of_pictures, seed=seed, progress=progress)
         return path
     if final_gather is not None:
         raise OutputError(f"{path}: a final gather is of pictures ({', '.join(PICTURES)}); leave it out")
+    if denoise or tone_map != "clip":
+        raise OutputError(f"{path}: denoise and tone_map are of pictures ({', '.join(PICTURES)}); leave them out")
     if suffix == ".npz":
         solution.save(path)
     else:

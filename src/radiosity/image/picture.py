@@ -11,9 +11,9 @@ from .fit import fitted
 from .flat import planes
 from .gathered import Gathered
 from .lookup import Lookup
+from .projections import View, checked, lines_of_sight, resized
 from .quantity import Quantity
 from .through import Sight
-from .view import check, directions
 
 CHUNK = 1 << 19  # lines of sight at once
 DARK = 0.5  # share of a pixel's samples that must see a patch for the pixel to count in scales
@@ -38,7 +38,7 @@ class Picture:
     own_light: np.ndarray
     variance: np.ndarray
     flat: np.ndarray
-    camera: Camera
+    camera: View
 
     @property
     def counted(self) -> np.ndarray:
@@ -47,14 +47,14 @@ class Picture:
         return self.values[on & ~self.own_light] if (on & ~self.own_light).any() else self.values[on]
 
 
-def take(solution, shown: Quantity, camera: Camera, *, look: Lookup | Gathered | None = None, samples=4, hits=None) -> Picture:
+def take(solution, shown: Quantity, camera: View, *, look: Lookup | Gathered | None = None, samples=4, hits=None) -> Picture:
     """Take a picture with ``samples`` lines of sight a pixel, at the points of a Hammersley set (each row and column once).
 
     Args:
         look: finds values from hits; by default those that are shown, smoothed.
     """
     samples = checked_samples(samples)
-    hits, camera = hits or first_hits, check(camera)
+    hits, camera = hits or first_hits, checked(camera)
     look = look or Lookup(solution.patches, shown.values)
     sight = Sight(solution.patches.scene, look, hits, shown.adds)
     width, n = int(camera.width), int(camera.width) * int(camera.height)
@@ -65,8 +65,7 @@ def take(solution, shown: Quantity, camera: Camera, *, look: Lookup | Gathered |
     for begin in range(0, n, step):
         pixel = np.arange(begin, min(begin + step, n))
         x, y = (pixel % width)[:, None] + offsets[:, 0], (pixel // width)[:, None] + offsets[:, 1]
-        rays = directions(camera, x.ravel(), y.ravel())
-        values, patch, lamps = sight(np.broadcast_to(camera.origin, rays.shape).copy(), rays, shown.own_light)
+        values, patch, lamps = sight(*lines_of_sight(camera, x.ravel(), y.ravel()), shown.own_light)
         values, seen = values.reshape(len(pixel), samples, -1), plane[patch].reshape(len(pixel), samples)
         total[pixel] = values.sum(axis=1)
         count[pixel] = (seen >= 0).sum(axis=1)
@@ -97,29 +96,24 @@ def checked_samples(samples) -> int:
     return int(samples)
 
 
-def choose_camera(solution, camera: Camera | int | None, width, height, hits) -> Camera:
-    """Return the camera asked for (a `Camera`, or the number of one of the scene's), the scene's first, or a fitted one."""
+def choose_camera(solution, camera: View | int | None, width, height, hits) -> View:
+    """Return the camera asked for (a view, or the number of one of the scene's), the scene's first, or a fitted one."""
     cameras = solution.patches.scene.cameras
     for name, value in (("width", width), ("height", height)):
         if value is not None and not (np.isfinite(value) and int(value) == value >= 1):
             raise OutputError(f"{name} is {value}; it must be a whole number of 1 or more, in pixels")
-    if isinstance(camera, Camera):
+    if isinstance(camera, View):
         chosen = camera
     elif camera is None and not cameras:
         light = tone.luminance(np.asarray(solution.radiosity, np.float64))
-        return fitted(
-            solution.patches, light, hits, width=800 if width is None else width, height=600 if height is None else height
-        )
+        usual = resized(Camera((0, 0, 0), (0, 0, 1)), width, height)  # one side alone keeps its proportions
+        return fitted(solution.patches, light, hits, width=usual.width, height=usual.height)
     else:
         number = 0 if camera is None else camera
         if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(cameras):
             raise OutputError(f"camera {camera!r} does not exist; the scene has {len(cameras)} (counted from 0)")
         chosen = cameras[number]
-    if width is None and height is not None:
-        width = max(1, round(height * chosen.width / chosen.height))
-    if height is None and width is not None:
-        height = max(1, round(width * chosen.height / chosen.width))
-    return replace(chosen, width=chosen.width if width is None else width, height=chosen.height if height is None else height)
+    return resized(chosen, width, height)
 
 
 def first_hits(scene, origins, directions):

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError, RadiosityWarning, result_kept
-from ..scene import Camera
-from . import bitmap, tone
+from . import bitmap, curves, tone
 from . import false_color as maps
 from .denoise import denoised
 from .gathered import Gathered, lines_of
@@ -16,8 +15,8 @@ from .look import Look
 from .lookup import Lookup
 from .output import check_writable, require, require_results
 from .picture import checked_samples, choose_camera, first_hits, take
+from .projections import View, checked
 from .quantity import choose
-from .view import check
 
 SUFFIXES = (".png", ".exr")
 
@@ -26,7 +25,7 @@ def render(
     solution,
     path=None,
     *,
-    camera: Camera | int | None = None,
+    camera: View | int | None = None,
     width: int | None = None,
     height: int | None = None,
     exposure: float | None = None,
@@ -42,15 +41,17 @@ def render(
     final_gather: int | None = None,
     seed: int = 0,
     denoise: bool = False,
+    tone_map: str = "clip",
     progress=None,
     hits=None,
 ) -> np.ndarray:
-    """Make a picture of a solution with a pinhole camera. What radiates nothing (absorbing backs, empty space) is black.
+    """Make a picture of a solution. What radiates nothing (absorbing backs, empty space) is black.
 
     Args:
         solution: the solution to show.
         path: .png or .exr file to write, or None.
-        camera: a `Camera`, or the number of one of the scene's; default: its first, or a fitted one where it has none.
+        camera: a `Camera`, an `Orthographic` view (`radiosity.plan` makes one from above), a `Panorama`, or the number of one of
+            the scene's cameras; default: its first, or a fitted one where it has none.
         width, height: pixels; default: the camera's. One alone keeps its proportions.
         exposure, scale, smooth, quantity, band: see `radiosity.image.look.Look`. The automatic scale takes the 97th
             percentile of the pixels' strongest channel, lamps apart, to a light tone.
@@ -61,6 +62,8 @@ def render(
             the solution. So shadows and images are sharp, whatever the size of patches. ``smooth`` then means nothing. For
             radiosity, irradiance, radiance and luminance.
         denoise: filter the noise of the final gather within surfaces; edges stay sharp.
+        tone_map: "clip", or "filmic" or "agx", which roll bright light off; see `radiosity.image.curves`. Of PNG without false
+            colours.
         seed, progress: of the final gather; see `radiosity.solve`.
         hits: ``hits(scene, origins, directions)`` with the result of `radiosity.tracing.first_hits.first_hits`, the default.
 
@@ -79,6 +82,8 @@ def render(
         raise OutputError(f"{path}: EXR holds physical values; write false colours to a .png file")
     if path is not None and not linear:
         require("PIL", f"{path}: writing PNG")
+    if curves.checked(tone_map) != "clip" and (linear or false_color):
+        raise OutputError("tone_map is of PNG pictures without false colours; leave it out")
     if false_color:
         require("matplotlib", "the legend of false colours")
     require_results(solution)
@@ -90,7 +95,7 @@ def render(
     view = choose_camera(solution, camera, width, height, hits)
     look: Lookup | Gathered = Lookup(solution.patches, shown.values, smooth)
     if lines is not None:
-        of_gather = {"lines": lines, "points": check(view).width * view.height * samples, "seed": seed, "progress": progress}
+        of_gather = {"lines": lines, "points": checked(view).width * view.height * samples, "seed": seed, "progress": progress}
         look = Gathered.of(solution, look, quantity, band, single=false_color, **of_gather)
     picture = take(solution, shown, view, look=look, samples=samples, hits=hits)
     picture = replace(picture, values=denoised(picture)) if denoise else picture
@@ -106,8 +111,8 @@ def render(
         else:
             scaled = Look(quantity, band, smooth, exposure, scale)
             factor = tone.chosen_scale(scaled, lambda: tone.automatic_scale(picture.counted))
-            facts |= {"scale": repr(factor), "colour": "sRGB of value x scale, clipped to 1"}
-            pixels = tone.eight_bits(tone.srgb(tone.colours(values) * factor))
+            facts |= {"scale": repr(factor), "colour": curves.WORDS[tone_map]}
+            pixels = curves.displayed(values, factor, tone_map)
     if path is not None:
         _save(pixels, path, facts, shown.bands)
     return pixels

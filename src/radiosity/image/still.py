@@ -4,7 +4,7 @@ from .look import Look
 from .render import render
 
 
-def write(solution, path, look: Look, *, final_gather=None, seed=0, progress=None) -> None:
+def write(solution, path, look: Look, *, final_gather=None, denoise=False, tone_map="clip", seed=0, progress=None) -> None:
     """Write a picture; see `radiosity.image.render`."""
     render(
         solution,
@@ -15,6 +15,8 @@ def write(solution, path, look: Look, *, final_gather=None, seed=0, progress=Non
         exposure=look.exposure,
         scale=look.scale,
         final_gather=final_gather,
+        denoise=denoise,
+        tone_map=tone_map,
         seed=seed,
         progress=progress,
     )
