@@ -22,13 +22,14 @@ from ..patches.relit import relit
 from ..patches.variation import Variation
 from ..scene.model import Back, Scene
 from .progress import Listener
+from .solve import prepared
 from .whole_number import whole
 
 START = 16  # the first mesh has so many times fewer patches
-GROWTH = 1.6  # of the number of patches from one pilot to the next
+GROWTH = 1.6  # from one pilot to the next, of patches beyond one for each side of a face
 CUTS = 8  # contact lines add at most the number of patches over this
 LEAST = 64  # patches are cut until they are so many times smaller than the mean
-LINES = 64  # of each cell of a pilot, replicates together
+LINES = 256  # of each cell of a pilot, replicates together
 REPLICATES = 4  # of pilots
 APART = 1 << 20  # difference of the seeds of pilots and of the run, so that their errors are independent
 LIGHTS = ("all", "direct")
@@ -85,7 +86,7 @@ def adapt(
         for step in range(1, 64):
             halves = Halves.of(current, small)
             here = len(halves.coarse)
-            more = min(int(here * (GROWTH - 1)) + 1, count - here)
+            more = min(int((here - least) * (GROWTH - 1)) + 1, count - here)
             if more <= 0:
                 break
             irradiance, method = _pilot(halves.fine, method, light, number + step * APART, device, progress)
@@ -115,8 +116,6 @@ def _pilot(
 
     With one randomisation for all patches, cells beside each other have nearly the same noise, which their difference is free of.
     """
-    from .solve import prepared
-
     n = len(patches)
     lit = relit(patches, reflectance=0) if light == "direct" else patches
     with warnings.catch_warnings():
