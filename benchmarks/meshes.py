@@ -23,7 +23,7 @@ LINES = 1000  # of a patch, and at least this many in all:
 LEAST = 8_000_000
 READ = 20_000  # patches of the solution that points read, beyond one for each side of a face
 EACH = 5000  # lines of a point
-ROW = "  {:>8} {:>9} {:>10} {:>10} {:>7} {:>9}"
+ROW = "  {:>8} {:>9} {:>9} {:>7} {:>9}"
 
 
 def used() -> float:
@@ -76,19 +76,16 @@ def compare(name: str, counts: list[int], points: int) -> None:
     read = solved(rd.adapt(scene, least + READ, seed=7))
     truth = rd.measure(read, rd.Sensors.of(where, normals), rays=EACH * points, seed=2)
     print(f"{name}: {scene.n_faces} faces, {least} sides", flush=True)
-    print(ROW.format("patches", "even", "direct", "all light", "ratio", "CPU s"))
+    print(ROW.format("patches", "even", "follows", "ratio", "CPU s"))
     for count in counts or [2 * least]:
         even = rd.subdivide(scene, about=count)
         begun = used()
-        direct = rd.subdivide(scene, patches=len(even))
-        seconds = [used() - begun]
-        begun = used()
         follows = rd.adapt(scene, len(even))
-        seconds.append(used() - begun)
-        errors = [error(solved(patches), where, normals, truth) for patches in (even, direct, follows)]
-        ratio = errors[0] / max(errors[2], 1e-9)
+        seconds = used() - begun
+        errors = [error(solved(patches), where, normals, truth) for patches in (even, follows)]
+        ratio = errors[0] / max(errors[1], 1e-9)
         shares = [f"{value:.2%}" for value in errors]
-        print(ROW.format(len(even), *shares, f"{ratio:.1f}", f"{seconds[1]:.1f}"), flush=True)
+        print(ROW.format(len(even), *shares, f"{ratio:.1f}", f"{seconds:.1f}"), flush=True)
 
 
 if __name__ == "__main__":

@@ -222,7 +222,7 @@ def _adapted(scene, chosen, adaptive, seed, device, progress, resume) -> Patches
     if resume is not None:
         raise MethodError("adaptive makes a new mesh, and resume keeps that of its solution: leave one of them out")
     refuse_hierarchical(chosen)
-    count = None if adaptive is True else whole(adaptive, "adaptive", 1)
+    count = len(subdivide(scene, **cut_for(chosen))) if adaptive is True else whole(adaptive, "adaptive", 1)
     return HOOKS["adapt"](scene, count, seed=seed, device=device, progress=progress)
 
 
