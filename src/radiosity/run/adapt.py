@@ -58,8 +58,8 @@ def adapt(
             makes no sense. KeyboardInterrupt: Ctrl-C.
 
     Example:
-        >>> patches = rd.adapt(rd.load_scene("room"), 400)
-        >>> 300 < len(patches) <= 400, len(patches.scene.names) == len(rd.load_scene("room").names)
+        >>> patches = rd.adapt(rd.load_scene("room"), 60)
+        >>> 50 < len(patches) <= 60, len(patches.scene.names) == len(rd.load_scene("room").names)
         (True, True)
     """
     if not isinstance(scene, Scene):
