@@ -81,7 +81,7 @@ def _adapt(*of, **options):
 
 
 HOOKS["export"] = _export  # of `Solution.export`
-HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)`
+HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)` and `solve(scene, adaptive=True)`
 HOOKS["gather"] = _gather  # of pictures with a final gather
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.

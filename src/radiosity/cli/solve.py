@@ -110,10 +110,13 @@ def _patches(scene, cut: Cut, method, before, run: Running, progress):
     import radiosity as rd
 
     from ..run.baseline_budget import cut_for
+    from ..run.solve import refuse_hierarchical
 
     if cut.given and cut.follows:
+        refuse_hierarchical(method)
         options = {name: getattr(run, name) for name in ("seed", "device", "memory")}
-        return rd.adapt(scene, cut.patches, light="all" if cut.adaptive else "direct", progress=progress, **options)
+        count = cut.patches or len(rd.subdivide(scene, **cut_for(method)))
+        return rd.adapt(scene, count, progress=progress, **options)
     if cut.given:
         size = {"size": cut.patch_size, "cells": cut.cells} if cut.patch_size or cut.cells else cut_for(method)
         return rd.subdivide(scene, **(size | {"powers_of_two": cut.powers_of_two or method.needs_powers_of_two}))

@@ -74,9 +74,8 @@ class Cut(Size):
 
     Attributes:
         patches: At most so many patches, such as 50k, which follow the light: faces are cut where other faces touch them, and
-            where the light of lamps varies (docs/meshes.md).
-        adaptive: Cut where all light varies, reflected light included, by pilot runs. Default of --patches: 20 000, or one for
-            each side of a face and 20 000 more.
+            where light varies, as pilot runs see it (docs/meshes.md).
+        adaptive: The same, with as many patches as by default.
         powers_of_two: Cut faces into 1, 2, 4, 8 ... cells along each edge. Hierarchical radiosity always does; with this option
             other methods have the same patches, to compare with it.
         refine_check: Solve on patches cut into four, too, and report sampling and discretisation errors apart. With a .csv

@@ -1,4 +1,4 @@
-"""Cutting the faces that gain most by it: they are cut in halves, in quarters, or not at all."""
+"""Cutting the faces that gain most by it: in halves or quarters, triangles in a parallelogram and two triangles."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ LONGEST = 8.0  # of a patch, over its width
 
 @dataclass(frozen=True, eq=False)
 class Halves:
-    """Faces of one cell, and how they may be cut: parallelograms in up to 2 x 2 cells, triangles in four.
+    """Faces of one cell, and how they may be cut: parallelograms in up to 2 x 2 cells, triangles in four (see `cells_as_faces`).
 
     Attributes:
         coarse: patches, one cell a face.
@@ -52,9 +52,10 @@ class Halves:
         (along[four], noise[four]), across[four], rest[four] = _square(one), _square(two)[0], _square(both)[0]
         bent = four[~quad[four]]
         cells = self._cells(irradiance, bent, 4)
-        squares = [_square(cells[..., i] - cells.mean(axis=-1)) for i in range(4)]
+        shares = np.array([[0.5, 0.5, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) - 0.25  # a part's mean less that of all
+        squares = [_square(cells @ part) for part in shares]
         along[bent] = across[bent] = 0.0
-        rest[bent], noise[bent] = (sum(square[i] for square in squares) / 4 for i in (0, 1))
+        rest[bent], noise[bent] = (squares[0][i] / 2 + squares[1][i] / 4 + squares[2][i] / 4 for i in (0, 1))
         for into, some in ((along, (columns == 2) & (rows == 1)), (across, (columns == 1) & (rows == 2))):
             face = np.flatnonzero(some)
             into[face], noise[face] = _square(0.5 * (self._cells(irradiance, face, 2) @ np.array((1, -1))))
@@ -72,8 +73,8 @@ class Halves:
         better, first = np.maximum(along, across), along >= across
         second = np.where((columns == 2) & (rows == 2), (np.minimum(along, across) + light.rest) / 2, 0.0)
         second = np.minimum(second, better)  # halves come before quarters
-        better, second = (np.where(scene.is_quad, value, light.rest / 3) for value in (better, second))
-        cost = np.concatenate([np.where(scene.is_quad, 1, 3) * sides, np.where(scene.is_quad, 2, 0) * sides])
+        better, second = (np.where(scene.is_quad, value, light.rest / 2) for value in (better, second))
+        cost = np.concatenate([np.where(scene.is_quad, 1, 2) * sides, np.where(scene.is_quad, 2, 0) * sides])
         rate = np.concatenate([better, second]) * np.tile(scene.area / sides, 2)
         order = np.argsort(-rate, kind="stable")
         order = order[(rate[order] > 0) & (cost[order] > 0)]

@@ -34,8 +34,7 @@ def subdivide(
             others are one for each side.
         powers_of_two: columns and rows are rounded up to powers of two, so that the patches are the leaves of a `Hierarchy`;
             what is said of size, cells and about still holds.
-        patches: so many patches at most, which follow the light instead: faces are cut along contact lines, and where the light
-            of lamps, suns and the sky varies over them before it is reflected (`adapt` with ``light="direct"``).
+        patches: so many patches at most, which follow the light instead, see `adapt`.
 
     Raises:
         SceneError: size and cells are both given, a value makes no sense, or there are more patches than can be counted.
@@ -50,7 +49,7 @@ def subdivide(
     if patches is not None:
         if size is not None or cells is not None or powers_of_two or about != DEFAULT_PATCHES:
             raise SceneError("patches=N cuts where light varies; leave out size, cells, about and powers_of_two")
-        return HOOKS["adapt"](scene, patches, light="direct")
+        return HOOKS["adapt"](scene, patches)
     if size is not None and cells is not None:
         raise SceneError("give size or cells, not both")
     if isinstance(about, bool) or not isinstance(about, int) or about < 1:

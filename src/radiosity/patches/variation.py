@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..scene.model import Scene
+
 SURE = 8.0  # times its noise: a variation that is larger is taken as measured, whatever was expected
 
 
@@ -13,7 +15,7 @@ class Variation:
 
     Attributes:
         along, across: between the halves of a parallelogram along its first and its second edge.
-        rest: what its four quarters differ by beyond that; of a triangle all that its four cells differ by.
+        rest: what its four quarters differ by beyond that; of a triangle what its three parts differ by.
         noise: variance that noise alone would give a half.
     """
 
@@ -32,13 +34,24 @@ class Variation:
             rest = _best(self.rest, before.rest, self.noise)
         return Variation(along, across, rest, self.noise)
 
-    def after(self, columns: np.ndarray, rows: np.ndarray) -> "Variation":
-        """Return what is expected of the parts of faces that are cut: where light is smooth, a half varies by a quarter."""
-        parts = np.repeat(np.arange(len(columns)), columns * rows)
+    def after(self, scene: Scene, columns: np.ndarray, rows: np.ndarray, part: np.ndarray, is_quad: np.ndarray) -> "Variation":
+        """Return what is expected of the parts of faces that are cut: where light is smooth, a half varies by a quarter.
+
+        Args:
+            scene: of the faces. columns, rows: (n_faces,) how they are cut.
+            part: (m,) the face of each part. is_quad: (m,) bool, it is a parallelogram.
+        """
         long, wide = columns > 1, rows > 1
         along, across = np.where(long, self.along / 4, self.along), np.where(wide, self.across / 4, self.across)
         rest = np.where(long | wide, self.rest / 4, self.rest)
-        return Variation(along[parts], across[parts], rest[parts], self.noise[parts])
+        new = is_quad & ~scene.is_quad[part]  # half of a triangle
+        half = rest[part] / 2
+        return Variation(
+            np.where(new, half, along[part]),
+            np.where(new, half, across[part]),
+            np.where(new, 0.0, rest[part]),
+            self.noise[part],
+        )
 
 
 def _best(now: np.ndarray, expected: np.ndarray, noise: np.ndarray) -> np.ndarray:

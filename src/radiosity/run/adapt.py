@@ -15,30 +15,28 @@ from ..device.turn import turn
 from ..errors import MethodError, RadiosityWarning, SceneError
 from ..method import Method, resolve
 from ..patches import Patches, subdivide
-from ..patches.cells_as_faces import cells_as_faces
+from ..patches.cells_as_faces import cells_as_faces, turned
 from ..patches.contact import cut_at_contacts
 from ..patches.halves import Halves
-from ..patches.relit import relit
 from ..patches.variation import Variation
 from ..scene.model import Back, Scene
 from .progress import Listener
+from .solve import prepared
 from .whole_number import whole
 
 START = 16  # the first mesh has so many times fewer patches
-GROWTH = 1.6  # of the number of patches from one pilot to the next
+GROWTH = 1.6  # from one pilot to the next, of patches beyond one for each side of a face
 CUTS = 8  # contact lines add at most the number of patches over this
 LEAST = 64  # patches are cut until they are so many times smaller than the mean
-LINES = 64  # of each cell of a pilot, replicates together
+LINES = 256  # of each cell of a pilot, replicates together
 REPLICATES = 4  # of pilots
 APART = 1 << 20  # difference of the seeds of pilots and of the run, so that their errors are independent
-LIGHTS = ("all", "direct")
 
 
 def adapt(
     scene: Scene,
     patches: int | None = None,
     *,
-    light: str = "all",
     seed: int = 0,
     device: str = "auto",
     progress: Listener | None = None,
@@ -52,7 +50,6 @@ def adapt(
     Args:
         scene: what to cut.
         patches: how many patches there may be; default: as many as `subdivide` makes of the scene.
-        light: "all", or "direct": the light of lamps, suns and the sky before it is reflected.
         seed: with the same inputs, the same mesh.
         device, progress, memory: as of `solve`.
 
@@ -61,14 +58,12 @@ def adapt(
             makes no sense. KeyboardInterrupt: Ctrl-C.
 
     Example:
-        >>> patches = rd.adapt(rd.load_scene("room"), 400)
-        >>> 300 < len(patches) <= 400, len(patches.scene.names) == len(rd.load_scene("room").names)
+        >>> patches = rd.adapt(rd.load_scene("room"), 60)
+        >>> 50 < len(patches) <= 60, len(patches.scene.names) == len(rd.load_scene("room").names)
         (True, True)
     """
     if not isinstance(scene, Scene):
         raise MethodError(f"adapt takes a Scene, not {type(scene).__name__}: it cuts the faces anew; load a file with load_scene")
-    if light not in LIGHTS:
-        raise MethodError(f"light is {light!r}; a mesh follows {' or '.join(LIGHTS)}")
     count = len(subdivide(scene)) if patches is None else whole(patches, "patches", 1)
     least = int(np.where(scene.back == Back.RADIATES, 2, 1).sum())
     if least > count:
@@ -85,22 +80,23 @@ def adapt(
         for step in range(1, 64):
             halves = Halves.of(current, small)
             here = len(halves.coarse)
-            more = min(int(here * (GROWTH - 1)) + 1, count - here)
+            more = min(int((here - least) * (GROWTH - 1)) + 1, count - here)
             if more <= 0:
                 break
-            irradiance, method = _pilot(halves.fine, method, light, number + step * APART, device, progress)
+            irradiance, method = _pilot(halves.fine, method, number + step * APART, device, progress)
             found = halves.variation(irradiance).given(expected)
             columns, rows = halves.chosen(found, more)
             if (columns * rows == 1).all():
                 break
-            current, expected = cells_as_faces(Patches(current, columns, rows)), found.after(columns, rows)
+            current, part = _cut(current, columns, rows)
+            expected = found.after(halves.coarse.scene, columns, rows, part, current.is_quad)
         one = np.ones(current.n_faces, np.int32)
         return Patches(current, one, one)
 
 
 def _first(scene: Scene, count: int, least: int) -> Scene:
     """Return the scene cut along contact lines, and evenly into few patches."""
-    cut = cut_at_contacts(scene, count, min(count // CUTS, (count - least) // 2))
+    cut = turned(cut_at_contacts(scene, count, min(count // CUTS, (count - least) // 2)))
     for about in (count // START, 1):
         even = subdivide(cut, about=max(about, 1))
         if len(even) <= count:
@@ -108,21 +104,25 @@ def _first(scene: Scene, count: int, least: int) -> Scene:
     return cut
 
 
+def _cut(scene: Scene, columns: np.ndarray, rows: np.ndarray) -> tuple[Scene, np.ndarray]:
+    """Return the scene of the cells of faces, and the face of each."""
+    result = cells_as_faces(Patches(scene, columns, rows))
+    parts = np.where(scene.is_quad, columns * rows, columns * (columns + 1) // 2)
+    return result, np.repeat(np.arange(scene.n_faces), parts)
+
+
 def _pilot(
-    patches: Patches, method: Method | None, light: str, seed: int, device: str, progress: Listener | None
+    patches: Patches, method: Method | None, seed: int, device: str, progress: Listener | None
 ) -> tuple[np.ndarray, Method]:
     """Return the irradiance of each replicate, (replicates, n_patches, n_bands), and the method that a pilot of the first chose.
 
     With one randomisation for all patches, cells beside each other have nearly the same noise, which their difference is free of.
     """
-    from .solve import prepared
-
     n = len(patches)
-    lit = relit(patches, reflectance=0) if light == "direct" else patches
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RadiosityWarning)  # the run on the mesh tells them
         run = prepared(
-            lit,
+            patches,
             resolve("auto") if method is None else method,
             rays=LINES * n,
             replicates=REPLICATES,

@@ -14,6 +14,7 @@ from ..diagnostics.contact_findings import tell
 from ..diagnostics.lamps_at_faces import warn_of_spots
 from ..diagnostics.narrow import warn_of_light
 from ..errors import MethodError, shown
+from ..hooks import HOOKS
 from ..method import Auto, Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..sampling.streams import Seed
@@ -224,13 +225,11 @@ def patches_of(scene: Scene | Patches, method: Method | Baseline | Auto, caller:
 
 def _adapted(scene, chosen, adaptive, seed, device, progress, resume) -> Patches:
     """Return the patches of ``adaptive``; see `solve`."""
-    from .adapt import adapt
-
     if resume is not None:
         raise MethodError("adaptive makes a new mesh, and resume keeps that of its solution: leave one of them out")
     refuse_hierarchical(chosen)
-    count = None if adaptive is True else whole(adaptive, "adaptive", 1)
-    return adapt(scene, count, seed=seed, device=device, progress=progress)  # type: ignore[arg-type]
+    count = len(subdivide(scene, **cut_for(chosen))) if adaptive is True else whole(adaptive, "adaptive", 1)
+    return HOOKS["adapt"](scene, count, seed=seed, device=device, progress=progress)
 
 
 def refuse_cut(patches: Patches, method: Method | Baseline | Auto) -> None:

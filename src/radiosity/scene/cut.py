@@ -1,4 +1,4 @@
-"""Where the faces of a cut scene come from."""
+"""The record of a cut scene: which face of the whole scene each of its faces is a part of."""
 
 from dataclasses import dataclass, replace
 
