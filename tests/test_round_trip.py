@@ -64,7 +64,7 @@ def everything() -> rd.Scene:
     point = SensorRequest("point", points=((1.0, 2.0, 3.0),), normals=((0.0, 0.0, 1.0),))
     asked = (SensorRequest("plane", surface="floor", spacing=0.5), point)
     plain = {"patch_size": sizes, "scale": 0.01, "heat": heat, "assumed": room.names[:2]}
-    panes = {"transmittance": through, "diffuse_transmittance": diffused}
+    panes = {"transmittance": through, "diffuse_transmittance": diffused, "refractive_index": np.where(through > 0, 1.5, 0.0)}
     return replace(scene, sensors=asked, **panes, **plain, **paints)
 
 
@@ -191,15 +191,17 @@ def test_what_does_not_fit_together_is_refused(solution, tmp_path, damage):
 
 
 FACE_FIELDS = {"faces", "reflectance", "emission", "back", "back_reflectance", "back_emission", "surface"}
-FACE_FIELDS |= {"transmittance", "diffuse_transmittance"}
+FACE_FIELDS |= {"transmittance", "diffuse_transmittance", "refractive_index"}
 PAINT_FIELDS = {"image", "uv", "color"}
 
 
 def test_files_with_values_of_patches_are_refused_by_versions_that_do_not_know_them(solution, tmp_path):
-    panes = replace(everything(), diffuse_transmittance=None)
+    diffuse = replace(everything(), refractive_index=None)
+    panes = replace(diffuse, diffuse_transmittance=None)
     clear = replace(panes, transmittance=None)
-    own, other = replace(solution.patches, scene=clear), replace(solution.patches, scene=panes)
-    for patches, number in ((own, 2), (rd.subdivide(clear, size=2.5), 1), (other, 4), (solution.patches, 5)):
+    own, *others = (replace(solution.patches, scene=scene) for scene in (clear, panes, diffuse))
+    of_cut = rd.subdivide(clear, size=2.5)
+    for patches, number in zip((own, of_cut, *others, solution.patches), (2, 1, 4, 5, 6), strict=True):
         replace(solution, patches=patches).save(tmp_path / "a.npz")
         with np.load(tmp_path / "a.npz") as file:
             assert json.loads(str(file["meta"]))["format"] == number

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..scene.clear_glass import of_mean, share_at
 from ..scene.model import Scene
 from .gathered import Gathered
 from .lookup import Lookup
@@ -18,6 +19,20 @@ from .lookup import Lookup
 MOST = 64  # panes behind each other
 STEP = 2e-6  # of the scene's reach, by which a line begins behind a pane
 HALF = 0.5
+
+
+def through_at(scene: Scene, face: np.ndarray, rays: np.ndarray) -> np.ndarray:
+    """Return what faces let through of rays of unit length, (m,): of glass by the angle."""
+    assert scene.transmittance is not None
+    found = scene.transmittance[face]
+    if scene.refractive_index is None:
+        return found
+    index = scene.refractive_index[face]
+    for share, one in {(found[i], index[i]) for i in np.flatnonzero(index > 0)}:
+        here = np.flatnonzero((index == one) & (found == share))
+        cosine = np.abs((rays[here] * scene.normal[face[here]]).sum(axis=1))
+        found[here] = share_at(np.maximum(cosine, 1e-6), of_mean(float(share), float(one)), float(one))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +74,8 @@ class Sight:
         for _ in range(MOST):
             met = self.hits(self._opaque, origins, rays[going])
             values, patch = self.look(met)
-            face, t = np.asarray(met.face), np.where(np.asarray(met.face) >= 0, through[met.face], 0.0)
+            face = np.asarray(met.face)
+            t = np.where(face >= 0, through_at(self.scene, face, rays[going]), 0.0)
             again = (face >= 0) & (face == last[going])  # the step was too short
             shows = ~again & (patch >= 0) & ((t < HALF) | self.adds)
             here = going[shows]

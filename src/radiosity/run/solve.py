@@ -273,10 +273,12 @@ def refuse_panes(scene: Scene, method: Method | Baseline) -> None:
     else:
         one_sided = method.scheme == "hierarchical"
         clear = "links of a hierarchy do not go on through panes" if one_sided else ""
+    glass = "" if isinstance(method, Method) else "form factors of baselines have one transmittance for all angles"
     diffuse = f"method {method} sends no light on from the other side of a face" if one_sided else ""
     for some, key, reason in (
         (scene.panes, "transmittance", clear),
         (scene.diffusers, "diffuse_transmittance", diffuse),
+        (np.zeros(1, bool) if scene.refractive_index is None else scene.refractive_index > 0, "refractive_index", glass),
     ):
         if reason and some.any():
             names = shown([scene.names[i] for i in np.unique(scene.surface[some])])

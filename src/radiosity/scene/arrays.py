@@ -31,6 +31,7 @@ def checked_fields(
     photometric=False,
     transmittance=None,
     diffuse_transmittance=None,
+    refractive_index=None,
     cameras=(),
     source="arrays",
 ) -> tuple[dict[str, Any], np.ndarray]:
@@ -71,6 +72,8 @@ def checked_fields(
     transmittance = panes.transmittances(transmittance, n, source)
     diffuse = None if diffuse is None else arguments.widen(diffuse, n_bands, source)
     panes.check(transmittance, back, (values[0], values[2]), surface, names, source, diffuse)
+    index = panes.indices(refractive_index, n, source)
+    panes.check_glass(index, transmittance, (*values, *([] if diffuse is None else [diffuse])), surface, names, source)
     bands = arguments.bands_of(bands, n_bands, source)
     crossed = _crossed(vertices, faces)
     if len(crossed):
@@ -93,6 +96,7 @@ def checked_fields(
         "photometric": bool(photometric),
         "transmittance": None if transmittance is None else transmittance[rows],
         "diffuse_transmittance": None if diffuse is None else diffuse[rows],
+        "refractive_index": None if index is None else index[rows],
         "patch_size": np.full(len(names), np.nan),
         "cameras": arguments.cameras_of(cameras, source),
         "source": str(source),

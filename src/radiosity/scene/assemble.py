@@ -71,6 +71,7 @@ def assemble(
         bands=bands,
         photometric=photometric,
         transmittance=each([m.transmittance for m in material]),
+        refractive_index=each([m.refractive_index for m in material]),
         diffuse_transmittance=each([spread(m.diffuse_transmittance or 0.0) for m in material]),
         cameras=cameras,
         source=source,

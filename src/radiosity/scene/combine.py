@@ -36,6 +36,7 @@ def combine(scenes: list[Scene], *, source: str, photometric: bool, scale: float
         back_emission=stack("back_emission"),
         surface=np.concatenate([np.array([index[name] for name in s.names], np.int32)[s.surface] for s in scenes]),
         transmittance=of_all_faces(scenes, "transmittance"),
+        refractive_index=of_all_faces(scenes, "refractive_index"),
         diffuse_transmittance=of_all_faces(scenes, "diffuse_transmittance", len(bands)),
         names=names,
         bands=bands,

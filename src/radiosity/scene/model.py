@@ -53,6 +53,8 @@ class Scene:
             (panes), equal in all bands; None where no face is a pane.
         diffuse_transmittance: (n_faces, n_bands) float64 in [0, 1), the share of what falls on either side that leaves the other
             side in all directions (diffusing panes); None where there is none. Both sides of such faces radiate.
+        refractive_index: (n_faces,) float64, above 1 of clear glass, whose transmittance depends on the angle (``transmittance``
+            is the mean over diffuse light); 0 for other faces, and None where there is no such glass.
         sensors: what the file asks `measure` for; light does not depend on it.
         cut: what the faces are parts of, where a mesh follows the light (`subdivide(scene, patches=...)`); else None.
 
@@ -85,6 +87,7 @@ class Scene:
     lights: Lights = field(default_factory=Lights)
     transmittance: np.ndarray | None = None
     diffuse_transmittance: np.ndarray | None = None
+    refractive_index: np.ndarray | None = None
     sensors: tuple[SensorRequest, ...] = ()
     cut: Cut | None = None
 
@@ -105,6 +108,7 @@ class Scene:
         photometric=False,
         transmittance=None,
         diffuse_transmittance=None,
+        refractive_index=None,
         cameras=(),
         source="arrays",
     ) -> "Scene":
@@ -127,6 +131,9 @@ class Scene:
                 pane), from either side. With the reflectance of each side it must stay below 1; the rest is absorbed.
             diffuse_transmittance: like ``reflectance``, the share of light on either side that leaves the other side in all
                 directions (a diffusing pane). The faces must be two-sided, and all shares together stay below 1.
+            refractive_index: a number or (n_faces,): above 1 for clear glass, which lets less light through at flat angles, by
+                Fresnel's formulas; ``transmittance`` is the mean over diffuse light. 0: one transmittance for all angles.
+                Glass reflects, emits and diffuses nothing here.
 
         Raises:
             SceneError: shapes, indices or values out of range; nothing left that has an area.
@@ -148,6 +155,7 @@ class Scene:
             photometric=photometric,
             transmittance=transmittance,
             diffuse_transmittance=diffuse_transmittance,
+            refractive_index=refractive_index,
             cameras=cameras,
             source=source,
         )
@@ -280,6 +288,8 @@ class Scene:
         """Add the panes to a digest, where there are any: other scenes keep the hashes of older versions."""
         if self.transmittance is not None:
             digest.update(_digest(self.transmittance).digest())
+        if self.refractive_index is not None:
+            digest.update(b"index" + _digest(self.refractive_index).digest())
         return digest
 
     def is_cut_of(self, scene: "Scene") -> bool:
@@ -300,6 +310,7 @@ class Scene:
             surface=self.surface[rows],
             transmittance=panes_or_none(None if self.transmittance is None else self.transmittance[rows]),
             diffuse_transmittance=panes_or_none(None if self.diffuse_transmittance is None else self.diffuse_transmittance[rows]),
+            refractive_index=panes_or_none(None if self.refractive_index is None else self.refractive_index[rows]),
             reflectance_paint=self.reflectance_paint and self.reflectance_paint.take(rows),
             emission_paint=self.emission_paint and self.emission_paint.take(rows),
             cut=self.cut and self.cut.take(rows),

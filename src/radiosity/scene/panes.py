@@ -10,7 +10,10 @@ import numpy as np
 from ..errors import SceneError
 from . import arguments
 from .back import Back
+from .clear_glass import mean_share
 
+HIGHEST = 4.0  # index of refraction
+ROUNDING = 1e-9  # of a transmittance
 LEAVE_OUT = "what lets all light through is not there: leave the surface out"
 
 
@@ -33,6 +36,43 @@ def transmittances(given, n: int, source: str) -> np.ndarray | None:
             f"{source}: transmittance has shape {value.shape}; expected one number or ({n},): one for each face and all bands"
         )
     return panes_or_none(np.broadcast_to(value, (n,)).copy())
+
+
+def indices(given, n: int, source: str) -> np.ndarray | None:
+    """Return the index of refraction of each face, (n,) float64, 0 where it has none; None where no face has one.
+
+    Raises:
+        SceneError: another shape.
+    """
+    if given is None:
+        return None
+    value = arguments.array(given, np.float64, "refractive_index", source)
+    if value.shape not in ((), (n,)):
+        raise SceneError(f"{source}: refractive_index has shape {value.shape}; expected one number or ({n},)")
+    return panes_or_none(np.broadcast_to(value, (n,)).copy())
+
+
+def check_glass(index: np.ndarray | None, transmittance: np.ndarray | None, others, surface, names, source) -> None:
+    """Refuse indices of refraction out of range, and glass that lets nothing through, or does anything else to light.
+
+    Args:
+        index: (n_faces,) or None.
+        others: (n_faces, n_bands) each, what must be 0 of glass.
+    """
+    if index is None:
+        return
+    through = np.zeros(len(index)) if transmittance is None else transmittance
+    for face in np.flatnonzero(index != 0):
+        where = f"{source}: refractive index of face {face} (surface '{names[surface[face]]}') is {index[face]:g}"
+        if not 1 < index[face] <= HIGHEST:
+            raise SceneError(f"{where}; it must lie above 1, up to {HIGHEST:g}, or be 0 for none")
+        most = float(mean_share(1.0, float(index[face])))
+        if not 0 < through[face] <= most + ROUNDING:
+            text = f"glass of this index lets at most {most:.3f} of diffuse light through"
+            raise SceneError(f"{where}, and its transmittance {through[face]:g}; {text}, and must let some")
+        if any(value[face].any() for value in others):
+            text = "clear glass reflects, emits and diffuses nothing here: set these to 0, or leave the index out"
+            raise SceneError(f"{where}; {text}")
 
 
 def diffuse_transmittances(given, n: int, source: str) -> np.ndarray | None:

@@ -27,6 +27,7 @@ class Material:
         given: the user's own .toml sets the reflectance, below 1: it is taken as it is.
         origin: the file that sets the reflectance, where it is another one than the scene's.
         transmittance: the share of light that goes straight on through a clear pane, from either side.
+        refractive_index: above 1: clear glass, whose transmittance, given as its mean over diffuse light, depends on the angle.
         diffuse_transmittance: the share of light on either side that leaves the other side in all directions; None: nothing does.
     """
 
@@ -40,6 +41,7 @@ class Material:
     origin: str = ""
     transmittance: float = 0.0
     diffuse_transmittance: tuple[float, ...] | None = None
+    refractive_index: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -82,6 +82,8 @@ def _equal_rows(scene: Scene, one, two) -> np.ndarray:
         same &= (value[one] == value[two]).all(axis=1)
     if scene.transmittance is not None:
         same &= scene.transmittance[one] == scene.transmittance[two]
+    if scene.refractive_index is not None:
+        same &= scene.refractive_index[one] == scene.refractive_index[two]
     if scene.diffuse_transmittance is not None:
         same &= (scene.diffuse_transmittance[one] == scene.diffuse_transmittance[two]).all(axis=1)
     return same

@@ -131,6 +131,10 @@ class Receivers(Packets):
         mixed = (mixed ^ (mixed >> 15)) * UInt32(0x846CA68B)
         return self.types.Array2u(patch, (mixed ^ (mixed >> 16)) & PLACES)
 
+    def stopped(self, record, cosine):
+        """Sensors take light from all directions alike."""
+        return None
+
     def frame(self, record):
         frame = Frame.read(self.types, self._records, record[0])
         return frame, lambda u: (self.types.Float(0), self.types.Float(0))

@@ -15,7 +15,18 @@ from ..scene.paint import Paint
 from ..scene.sampler import Sampler
 from ..scene.sensor_request import SensorRequest
 from . import stored_lights
-from .npz import CUT_ARRAYS, DIFFUSERS, FORMAT_OF_DIFFUSERS, FORMAT_OF_PANES, OWN_ARRAYS, PAINT_ARRAYS, PANES, SCENE_ARRAYS
+from .npz import (
+    CUT_ARRAYS,
+    DIFFUSERS,
+    FORMAT_OF_DIFFUSERS,
+    FORMAT_OF_GLASS,
+    FORMAT_OF_PANES,
+    GLASS,
+    OWN_ARRAYS,
+    PAINT_ARRAYS,
+    PANES,
+    SCENE_ARRAYS,
+)
 
 
 def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -59,6 +70,7 @@ def stored(patches: Patches) -> tuple[dict[str, Any], dict[str, Any]]:
     for key, value, number in (
         (PANES, scene.transmittance, FORMAT_OF_PANES),
         (DIFFUSERS, scene.diffuse_transmittance, FORMAT_OF_DIFFUSERS),
+        (GLASS, scene.refractive_index, FORMAT_OF_GLASS),
     ):
         if value is not None:
             arrays[key], meta["format"] = value, number
@@ -89,6 +101,7 @@ def restored(arrays: dict[str, Any], meta: dict[str, Any]) -> Patches:
         lights=stored_lights.restored(arrays, described["lights"]) if "lights" in described else Lights(),
         transmittance=arrays.get(PANES),
         diffuse_transmittance=arrays.get(DIFFUSERS),
+        refractive_index=arrays.get(GLASS),
         cut=Cut(described["cut"], *(arrays[f"cut_{name}"] for name in CUT_ARRAYS)) if "cut" in described else None,
         sensors=tuple(SensorRequest.of(facts) for facts in described.get("sensors", ())),
     )

@@ -100,6 +100,11 @@ def _scene(scene: Scene) -> None:
         for name, value in (("cut_face", scene.cut.face), ("cut_region", scene.cut.region)):
             _array(name, value, "i", (n,))
             _that((value >= 0).all(), f"{name} out of range")
+    if scene.refractive_index is not None:
+        index = scene.refractive_index
+        _array("refractive_index", index, "f", (n,))
+        glass = (index > 1) & (index <= panes.HIGHEST) & (scene.transmittance is not None)
+        _that(((index == 0) | glass).all(), "refractive_index out of range")
     for paint in (scene.reflectance_paint, scene.emission_paint):
         if paint is not None:
             _paint(paint, n, bands)

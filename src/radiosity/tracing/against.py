@@ -36,12 +36,13 @@ def light_along(geometry: Geometry, origin, direction, visit: Visit, sums: tuple
     def body(origin, going, travelled, *sums):
         near, far = both_sides(geometry, origin, direction, coherent, going)
         face = dr.gather(UInt32, geometry.faces.primitive_faces, near.primitive, going & near.valid)
-        passed = dr.full(Bool, False, dr.width(going)) if panes is None else panes.passed(words, face, going & near.valid)
+        frame, passed = Frame.of(geometry, face), dr.full(Bool, False, dr.width(going))
+        if panes is not None:
+            passed = panes.passed(words, face, going & near.valid, direction, frame.normal)
         goes_on = passed | (going & far.valid & far.passes)
         distance = travelled + near.distance
         met = going & ~passed
         sums = visit(replace(near, distance=distance), met & ~goes_on, met, *sums)
-        frame = Frame.of(geometry, face)
         onward = frame.normal * dr.select(near.front, Float(-1), Float(1))
         step = before(origin + direction * near.distance, onward, frame.offset)
         return dr.select(goes_on, step, origin), goes_on, dr.select(going, distance, travelled), *sums

@@ -62,7 +62,7 @@ class Geometry:
         if self.ties is not None:
             self.ties.prepare()
         if self.panes is not None:
-            _ = self.panes.thresholds
+            _ = self.panes.thresholds, self.panes.angles
 
     @cached_property
     def ties(self) -> Ties | None:

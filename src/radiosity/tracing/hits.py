@@ -60,7 +60,7 @@ def first_hit(geometry: Geometry, origin, direction, *, coherent: bool = False, 
         if panes is not None:
             met = going & new.valid
             face = dr.gather(UInt32, geometry.faces.primitive_faces, new.primitive, met)
-            passes |= panes.passed(words, face, met)
+            passes |= panes.passed(words, face, met, direction, normal)
         done = going & ~passes
         travelled = dr.select(going, hit[5] + new.distance, hit[5])
         kept = [dr.select(done, value, old) for value, old in zip(_fields(new), hit, strict=True)]

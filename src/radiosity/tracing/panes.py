@@ -19,6 +19,7 @@ import numpy as np
 from ..device.backend import Device, upload
 from ..sampling.numbers.random import philox
 from ..scene.model import Scene
+from .angles import Angles
 
 WORD = (0x50414E45, 0x53524159)  # the key of both hashes: any two words do
 ONE = 2.0**32
@@ -30,6 +31,11 @@ class Panes:
 
     scene: Scene
     device: Device
+
+    @cached_property
+    def angles(self) -> Angles | None:
+        """Tables of panes whose transmittance depends on the angle, where there are any."""
+        return Angles.of(self.scene, self.device)
 
     @cached_property
     def thresholds(self) -> Any:
@@ -51,8 +57,19 @@ class Panes:
             first, second, *_ = philox([first, second, *bits[6:]], WORD)
         return first, second
 
-    def passed(self, words, face, active):
-        """Return which lines go on through the faces that they meet; called in a kernel."""
+    def passed(self, words, face, active, direction, normal):
+        """Return which lines go on through the faces that they meet; called in a kernel.
+
+        Args:
+            direction: of the lines, of unit length.
+            normal: of the faces, of any length.
+        """
         UInt32 = self.device.types.UInt32
         drawn = philox([*words, face, UInt32(0)], WORD)[0]
-        return active & (drawn < dr.gather(UInt32, self.thresholds, face, active))
+        passed = active & (drawn < dr.gather(UInt32, self.thresholds, face, active))
+        if self.angles is None:
+            return passed
+        cosine = dr.abs(dr.dot(direction, normal)) * dr.rsqrt(dr.squared_norm(normal))
+        by_angle, share = self.angles.share(face, cosine, active)
+        Float = self.device.types.Float
+        return dr.select(by_angle, active & (Float(drawn >> 8) * 2.0**-24 < share), passed)

@@ -1,6 +1,6 @@
 """Ray generation: functions, called in kernels, that make the first ray of a line from a patch or face."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
@@ -63,7 +63,8 @@ class Frame:
     """A face and the side that lines leave from, see `Geometry.face_records`.
 
     It has the origin, the edges of a cell, the tangents, and the normal, which points away from the side where ``side`` is -1.
-    ``offset`` is the least distance of the lines' origins from the face.
+    ``offset`` is the least distance of the lines' origins from the face. ``turned``, where it is not None, makes the squared sine
+    of a line's angle of a number: lines of glass are not cosine distributed (`tracing.angles`).
     """
 
     origin: Any
@@ -74,11 +75,16 @@ class Frame:
     normal: Any
     side: Any
     offset: Any
+    turned: Any = None
 
     @staticmethod
     def of(geometry: Geometry, face) -> "Frame":
         """Make the frame of a face number, whose top bit is the back."""
-        return Frame.read(geometry.device.types, geometry.face_records, face)
+        frame = Frame.read(geometry.device.types, geometry.face_records, face)
+        angles = None if geometry.panes is None else geometry.panes.angles
+        if angles is None:
+            return frame
+        return replace(frame, turned=lambda number: angles.direction(face & (BACK - 1), number))
 
     @staticmethod
     def read(types, records, face) -> "Frame":
@@ -91,7 +97,7 @@ class Frame:
 
     def leave(self, s, t, numbers):
         """Return origin and cosine distributed direction of a line from a point of the face, whose coordinates are in cells."""
-        dx, dy, dz = hemisphere(numbers[0], numbers[1])
+        dx, dy, dz = hemisphere(numbers[0], numbers[1] if self.turned is None else self.turned(numbers[1]))
         direction = self.tangent * dx + self.bitangent * dy + self.normal * (dz * self.side)
         return before(self.origin + self.first * s + self.second * t, self.normal * self.side, self.offset), direction
 

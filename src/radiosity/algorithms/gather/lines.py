@@ -178,6 +178,8 @@ class Lines:
             s, t = position_of(u)
             origin = before(frame.origin + frame.first * s + frame.second * t, normal, frame.offset)
             brought, direction = self.targets.brought(origin, normal, row, u)
+            stopped = packets.stopped(record, dr.dot(direction, normal))
+            brought = brought if stopped is None else [value * stopped for value in brought]
             if squares:
                 return (number + 1, *_squared(sums, brought))
             fixed = [self._fixed(types.UInt64, value * UNITS + 0.5) for value in brought]

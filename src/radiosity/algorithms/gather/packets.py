@@ -13,7 +13,7 @@ import numpy as np
 from ...device.backend import upload
 from ...patches.model import Patches
 from ...tracing.geometry import Geometry
-from ...tracing.ray_generation import Frame, position
+from ...tracing.ray_generation import BACK, Frame, position
 
 SIZE = 16
 ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # in place of a place: the line hit nothing, or an absorbing back
@@ -133,6 +133,16 @@ class Packets:
     def record(self, patch):
         """Return the two words of patches, see `Geometry.patch_records`; called in a kernel."""
         return dr.gather(self.types.Array2u, self.geometry.patch_records, patch)
+
+    def stopped(self, record, cosine):
+        """Return how much more light patches take from directions than of diffuse light (`tracing.angles`); None: equally much.
+
+        It is called in a kernel.
+        """
+        panes = self.geometry.panes
+        if panes is None or panes.angles is None:
+            return None
+        return panes.angles.stopped(record[0] & (BACK - 1), cosine)
 
     def frame(self, record):
         """Return the frame of patches' faces, and a function from numbers to a place on them; called in a kernel."""

@@ -51,7 +51,8 @@ class Targets:
     @property
     def small(self) -> bool:
         """True where values are bounded, so that 32 bits hold them in fixed point."""
-        return self.sky is None and self.chances.beams is None
+        panes = self.packets.geometry.panes
+        return self.sky is None and self.chances.beams is None and (panes is None or panes.angles is None)
 
     # ---- cosine lines ----------------------------------------------------------------------------------------------
 

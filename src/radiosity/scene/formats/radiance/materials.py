@@ -85,7 +85,8 @@ class Finisher:
         if not (index > 1 and (numbers[:3] >= 0).all() and (numbers[:3] <= 1).all()):
             self.fault(one, f"glass '{one.name}' needs transmissivities from 0 to 1, and an index of refraction above 1")
             return Material()
-        return replace(self._pane(one, clear_share(numbers[:3], index), np.zeros(3)), diffuse=False)
+        pane = self._pane(one, clear_share(numbers[:3], index), np.zeros(3))
+        return replace(pane, diffuse=False, refractive_index=float(index) if pane.transmittance > 0 else 0.0)
 
     def _trans(self, one: Primitive, numbers, chain: Chain) -> Material:
         """Trans: what is not mirrored is reflected diffusely, or goes through: a share straight on, the rest diffusely."""
@@ -131,7 +132,7 @@ class Finisher:
             self.told.add(told.ILLUMS, one.name)
         if other is None:
             return replace(light, back=Back.OPEN) if any(light.emission) else None
-        return replace(other, emission=light.emission, back_emission=(0.0,))
+        return replace(other, emission=light.emission, back_emission=(0.0,), refractive_index=0.0)
 
 
 def _through(values: np.ndarray) -> tuple[float, ...] | None:

@@ -20,7 +20,7 @@ from ..units import UNITS
 from .daylight import daylight_of
 from .heat import check_bands, heat_of, reflecting
 from .luminaires import luminaires_of, warn_of_y_up
-from .panes import check_pane
+from .panes import check_pane, clear_light
 from .sensors import sensors_of
 
 BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
@@ -126,8 +126,9 @@ class Looks:
                 of_side = {"reflectance": tuple(entry.reflectance), "back_reflectance": None, "diffuse": True}
                 material = replace(material, **of_side, given=max(entry.reflectance) < 1, origin=self.source)
                 part = replace(part, color=None, texture=None)
+                material = replace(material, refractive_index=0.0 if any(entry.reflectance) else material.refractive_index)
             if entry.transmittance is not None:
-                material = replace(material, transmittance=entry.transmittance)
+                material = replace(material, **clear_light(entry, part.name, self.source))
                 clear = entry.transmittance > 0
             if entry.diffuse_transmittance is not None:
                 some = any(entry.diffuse_transmittance)

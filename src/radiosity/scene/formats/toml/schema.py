@@ -7,6 +7,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from ....errors import SceneError, shown
 from ...heat import HOTTEST, MOST_EDGES
+from ...panes import HIGHEST
 
 Unit = Literal["m", "cm", "mm", "in", "ft"]
 Positive = Annotated[float, Field(gt=0)]
@@ -73,6 +74,7 @@ class Surface(_Table):
     reflectance: Bands | None = None
     transmittance: Annotated[NotNegative, AfterValidator(_clear)] | None = None
     diffuse_transmittance: Bands | None = None
+    refractive_index: Annotated[float, Field(gt=1, le=HIGHEST)] | None = None
     emission: Bands | None = None
     radiance: Bands | None = None
     power: Bands | None = None
@@ -88,6 +90,8 @@ class Surface(_Table):
 
     @model_validator(mode="after")
     def _once(self) -> "Surface":
+        if self.refractive_index is not None and self.transmittance is None:
+            raise ValueError("refractive_index is of clear glass; give its transmittance at right angles, too")
         for keys in (("emission", "radiance", "power"), ("sides", "back"), ("temperature", "flux", "adiabatic")):
             given = [key for key in keys if getattr(self, key) is not None]
             if len(given) > 1:
