@@ -187,6 +187,18 @@ def test_lamps_without_area_are_kept_or_named(tmp_path):
         assert sun.direction * 2**0.5 == pytest.approx([0, 1, -1] if turned else [0, 1, 1], abs=1e-6)
 
 
+def test_a_uniform_sky_and_openings_stay_in_a_toml(tmp_path):
+    window = np.array([[0.0, 0, 1], [1, 0, 1], [1, 0, 2], [0, 0, 2]])
+    scene = rd.load_scene("room")
+    scene = replace(scene, photometric=True).with_lights(sky=rd.uniform_sky(5000, name="haze"), openings=[window])
+    read, told = again(scene, tmp_path / "x.toml")
+    assert read.lights.sky.name == "haze"
+    assert read.lights.sky.horizontal == pytest.approx([5000])
+    assert read.lights.openings == pytest.approx(scene.lights.openings)
+    _, told = again(replace(scene, lights=replace(scene.lights, sky=rd.cie_sky("overcast", 5000))), tmp_path / "y.toml")
+    assert any("skies that are not uniform are left out" in text for text in told)
+
+
 def test_a_spot_of_gltf_is_one_again(tmp_path):
     from radiosity.scene.lights.webs import cone
 

@@ -2492,4 +2492,18 @@ MISTAKES = (
         ("test_convert.py",),
         "panes in glTF files reflect and let through other shares",
     ),
+    Mistake(
+        "report_page/markup.py",
+        "html.escape(UNSHOWN.sub(TURNING, str(value)))",
+        "UNSHOWN.sub(TURNING, str(value))",
+        ("test_report_page.py",),
+        "names of surfaces become markup of a report",
+    ),
+    Mistake(
+        "report_page/levels.py",
+        'np.eye(3)[1]) if kind == "z" else (np.eye(3)[0], -np.eye(3)[2])',
+        'np.eye(3)[1]) if kind == "z" else (np.eye(3)[0], np.eye(3)[2])',
+        ("test_report_page.py",),
+        "plans of scenes with y up are mirrored",
+    ),
 )
