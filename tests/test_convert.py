@@ -167,6 +167,25 @@ def test_a_pane_keeps_what_it_lets_through(tmp_path):
     assert any("become darker: 'pane'" in text for text in told)
 
 
+@pytest.mark.parametrize("clear", [0.0, 0.3])
+@pytest.mark.parametrize("suffix", [".glb", ".toml", ".obj"])
+def test_a_diffusing_pane_stays_one_or_is_named(suffix, clear, tmp_path):
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    bands = ("red", "green", "blue")
+    through = {"transmittance": clear, "diffuse_transmittance": [[0.3, 0.2, 0.1]]}
+    scene = rd.Scene.from_arrays(
+        corners, [[0, 1, 2, 3]], [[0.2, 0.15, 0.2]], 0, two_sided=True, names=["pane"], bands=bands, **through
+    )
+    read, told = again(scene, tmp_path / f"x{suffix}")
+    if suffix == ".obj":
+        assert any("panes become opaque: 'pane'" in text for text in told)
+        return
+    assert read.diffuse_transmittance == pytest.approx(scene.diffuse_transmittance)
+    assert read.reflectance == pytest.approx(scene.reflectance)
+    assert (read.transmittance is None) == (clear == 0)
+    assert clear == 0 or read.transmittance == pytest.approx([clear])
+
+
 def test_lamps_without_area_are_kept_or_named(tmp_path):
     lamps = [
         rd.point_light(position=(1, 1, 2), lumens=800, name="globe", color=(1, 0.5, 0.25)),

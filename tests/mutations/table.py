@@ -2487,8 +2487,8 @@ MISTAKES = (
     ),
     Mistake(
         "conversion/gltf_materials.py",
+        "share = passed * (1 - most) / (mean + passed)",
         "share = passed / (mean + passed)",
-        "share = passed",
         ("test_convert.py",),
         "panes in glTF files reflect and let through other shares",
     ),
