@@ -30,6 +30,7 @@ FLOORS = (  # a folder, or a file of the package's own folder, imports what is a
     "sensors",  # light at points: they run a solution's scene once more
     "lightmap",  # light at texels: a gather at each, and the files that hold them
     "viewer",  # a page in the browser: it shows cameras and false colours of pictures, sensors, and findings
+    "report_page",  # of a solution, for clients: its pictures, sensors and findings
     "lab",
     "",  # __init__.py of the package: the public names, which what is outside the core may use
     "cli",

@@ -145,6 +145,7 @@ def test_version_and_help(capsys):
         "render",
         "view",
         "lightmap",
+        "report",
         "compare",
         "convert",
         "check",
@@ -154,7 +155,7 @@ def test_version_and_help(capsys):
 
 
 @pytest.mark.parametrize(
-    "command", ["solve", "measure", "render", "view", "lightmap", "compare", "convert", "check", "experiment", "doctor"]
+    "command", ["solve", "measure", "render", "view", "lightmap", "report", "compare", "convert", "check", "experiment", "doctor"]
 )
 def test_help_of_each_command_explains_each_option(capsys, command):
     status, out, _ = run(capsys, command, "--help")

@@ -167,6 +167,25 @@ def test_a_pane_keeps_what_it_lets_through(tmp_path):
     assert any("become darker: 'pane'" in text for text in told)
 
 
+@pytest.mark.parametrize("clear", [0.0, 0.3])
+@pytest.mark.parametrize("suffix", [".glb", ".toml", ".obj"])
+def test_a_diffusing_pane_stays_one_or_is_named(suffix, clear, tmp_path):
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    bands = ("red", "green", "blue")
+    through = {"transmittance": clear, "diffuse_transmittance": [[0.3, 0.2, 0.1]]}
+    scene = rd.Scene.from_arrays(
+        corners, [[0, 1, 2, 3]], [[0.2, 0.15, 0.2]], 0, two_sided=True, names=["pane"], bands=bands, **through
+    )
+    read, told = again(scene, tmp_path / f"x{suffix}")
+    if suffix == ".obj":
+        assert any("panes become opaque: 'pane'" in text for text in told)
+        return
+    assert read.diffuse_transmittance == pytest.approx(scene.diffuse_transmittance)
+    assert read.reflectance == pytest.approx(scene.reflectance)
+    assert (read.transmittance is None) == (clear == 0)
+    assert clear == 0 or read.transmittance == pytest.approx([clear])
+
+
 def test_lamps_without_area_are_kept_or_named(tmp_path):
     lamps = [
         rd.point_light(position=(1, 1, 2), lumens=800, name="globe", color=(1, 0.5, 0.25)),
@@ -185,6 +204,18 @@ def test_lamps_without_area_are_kept_or_named(tmp_path):
         turned = suffix == ".glb"  # z-up becomes y-up
         assert lamp.position == pytest.approx([1, 2, -1] if turned else [1, 1, 2])
         assert sun.direction * 2**0.5 == pytest.approx([0, 1, -1] if turned else [0, 1, 1], abs=1e-6)
+
+
+def test_a_uniform_sky_and_openings_stay_in_a_toml(tmp_path):
+    window = np.array([[0.0, 0, 1], [1, 0, 1], [1, 0, 2], [0, 0, 2]])
+    scene = rd.load_scene("room")
+    scene = replace(scene, photometric=True).with_lights(sky=rd.uniform_sky(5000, name="haze"), openings=[window])
+    read, told = again(scene, tmp_path / "x.toml")
+    assert read.lights.sky.name == "haze"
+    assert read.lights.sky.horizontal == pytest.approx([5000])
+    assert read.lights.openings == pytest.approx(scene.lights.openings)
+    _, told = again(replace(scene, lights=replace(scene.lights, sky=rd.cie_sky("overcast", 5000))), tmp_path / "y.toml")
+    assert any("skies that are not uniform are left out" in text for text in told)
 
 
 def test_a_spot_of_gltf_is_one_again(tmp_path):

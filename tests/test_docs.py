@@ -55,6 +55,13 @@ def test_two_solutions_are_compared_as_the_page_shows(tmp_path, monkeypatch):
     assert (tmp_path / "difference.png").exists()
 
 
+def test_a_report_is_made_as_the_page_shows(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (block,) = blocks(DOCS / "reports.md")
+    exec(compile(block, "reports.md", "exec"), {"__name__": "reports"})
+    assert (tmp_path / "room.html").stat().st_size > 100_000
+
+
 def test_parts_of_a_run_are_merged_as_the_page_shows(tmp_path, monkeypatch):
     """To the bits of one run."""
     monkeypatch.chdir(tmp_path)

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from .lightmap.model import Lightmap
     from .method import BASELINES, PRESETS, Baseline, Method
     from .patches import Patches, subdivide
+    from .report_page.page import write_report
     from .run.adapt import adapt
     from .run.line_set.loading import load_lines
     from .run.line_set.model import LineSet
@@ -103,6 +104,7 @@ _HOMES = {
     "method": ("BASELINES", "PRESETS", "Baseline", "Method"),
     "patches": ("Patches", "subdivide"),
     "run.adapt": ("adapt",),
+    "report_page.page": ("write_report",),
     "run.line_set.loading": ("load_lines",),
     "run.line_set.model": ("LineSet",),
     "run.line_set.trace": ("trace_lines",),
@@ -195,6 +197,7 @@ __all__ = [
     "uniform_sky",
     "view",
     "view_factors",
+    "write_report",
 ]
 
 

@@ -2487,9 +2487,23 @@ MISTAKES = (
     ),
     Mistake(
         "conversion/gltf_materials.py",
+        "share = passed * (1 - most) / (mean + passed)",
         "share = passed / (mean + passed)",
-        "share = passed",
         ("test_convert.py",),
         "panes in glTF files reflect and let through other shares",
+    ),
+    Mistake(
+        "report_page/markup.py",
+        "html.escape(UNSHOWN.sub(TURNING, str(value)))",
+        "UNSHOWN.sub(TURNING, str(value))",
+        ("test_report_page.py",),
+        "names of surfaces become markup of a report",
+    ),
+    Mistake(
+        "report_page/levels.py",
+        'np.eye(3)[1]) if kind == "z" else (np.eye(3)[0], -np.eye(3)[2])',
+        'np.eye(3)[1]) if kind == "z" else (np.eye(3)[0], np.eye(3)[2])',
+        ("test_report_page.py",),
+        "plans of scenes with y up are mirrored",
     ),
 )

@@ -24,6 +24,7 @@ from .measure import measure
 from .methods import methods
 from .relight import relight
 from .render import render
+from .report import report
 from .solve import solve
 from .streams import say, silence
 from .view import view
@@ -59,6 +60,7 @@ for place, command in enumerate(
         render,
         view,
         lightmap,
+        report,
         compare,
         convert,
         check,

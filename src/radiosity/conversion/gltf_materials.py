@@ -17,6 +17,7 @@ from .told import Told
 
 ROUNDED = 2e-3  # of 1: a larger change by 8 bits is told
 STRENGTH, TRANSMISSION = "KHR_materials_emissive_strength", "KHR_materials_transmission"
+DIFFUSION = "KHR_materials_diffuse_transmission"
 CODES = {name: code for code, name in (WRAPS | FILTERS).items()}
 
 
@@ -40,10 +41,10 @@ class Materials:
         Args:
             images: numbers of the images of reflectance and of emission; -1 where there is none.
         """
-        colour, transmission = self._through(piece)
+        colour, extensions = self._through(piece)
         metal: dict = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
         material: dict = {"name": piece.name, "doubleSided": piece.back == Back.RADIATES}
-        radiance, extensions = _three(piece.emission) / np.pi, {}
+        radiance = _three(piece.emission) / np.pi
         if images[0] >= 0:
             metal["baseColorTexture"], scale = self._texture("reflectance", images[0], 0)
             colour = colour * scale
@@ -58,25 +59,32 @@ class Materials:
             material["emissiveFactor"] = (radiance / strength).tolist()
             if strength > 1:
                 extensions[STRENGTH] = {"emissiveStrength": strength}
-        if transmission:
-            extensions[TRANSMISSION] = {"transmissionFactor": transmission}
         if extensions:
             material["extensions"] = extensions
             self.used |= set(extensions)
         self.materials.append({**material, "pbrMetallicRoughness": metal})
         return len(self.materials) - 1
 
-    def _through(self, piece: Piece) -> tuple[np.ndarray, float]:
-        """The base colour and the share of transmission by which readers find a pane's reflectance and transmittance."""
-        reflectance = _three(piece.reflectance)
-        if not piece.transmittance:
-            return reflectance, 0.0
+    def _through(self, piece: Piece) -> tuple[np.ndarray, dict]:
+        """The base colour, and the extensions by which readers find a pane's reflectance and transmittances.
+
+        They take what is not transmitted of the colour as reflectance, and share both with the diffuse transmission.
+        """
+        reflectance, diffused = _three(piece.reflectance), _three(piece.diffused)
+        most = float(diffused.max())
+        if not piece.transmittance and not most:
+            return reflectance, {}
         passed, mean = piece.transmittance / NOT_MIRRORED, float(luminance_weights() @ reflectance)
-        share = passed / (mean + passed)
-        colour = reflectance / (1 - share) if mean else np.full(3, passed)
+        share = passed * (1 - most) / (mean + passed) if passed else 0.0
+        rest = 1 - share - most
+        colour = reflectance / rest if reflectance.any() else np.full(3, passed / (1 - most))
+        extensions = {TRANSMISSION: {"transmissionFactor": share}} if share else {}
+        if most:
+            factors = {"diffuseTransmissionFactor": most / (1 - share)}
+            extensions[DIFFUSION] = factors | {"diffuseTransmissionColorFactor": (diffused / most).tolist()}
         if float(luminance_weights() @ np.minimum(colour, 1.0)) * share * NOT_MIRRORED < piece.transmittance * (1 - 1e-9):
             self.told.add("panes that let more light through than the format can hold become darker", [piece.name])
-        return colour, share
+        return colour, extensions
 
     def _texture(self, what: str, number: int, coordinates: int) -> tuple[dict, float]:
         """The reference to an image, and what its values are divided by to lie in [0, 1]."""

@@ -23,7 +23,8 @@ class Piece:
         corners: (k, 4) int, their vertices as `Scene.faces` has them, turned round for backs.
         reflectance, emission: (n_bands,).
         back: what the back does.
-        transmittance: of a pane.
+        transmittance: the share of light that goes straight on through a pane.
+        diffused: (n_bands,), the share that leaves the other side of a pane in all directions.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Piece:
     emission: np.ndarray
     back: Back
     transmittance: float
+    diffused: np.ndarray
 
 
 def pieces(scene: Scene, told: Told, *, pairs: bool = True) -> list[Piece]:
@@ -49,24 +51,26 @@ def pieces(scene: Scene, told: Told, *, pairs: bool = True) -> list[Piece]:
     own = (scene.back == Back.RADIATES) & (
         (scene.back_reflectance != scene.reflectance) | (scene.back_emission != scene.emission)
     ).any(axis=1)
-    clear = np.zeros(scene.n_faces) if scene.transmittance is None else scene.transmittance
-    alike = own & ((clear > 0) | (not pairs))  # a pane is one face: light goes through it once
+    alike = own & (scene.panes | scene.diffusers | (not pairs))  # a pane is one face: light goes through it once
     told.add("backs that reflect or emit otherwise get the values of their fronts", called(scene, alike))
     own &= ~alike
     back = np.where(own, Back.ABSORBS, scene.back)
-    found = _grouped(scene, np.arange(scene.n_faces), scene.reflectance, scene.emission, back, clear, "")
+    found = _grouped(scene, np.arange(scene.n_faces), scene.reflectance, scene.emission, back, "")
     rows = np.flatnonzero(own)
     if len(rows):
         told.add(
             f"backs that reflect or emit otherwise than their fronts become surfaces of their own, called NAME{BEHIND}",
             called(scene, own),
         )
-        found += _grouped(scene, rows, scene.back_reflectance, scene.back_emission, back, clear, BEHIND)
+        found += _grouped(scene, rows, scene.back_reflectance, scene.back_emission, back, BEHIND)
     return sorted(found, key=lambda piece: piece.surface)
 
 
-def _grouped(scene: Scene, rows: np.ndarray, reflectance, emission, back, clear, tail: str) -> list[Piece]:
-    keys = np.column_stack([scene.surface, reflectance, emission, back, clear])[rows]
+def _grouped(scene: Scene, rows: np.ndarray, reflectance, emission, back, tail: str) -> list[Piece]:
+    clear = np.zeros(scene.n_faces) if scene.transmittance is None else scene.transmittance
+    none = np.zeros((scene.n_faces, scene.n_bands))
+    diffused = none if scene.diffuse_transmittance is None else none + scene.diffuse_transmittance
+    keys = np.column_stack([scene.surface, reflectance, emission, back, clear, diffused])[rows]
     _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     index = index.reshape(-1)
     count: dict[int, int] = {}
@@ -90,6 +94,7 @@ def _grouped(scene: Scene, rows: np.ndarray, reflectance, emission, back, clear,
                 emission[face],
                 Back(int(back[face])),
                 float(clear[face]),
+                diffused[face],
             )
         )
     return result
@@ -139,7 +144,7 @@ def tell_of_rest(scene: Scene, told: Told, holds: frozenset[str]) -> None:
             "lamps that shine to one side read back as shining alike to both",
             called(scene, single) if "emission" in holds else (),
         ),
-        ("panes", "panes become opaque", called(scene, scene.panes)),
+        ("panes", "panes become opaque", called(scene, scene.panes | scene.diffusers)),
         ("textures", "means take the place of textures and vertex colours", called(scene, np.any([~every, *paints], axis=0))),
         ("lights", "lights without area are left out", [light.name for light in lights.all]),
         ("openings", "openings for the sky are left out", openings),

@@ -67,9 +67,7 @@ def write(scene: Scene, path: Path, told: Told) -> None:
 
 def _entry(scene: Scene, piece: Piece, name: str) -> dict:
     entry: dict = {"name": name, "reflectance": piece.reflectance, "emission": piece.emission, "back": BACKS[piece.back]}
-    if piece.transmittance:
-        entry["transmittance"] = piece.transmittance
-    return entry | _of_surface(scene, piece.surface)
+    return entry | _through(piece) | _of_surface(scene, piece.surface)
 
 
 def _entries_beside(scene: Scene, parts: list[Piece], names: list[str]) -> list[dict]:
@@ -77,12 +75,16 @@ def _entries_beside(scene: Scene, parts: list[Piece], names: list[str]) -> list[
     found = []
     for piece, name in zip(parts, names, strict=True):
         entry: dict = {"name": name} | ({} if piece.back in (Back.ABSORBS, Back.RADIATES) else {"back": BACKS[piece.back]})
-        if piece.transmittance:
-            entry["transmittance"] = piece.transmittance
-        entry |= _of_surface(scene, piece.surface)
+        entry |= _through(piece) | _of_surface(scene, piece.surface)
         if len(entry) > 1:
             found.append(entry)
     return found
+
+
+def _through(piece: Piece) -> dict:
+    """What an entry says of light that goes through."""
+    clear = {"transmittance": piece.transmittance} if piece.transmittance else {}
+    return clear | ({"diffuse_transmittance": piece.diffused} if piece.diffused.any() else {})
 
 
 def _of_surface(scene: Scene, surface: int) -> dict:
@@ -162,7 +164,8 @@ def _far(scene: Scene, told: Told):
     rows = len(sky.radiance) // 2
     upper, lower = sky.radiance[rows:], sky.radiance[:rows]
     if np.ptp(upper) == 0 and not lower.any():
-        yield "sky", {"type": "uniform", "name": sky.name, "horizontal": float(sky.horizontal[0]), "up": sky.axes[2]}
+        level = float(sky.horizontal[0])
+        yield "sky", {"type": "uniform", "name": sky.name, "horizontal": level, "up": sky.axes[2], "north": sky.axes[0]}
     else:
         told.add("skies that are not uniform are left out; write [sky] anew", [sky.name])
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..image import bitmap
+from ..image import bitmap, tone
 from ..image.false_color import beside
-from ..image.picture import choose_camera, first_hits
+from ..image.picture import first_hits
 from ..scene import Camera
 from ..scene.up import up_axis
 from . import frame as frames
@@ -27,9 +27,9 @@ def cameras(subject: Subject) -> dict[str, Camera]:
     own = {f"camera {i}": camera for i, camera in enumerate(subject.patches.scene.cameras)}
     if own:
         return own
-    if subject.solution is not None:
-        return {"fitted": choose_camera(subject.solution, None, None, None, first_hits)}
-    return {"fitted": fitted(subject.patches, np.ones(len(subject.patches)), first_hits)}
+    solution = subject.solution
+    light = np.ones(len(subject.patches)) if solution is None else tone.luminance(np.asarray(solution.radiosity, np.float64))
+    return {"fitted": fitted(subject.patches, light, first_hits)}
 
 
 def stand(server: Server, camera: Camera, subject: Subject, frame: Frame) -> None:

@@ -1,0 +1,55 @@
+"""Plan views in false colours with isolines."""
+
+import numpy as np
+
+from ..solution.model import Solution
+from .drawing import drawn, new_figure
+from .levels import Plan, plans
+from .markup import Markup, element, figure, section
+from .words import Words, number
+
+LEVELS = 8  # isolines at most
+WIDTH, HIGHEST = 7.0, 8.5  # inches
+
+
+def plan_views(solution: Solution, wanted: tuple[str, ...]) -> Markup | None:
+    """Return a plan of each level surface; None where no surface is level.
+
+    Raises:
+        MethodError: a surface is not there, or not level.
+    """
+    words = Words.of(solution.patches.scene)
+    found = [plan for plan in plans(solution, wanted) if np.isfinite(plan.values).any()]
+    if not found:
+        return None
+    parts = [_drawn(plan, words) for plan in found]
+    intro = f"Level surfaces seen from above. Lines join points of equal {words.falling}; lengths are in metres."
+    return section("Plans", element("p", intro, class_="small"), *parts, kind="page")
+
+
+def _drawn(plan: Plan, words: Words) -> Markup:
+    left, right, bottom, top = plan.extent
+    tall = min(max((top - bottom) / (right - left) * (WIDTH - 1.4), 1.6) + 0.7, HIGHEST)
+    drawing = new_figure(WIDTH, tall)
+    axes = drawing.subplots()
+    isolines(axes, drawing, plan.values, plan.extent, f"{words.falling} [{words.falling_unit}]")
+    axes.set_xlabel(f"{plan.axes[0]} [m]")
+    axes.set_ylabel(f"{plan.axes[1]} [m]")
+    low, mean, high = (number(float(f(plan.values))) for f in (np.nanmin, np.nanmean, np.nanmax))
+    told = f"mean {mean} {words.falling_unit}, from {low} to {high}"
+    alt = f"Plan of {plan.name} in false colours with isolines of {words.falling}: {told}"
+    return figure(drawn(drawing, alt), f"{plan.name}, at a height of {plan.height:g} m, {number(plan.area)} m²: {told}")
+
+
+def isolines(axes, drawing, values: np.ndarray, extent, label: str) -> None:
+    """Draw values, (rows, columns), as colours with isolines and a colour bar; NaN stays white."""
+    shades = axes.imshow(values, origin="lower", extent=extent, cmap="viridis", interpolation="nearest", aspect="equal")
+    known = values[np.isfinite(values)]
+    if min(values.shape) > 1 and known.max() > known.min() * (1 + 1e-6):
+        left, right, bottom, top = extent
+        rows, columns = values.shape
+        x = left + (np.arange(columns) + 0.5) * (right - left) / columns
+        y = bottom + (np.arange(rows) + 0.5) * (top - bottom) / rows
+        lines = axes.contour(x, y, np.ma.masked_invalid(values), levels=LEVELS, colors="white", linewidths=0.8)
+        axes.clabel(lines, fmt="%g", fontsize=7)
+    drawing.colorbar(shades, ax=axes, label=label)
