@@ -7,7 +7,8 @@ import numpy as np
 
 from ..image import bitmap
 from ..image.false_color import beside
-from ..image.picture import choose_camera, first_hits
+from ..image.picture import first_hits
+from ..image.tone import luminance
 from ..scene import Camera
 from ..scene.up import up_axis
 from . import frame as frames
@@ -27,9 +28,8 @@ def cameras(subject: Subject) -> dict[str, Camera]:
     own = {f"camera {i}": camera for i, camera in enumerate(subject.patches.scene.cameras)}
     if own:
         return own
-    if subject.solution is not None:
-        return {"fitted": choose_camera(subject.solution, None, None, None, first_hits)}
-    return {"fitted": fitted(subject.patches, np.ones(len(subject.patches)), first_hits)}
+    light = np.ones(len(subject.patches)) if subject.solution is None else luminance(subject.solution.radiosity)
+    return {"fitted": fitted(subject.patches, light, first_hits)}
 
 
 def stand(server: Server, camera: Camera, subject: Subject, frame: Frame) -> None:
