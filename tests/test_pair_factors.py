@@ -1,0 +1,158 @@
+"""Exact factors and visible shares of many pairs on the device, and the errors that view factors by polygons state.
+
+Two tests of coverage have an alpha of 1e-3 each: the sum of squared errors over stated variances is chi-square distributed, but for
+entries that depend on each other, so it is held between the quantiles of as many degrees of freedom as there are groups.
+"""
+
+import numpy as np
+import pytest
+from enclosures import cube
+from test_view_factors import room, with_a_cylinder
+
+import radiosity as rd
+from radiosity.device.backend import choose
+from radiosity.exchange.from_polygons import FacingPairs
+from radiosity.exchange.visible_shares import Pairs, visible_shares
+from radiosity.factors.polygons import exchange, kernel
+from radiosity.factors.polygons.kernel import PairKernel
+from radiosity.sampling.streams import Seed
+from radiosity.scene.shapes import quad
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.pair_rays import PairRays
+from validation.shapes import scene
+
+
+def scattered(count: int) -> rd.Patches:
+    """Parallelograms and triangles of many sizes and aspects, which cut each other's planes."""
+    draw = np.random.default_rng(2)
+    vertices, faces = [], []
+    for number in range(count):
+        origin, first, second = draw.uniform(-3, 3, 3), *(draw.normal(size=(2, 3)) * 0.3 * np.exp(0.7 * draw.normal(size=(2, 1))))
+        corners = [origin, origin + first, origin + first + second, origin + second]
+        corners = corners if number % 2 else [corners[0], corners[1], corners[3]]
+        faces.append([len(vertices) + i for i in range(len(corners))] + [-1] * (4 - len(corners)))
+        vertices += corners
+    return rd.subdivide(rd.Scene.from_arrays(np.array(vertices), np.array(faces), 0.5, 0.0), cells=1)
+
+
+@pytest.mark.parametrize("patches", [scattered(90), rd.subdivide(with_a_cylinder(), cells=2)], ids=["scattered", "room"])
+def test_exact_factors_on_the_device_are_those_of_the_contour(patches):
+    one, other = np.triu_indices(len(patches), 1)
+    found, exact = PairKernel(patches, choose()).values(one, other), exchange(patches.corners[one], patches.corners[other])
+    smaller = np.minimum(patches.area[one], patches.area[other])
+    assert np.array_equal(found > 0, exact > 0)
+    assert (np.abs(found - exact) <= 3e-7 * exact + 1e-9 * smaller).all()
+    assert (exact > 0).sum() > 500
+
+
+def test_every_way_of_integration_is_taken(monkeypatch):
+    """Codes of all rules are met, or the test above would not hold them."""
+    met = set()
+    for patches in (scattered(90), rd.subdivide(with_a_cylinder(), cells=2)):
+        rows = PairKernel(patches, choose())
+        taken = rows._values
+        monkeypatch.setattr(
+            PairKernel, "_values", lambda self, i, j, code, taken=taken: met.update(code.tolist()) or taken(i, j, code)
+        )
+        rows.rows(0, len(patches))
+        monkeypatch.undo()
+    points = {order + side for order in kernel.POINTS for side in (kernel.AHEAD, kernel.BEHIND)}
+    assert met == {kernel.NEAR, *kernel.ORDERS, *points}
+
+
+def test_rows_are_the_same_in_whatever_pieces():
+    patches = rd.subdivide(with_a_cylinder(), cells=2)
+    rows = PairKernel(patches, choose())
+    whole = rows.rows(0, len(patches))
+    parts = [rows.rows(at, min(at + 7, len(patches))) for at in range(0, len(patches), 7)]
+    for together, pieces in zip(whole, zip(*parts, strict=True), strict=True):
+        assert np.array_equal(together, np.concatenate(pieces))
+
+
+def test_shares_are_the_same_in_whatever_pieces(monkeypatch):
+    from radiosity.tracing import pair_rays
+
+    patches = rd.subdivide(with_a_cylinder(), cells=2)
+    whole = rd.view_factors(patches, rays=100_000, group="patch", method="polygons", seed=3)
+    monkeypatch.setattr(pair_rays, "LANES", 1000)
+    monkeypatch.setattr(kernel, "LANES", 1000)
+    parts = rd.view_factors(patches, rays=100_000, group="patch", method="polygons", seed=3)
+    assert np.array_equal(whole.values, parts.values)
+    assert np.array_equal(whole.errors, parts.errors)
+
+
+def half_hidden() -> rd.Scene:
+    """Two facing squares, and a screen between that hides exactly half of each pair by symmetry, backs radiating to neither."""
+    low, high = quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0, 0, 1), (0, 1, 0), (1, 0, 0))
+    screen = quad((-9, -9, 0.5), (9.5, 0, 0), (0, 19, 0))  # all with x below one half, in the middle plane
+    return scene(("low", 0.5, 1.0, [low]), ("high", 0.5, 0.0, [high]), ("screen", 0.5, 0.0, [screen]))
+
+
+@pytest.mark.parametrize("rays", [1, 2, 40, 2000])
+def test_shares_have_no_bias(rays):
+    """The middle of a ray has x above one half as often as below: the share is one half. 5 standard errors: p < 1e-6."""
+    patches = rd.subdivide(half_hidden(), cells=1)
+    geometry = Geometry(patches, choose())
+    caster, pairs = PairRays(geometry), FacingPairs.of(geometry, 3)
+    here = np.flatnonzero((pairs.one == 0) & (pairs.other == 1))
+    alone = Pairs(pairs.one[here], pairs.other[here], pairs.values[here], np.ones(1))
+    found = np.array([visible_shares(caster, alone, rays, 8, Seed(seed)).values[0] for seed in range(60)])
+    assert abs(found.mean() - 0.5) < 5 * max(found.std(), 1e-3) / np.sqrt(60)
+    assert found.std() < 3 / np.sqrt(rays)
+
+
+def test_neighbours_choose_rays_without_a_bias():
+    """Mean shares of many seeds, with few rays and with many, agree: 5 standard errors of the sum over pairs."""
+    patches = rd.subdivide(with_a_cylinder(), cells=3)
+    geometry = Geometry(patches, choose())
+    pairs, caster = FacingPairs.of(geometry, len(patches)), PairRays(geometry)
+    given = Pairs(pairs.one, pairs.other, pairs.values, pairs.values**2)
+    m = len(pairs.one)
+    few = np.array([pairs.values @ visible_shares(caster, given, 2 * m, 8, Seed(seed)).values for seed in range(40)])
+    many = [pairs.values @ visible_shares(caster, given, 200 * m, 8, Seed(seed)).values for seed in range(4)]
+    assert abs(few.mean() - np.mean(many)) < 5 * np.hypot(few.std(ddof=1) / np.sqrt(40), np.std(many, ddof=1) / 2)
+
+
+@pytest.mark.parametrize(("rays", "group"), [(30_000, "patch"), (60_000, "patch"), (300_000, "patch"), (300_000, "surface")])
+def test_stated_errors_are_the_true_ones(rays, group):
+    """RMS of true errors over RMS of stated ones, six seeds: within 12 % between patches, where thousands of pairs tell it.
+
+    Between seven surfaces 21 pairs of six seeds tell it to about 7 %: within 25 %.
+    """
+    patches = rd.subdivide(with_a_cylinder(), cells=3)
+    truth = rd.view_factors(patches, rays=6_000_000, group=group, method="polygons", seed=99)
+    made = [rd.view_factors(patches, rays=rays, group=group, method="polygons", seed=seed) for seed in range(6)]
+    off = sum(((one.matrix - truth.matrix) ** 2).sum() for one in made)
+    stated = sum((one.standard_error**2).sum() + (truth.standard_error**2).sum() for one in made)
+    assert np.sqrt(off / stated) == pytest.approx(1, abs=0.12 if group == "patch" else 0.25)
+
+
+def test_what_nothing_hides_is_certain():
+    """Convex rooms of many patches, with a ray a pair."""
+    patches = rd.subdivide(cube(), cells=8)
+    factors = rd.view_factors(patches, rays=100_000, group="patch", method="polygons")
+    assert factors.standard_error.max() < 1e-6
+    assert np.abs(factors.row_sums - 1).max() < 1e-12
+    assert factors.matrix[np.arange(384), np.arange(384)].max() == 0
+
+
+def test_many_groups_close_and_are_reciprocal(monkeypatch):
+    from radiosity.exchange import closing, from_polygons
+
+    patches = rd.subdivide(with_a_cylinder(), cells=3)
+    usual = rd.view_factors(patches, rays=60_000, group="patch", method="polygons")
+    for module in (closing, from_polygons):
+        monkeypatch.setattr(module, "SAMPLED", 10)
+    many = rd.view_factors(patches, rays=60_000, group="patch", method="polygons")
+    assert (usual.restoration, many.restoration) == ("least squares", "scaling")
+    assert np.abs(many.row_sums - 1).max() < 1e-12
+    exchange_areas = many.area[:, None] * many.matrix
+    assert np.abs(exchange_areas - exchange_areas.T).max() < 1e-6
+    assert many.matrix == pytest.approx(usual.matrix, abs=1e-6)
+
+
+def test_more_pairs_than_memory_are_refused_with_a_way_out():
+    patches = rd.subdivide(room(), cells=12)
+    with pytest.raises(rd.MethodError, match=r"pairs of 864 patches would take about .* take method='lines', or fewer patches"):
+        rd.view_factors(patches, group="patch", method="polygons", memory="20M")
+    assert rd.view_factors(patches, rays=1_000_000, group="patch", memory="60M").method == "lines"
