@@ -92,15 +92,15 @@ class Sample:
         """The number of pairs that face each other."""
         return self.each * len(self.one)
 
-    def sums(self, groups: Groups, seed: Seed) -> tuple[float, float]:
-        """Return the summed variances of all factors for one ray a pair, and their summed squares, as if of patches."""
+    def variance(self, groups: Groups, seed: Seed) -> float:
+        """Return the summed variances of all factors for one ray a pair."""
         if not len(self.one):
-            return 0.0, 0.0
+            return 0.0
         sums = PairRays(self.geometry).cast(self.one, self.other, self.values, DRAWN_RAYS, 0, seed.value)
         share = np.clip(sums.arriving / np.maximum(sums.weights, np.finfo(np.float32).tiny), 0, 1).astype(np.float64)
         area = groups.area(self.geometry.patches)[groups.labels]
         square = self.each * self.values**2 * (1 / area[self.one] ** 2 + 1 / area[self.other] ** 2)
-        return float((square * share * (1 - share)).sum()) * DRAWN_RAYS / (DRAWN_RAYS - 1), float((square * share**2).sum())
+        return float((square * share * (1 - share)).sum()) * DRAWN_RAYS / (DRAWN_RAYS - 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,15 +127,14 @@ class Choice:
         return Choice(sample, spent) if spent.pair >= 1 and fits else None
 
     def by_counts(self, groups: Groups, work: float, seed: Seed) -> dict[str, float]:
-        """Return the errors of lines and of polygons between many groups, relative to all factors."""
+        """Return the errors of lines and of polygons between many groups: roots of summed variances."""
         area = groups.area(self.sample.geometry.patches)
-        of_pairs, square = self.sample.sums(groups, seed)
+        of_pairs = self.sample.variance(groups, seed)
         of_lines = COUNTED * float((area.sum() / (work * area)).sum())
-        variances = {"lines": of_lines, "polygons": of_pairs / self.spent.pair**RAY_SLOPE}
-        return {name: float(np.sqrt(value / max(square, np.finfo(float).tiny))) for name, value in variances.items()}
+        return {"lines": float(np.sqrt(of_lines)), "polygons": float(np.sqrt(of_pairs / self.spent.pair**RAY_SLOPE))}
 
     def by_pilot(self, pilot: ViewFactors, groups: Groups, work: float, seed: Seed) -> dict[str, float]:
-        """Return the errors of lines and of polygons between few groups, relative to all factors.
+        """Return the errors of lines and of polygons between few groups: roots of summed variances.
 
         Args:
             pilot: factors of some lines, restored.
@@ -144,10 +143,9 @@ class Choice:
         off = (left_out(geometry, groups)[pilot.rows] * pilot.values) ** 2
         lines = float(np.sqrt(np.nansum(pilot.errors**2) * (pilot.rays / work) ** SLOPE + off.sum()))
         gone = (pilot.escaped * (1 - pilot.escaped) + pilot.lost * (1 - pilot.lost))[groups.labels]
-        of_pairs = self.sample.sums(groups, seed)[0] / spent.pair**RAY_SLOPE
+        of_pairs = self.sample.variance(groups, seed) / spent.pair**RAY_SLOPE
         share = geometry.patches.area / pilot.area[groups.labels]
         of_missed = float((share**2 * gone).sum()) / (replicates * spent.missed)
         if not (pilot.escaped.any() and pilot.lost.any()):  # closure then tells it as well as the pairs are known
             of_missed = min(of_missed, of_pairs)
-        whole = float(np.sqrt((pilot.values**2).sum()))
-        return {"lines": lines / whole, "polygons": float(np.sqrt(of_pairs + of_missed)) / whole}
+        return {"lines": lines, "polygons": float(np.sqrt(of_pairs + of_missed))}

@@ -28,6 +28,7 @@ from .visible_shares import Pairs, Shares, visible_shares
 PAIR = 160  # bytes of a pair of patches that face each other, and of two of groups
 BETWEEN = 48  # bytes of two groups, in full matrices and in the table of factors
 EXACT = 1e-7  # relative error of exact factors
+LEAST = 1e-36  # m⁴: smaller variances would be zero in single precision
 FEW_LINES = 1 << 14  # lines of all patches that look for what escapes or is lost; where they find something there are more
 
 
@@ -110,9 +111,15 @@ def from_polygons(
     weight *= pairs.values * pairs.values
     shares = pairs.shares(weight, rays, replicates, seed)
     del weight
-    values = _between(one, other, pairs.values * shares.values, n, np.float64)
-    square = pairs.values**2 * (shares.variances + EXACT**2)
-    variances = _between(one, other, square, n, np.float64 if n <= SAMPLED else np.float32)
+    code = one.astype(np.int64) * n
+    code += other
+    del one, other
+    values = _between(code, pairs.values * shares.values, n, np.float64)
+    square = shares.variances + EXACT**2
+    square *= pairs.values
+    square *= pairs.values
+    variances = _between(code, np.maximum(square, LEAST), n, np.float64 if n <= SAMPLED else np.float32)
+    del code, square
     variances[np.diag_indices(n)] *= 2  # both directions of a pair are one number
     gone, of_gone, one_line, traced = _gone(geometry, groups, area, lines, replicates, seed)
     np.maximum(values, 0, out=values)
@@ -125,12 +132,24 @@ def _same(groups: Groups) -> bool:
     return bool((groups.labels == np.arange(len(groups.labels))).all())
 
 
-def _between(one: np.ndarray, other: np.ndarray, values: np.ndarray, n: int, kind) -> np.ndarray:
-    """Return sums between groups, (n, n), symmetric; what is within one counts twice, once each way."""
-    code = one.astype(np.int64) * n
-    code += other
-    result = np.bincount(code, values, n * n).reshape(n, n).astype(kind, copy=False)
-    result += result.T
+def _between(code: np.ndarray, values: np.ndarray, n: int, kind) -> np.ndarray:
+    """Return sums between groups, (n, n), symmetric; what is within one counts twice, once each way.
+
+    Args:
+        code: (m,) row * n + column of each value, ascending where each is there once.
+    """
+    if len(code) and (code[1:] > code[:-1]).all():
+        result = np.zeros(n * n, kind)
+        result[code] = values
+    else:
+        result = np.bincount(code, values, n * n).astype(kind, copy=False)
+    result = result.reshape(n, n)
+    for at in range(0, n, step := max((1 << 20) // n, 1)):  # by parts of rows: an array plus its transpose would be copied
+        low, high = slice(at, at + step), slice(at + step, n)
+        own = result[low, low]
+        result[low, low] = own + own.T
+        result[low, high] += result[high, low].T
+        result[high, low] = result[low, high].T
     return result
 
 
@@ -157,21 +176,23 @@ def _gone(geometry: Geometry, groups: Groups, area: np.ndarray, lines: int, repl
 def _table(found: Measured, groups: Groups, patches, replicates: int, rays: int, provenance: dict) -> ViewFactors:
     """Return the entries that are not certainly zero."""
     n, area = len(groups.names), found.area
+    share = 1 / area
+    found.values[...] *= share[:, None]
+    found.variances[...] *= (share * share)[:, None].astype(found.variances.dtype)
     there = found.variances > 0
-    there |= found.values > 0
-    rows, flat = np.repeat(np.arange(n), there.sum(axis=1)), np.flatnonzero(there)
-    columns = flat - rows * n
-    values, errors = found.values.ravel()[flat], np.sqrt(found.variances.ravel()[flat].astype(np.float64))
+    there |= found.values > 0  # closure alone may give a value, which is then certain
+    counts, columns = there.sum(axis=1), np.flatnonzero(there)
+    values, errors = found.values.ravel()[columns], np.sqrt(found.variances.ravel()[columns]).astype(np.float64)
+    columns -= np.repeat(np.arange(n) * n, counts)
+    rows = np.repeat(np.arange(n), counts)
     for code, (gone, variance) in enumerate(zip(found.gone, found.gone_variances, strict=True)):
         some = np.flatnonzero(variance > 0)
         if len(some):
             place = np.searchsorted(rows, some, side="right")  # after all others of the row
             rows, columns = np.insert(rows, place, some), np.insert(columns, place, n + code)
-            values, errors = np.insert(values, place, gone[some]), np.insert(errors, place, np.sqrt(variance[some]))
+            values = np.insert(values, place, (gone * share)[some])
+            errors = np.insert(errors, place, (np.sqrt(variance) * share)[some])
     inside = slice(None) if not found.gone_variances.any() else columns < n
-    each = area[rows]
-    values /= each
-    errors /= each
     closes = provenance.pop("closes")
     return ViewFactors(
         names=groups.names,
