@@ -10,6 +10,7 @@ from test_view_factors import room, with_a_cylinder
 
 import radiosity as rd
 from radiosity.device.backend import choose
+from radiosity.exchange import visible_shares as shares
 from radiosity.exchange.from_polygons import FacingPairs
 from radiosity.exchange.visible_shares import Pairs, visible_shares
 from radiosity.factors.polygons import exchange, kernel
@@ -17,7 +18,7 @@ from radiosity.factors.polygons.kernel import PairKernel
 from radiosity.sampling.streams import Seed
 from radiosity.scene.shapes import quad
 from radiosity.tracing.geometry import Geometry
-from radiosity.tracing.pair_rays import PairRays
+from radiosity.tracing.pair_rays import PairRays, Sums
 from validation.shapes import scene
 
 
@@ -116,6 +117,30 @@ def test_neighbours_choose_rays_without_a_bias(furnished):
     few = np.array([pairs.values @ visible_shares(caster, given, 2 * m, 8, Seed(seed)).values for seed in range(40)])
     many = [pairs.values @ visible_shares(caster, given, 1000 * m, 8, Seed(seed)).values for seed in range(2)]
     assert abs(few.mean() - np.mean(many)) < 5 * np.hypot(few.std(ddof=1) / np.sqrt(40), abs(many[0] - many[1]))
+
+
+def test_a_pairs_first_ray_has_no_say_about_it():
+    """Whether the ray of a pair arrives or not, its block tells the same of it: so its mean has no bias."""
+    draw = np.random.default_rng(1)
+    code = np.repeat([0, 1, 2], 20)
+    hides = np.concatenate([np.zeros(20, bool), draw.random(20) < 0.1, draw.random(20) < 0.6])
+    found = []
+    for turned in (None, 3, 25, 50):
+        now = hides.copy()
+        if turned is not None:
+            now[turned] = ~now[turned]
+        hidden, met = np.bincount(code[now], minlength=3), np.bincount(code)
+        weights = np.ones(60, np.float32)
+        clear = shares._clear(now, code, hidden, met)
+        told = shares._told(Sums(weights, weights * ~now, weights, weights * ~now), code, hidden, met, 1, False, clear, 0.1)
+        found.append([clear, told.centre, told.variance, told.kind])
+    for turned, after in zip((3, 25, 50), found[1:], strict=True):
+        others = np.flatnonzero((code == code[turned]) & (np.arange(60) != turned))
+        for one, other in zip(found[0], after, strict=True):
+            assert one[turned] == other[turned]
+        assert (found[0][1][others] != after[1][others]).all()
+    assert found[0][0][:20].all()
+    assert not found[0][0][40:].any()
 
 
 @pytest.mark.parametrize("rays", [8_000, 30_000])

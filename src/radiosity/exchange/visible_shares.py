@@ -96,7 +96,7 @@ def visible_shares(caster: PairRays, pairs: Pairs, rays: int, batches: int, seed
     hides = pilot.arriving < pilot.weights
     code, hidden, met = _blocks(hides, pairs, len(caster.geometry.patches))
     blocked = hidden[code]
-    clear = np.zeros(m, bool) if own else (blocked == 0) & (met[code] >= CLEAR)
+    clear = np.zeros(m, bool) if own else _clear(hides, code, hidden, met)
     part = 1 - float(((blocked == 0) | (blocked == met[code])).mean())
     some, rest = np.flatnonzero(~clear), np.flatnonzero(clear)
     probes = rest[number % PROBES :: max(PROBES, len(rest) // MOST_PROBES)]
@@ -108,7 +108,7 @@ def visible_shares(caster: PairRays, pairs: Pairs, rays: int, batches: int, seed
     more[few[number % PROBES :: PROBES]] = 2
     more = np.concatenate([more, np.full(len(probes), 2)])
     found, others = _mean(caster, taken, pilot.take(chosen), told, more, batches, number)
-    values, variances = np.ones(m), np.full(m, others)
+    values, variances = _sum(pilot, 1.0, first) / first, np.full(m, others)
     values[chosen], variances[chosen] = found.values, found.variances
     return Shares(values, variances, first * m + found.rays)
 
@@ -121,6 +121,11 @@ def _blocks(hides: np.ndarray, pairs: Pairs, patches: int) -> tuple[np.ndarray, 
         code = np.unique(code, return_inverse=True)[1]
     met = np.bincount(code)
     return code, np.bincount(code[hides], minlength=len(met)), met
+
+
+def _clear(hides: np.ndarray, code: np.ndarray, hidden: np.ndarray, met: np.ndarray) -> np.ndarray:
+    """Return which pairs are in blocks of which all other pairs are seen, (m,) bool."""
+    return (hidden[code] == hides) & (met[code] >= CLEAR)
 
 
 def _told(pilot: Sums, code, hidden, met, first: int, own: bool, clear: np.ndarray, part: float) -> Told:
@@ -200,7 +205,7 @@ def _batches(caster: PairRays, pairs: Pairs, centre: np.ndarray, sets: int, each
     return mean, of_mean, np.maximum(square / (each * sets) - (mean - centre) ** 2 + of_mean, 0)
 
 
-def _sum(sums: Sums, centre: np.ndarray, rays: int) -> np.ndarray:
+def _sum(sums: Sums, centre: np.ndarray | float, rays: int) -> np.ndarray:
     return rays * centre + sums.arriving - centre * sums.weights
 
 
