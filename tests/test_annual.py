@@ -17,6 +17,7 @@ from test_sensors import ALPHA
 import radiosity as rd
 from radiosity.cli import main
 from radiosity.device.backend import choose
+from radiosity.patches.scatter import Scatter
 from radiosity.scene.lights.axes import sky_axes, towards
 from radiosity.scene.lights.perez import Weather
 from radiosity.scene.lights.sky_patches import SkyPatches
@@ -151,7 +152,14 @@ def test_reflections_solved_backwards_are_those_solved_forwards():
     factors, seen, rho = rng.random((7, 7)), rng.random((3, 7)), rng.uniform(0.1, 0.9, 7)
     factors /= 1.1 * factors.sum(axis=1, keepdims=True)
     exact = seen @ np.linalg.solve(np.eye(7) - rho[:, None] * factors, np.diag(rho))
-    np.testing.assert_allclose(weights(csr_array(seen), csr_array(factors), rho), exact, rtol=1e-3)
+    np.testing.assert_allclose(weights(csr_array(seen), csr_array(factors), Scatter(rho)), exact, rtol=1e-3)
+    # a sheet between patches 2 and 5 diffuses light to both sides
+    tau, other = np.zeros(7), np.arange(7)
+    tau[[2, 5]], other[[2, 5]], rho[[2, 5]] = 0.3, [5, 2], [0.2, 0.4]
+    both = np.diag(rho) + np.diag(tau) @ np.eye(7)[other]
+    exact = seen @ np.linalg.solve(np.eye(7) - both @ factors, both)
+    found = weights(csr_array(seen), csr_array(factors), Scatter(rho, tau, other))
+    np.testing.assert_allclose(found, exact, rtol=1e-3)
 
 
 def test_sensors_in_the_open_have_the_patches_of_their_half(year):

@@ -262,3 +262,29 @@ def test_honeybee_of_diffuse_light(tmp_path):
     scene = rd.load_scene(tmp_path / "m.hbjson")
     np.testing.assert_allclose([scene.reflectance.item(), scene.diffuse_transmittance.item()], [0.4, 0.3])
     np.testing.assert_allclose(scene.transmittance, [0.1])
+
+
+def test_conversions_keep_what_goes_through_or_tell(tmp_path):
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+    scene = rd.Scene.from_arrays(
+        np.concatenate([np.add(corners, [0, 0, z]) for z in range(3)]),
+        np.arange(12).reshape(3, 4),
+        [0.25, 0.0, 0.5],
+        [0.0, 0.0, 1.0],
+        surface=[0, 1, 2],
+        names=["opal", "glass", "lamp"],
+        two_sided=True,
+        back_reflectance=[0.25, 0.0, 0.5],
+        transmittance=[0.125, 0.75, 0.0],
+        refractive_index=[0.0, 1.5, 0.0],
+        diffuse_transmittance=[0.375, 0.0, 0.0],
+    )
+    rd.save_scene(scene, tmp_path / "a.toml")
+    again = rd.load_scene(tmp_path / "a.toml")
+    for name in ("transmittance", "refractive_index", "diffuse_transmittance", "reflectance"):
+        np.testing.assert_allclose(getattr(again, name), getattr(scene, name), rtol=1e-12, err_msg=name)
+    with pytest.warns(rd.RadiosityWarning) as told:
+        rd.save_scene(scene, tmp_path / "a.glb")
+    text = "\n".join(str(one.message) for one in told)
+    assert "panes that diffuse light become opaque: 'opal'" in text
+    assert "glass gets one transmittance for all angles: 'glass'" in text

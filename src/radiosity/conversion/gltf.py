@@ -21,7 +21,7 @@ from .gltf_materials import Materials
 from .pieces import Piece, called, painted, pieces, tell_of_rest, triangles
 from .told import Told
 
-HOLDS = frozenset({"names", "reflectance", "emission", "backs", "panes", "textures", "lights", "cameras"})
+HOLDS = frozenset({"names", "reflectance", "emission", "backs", "panes", "diffusing panes", "textures", "lights", "cameras"})
 FAR = 8.0  # sizes of a surface: one farther away has coordinates of its own
 
 

@@ -70,7 +70,7 @@ class Materials:
 
         They take what is not transmitted of the colour as reflectance, and share both with the diffuse transmission.
         """
-        reflectance, diffused = _three(piece.reflectance), _three(piece.diffused)
+        reflectance, diffused = _three(piece.reflectance), _three(piece.diffuse)
         most = float(diffused.max())
         if not piece.transmittance and not most:
             return reflectance, {}

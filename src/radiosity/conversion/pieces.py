@@ -23,8 +23,9 @@ class Piece:
         corners: (k, 4) int, their vertices as `Scene.faces` has them, turned round for backs.
         reflectance, emission: (n_bands,).
         back: what the back does.
-        transmittance: the share of light that goes straight on through a pane.
-        diffused: (n_bands,), the share that leaves the other side of a pane in all directions.
+        transmittance: of a pane.
+        refractive_index: of clear glass, whose transmittance is the mean over diffuse light; 0 for none.
+        diffuse: (n_bands,) diffuse transmittance.
     """
 
     name: str
@@ -36,7 +37,8 @@ class Piece:
     emission: np.ndarray
     back: Back
     transmittance: float
-    diffused: np.ndarray
+    refractive_index: float
+    diffuse: np.ndarray
 
 
 def pieces(scene: Scene, told: Told, *, pairs: bool = True) -> list[Piece]:
@@ -51,26 +53,33 @@ def pieces(scene: Scene, told: Told, *, pairs: bool = True) -> list[Piece]:
     own = (scene.back == Back.RADIATES) & (
         (scene.back_reflectance != scene.reflectance) | (scene.back_emission != scene.emission)
     ).any(axis=1)
+    through = _through(scene)
     alike = own & (scene.panes | scene.diffusers | (not pairs))  # a pane is one face: light goes through it once
     told.add("backs that reflect or emit otherwise get the values of their fronts", called(scene, alike))
     own &= ~alike
     back = np.where(own, Back.ABSORBS, scene.back)
-    found = _grouped(scene, np.arange(scene.n_faces), scene.reflectance, scene.emission, back, "")
+    found = _grouped(scene, np.arange(scene.n_faces), scene.reflectance, scene.emission, back, through, "")
     rows = np.flatnonzero(own)
     if len(rows):
         told.add(
             f"backs that reflect or emit otherwise than their fronts become surfaces of their own, called NAME{BEHIND}",
             called(scene, own),
         )
-        found += _grouped(scene, rows, scene.back_reflectance, scene.back_emission, back, BEHIND)
+        found += _grouped(scene, rows, scene.back_reflectance, scene.back_emission, back, through, BEHIND)
     return sorted(found, key=lambda piece: piece.surface)
 
 
-def _grouped(scene: Scene, rows: np.ndarray, reflectance, emission, back, tail: str) -> list[Piece]:
-    clear = np.zeros(scene.n_faces) if scene.transmittance is None else scene.transmittance
-    none = np.zeros((scene.n_faces, scene.n_bands))
-    diffused = none if scene.diffuse_transmittance is None else none + scene.diffuse_transmittance
-    keys = np.column_stack([scene.surface, reflectance, emission, back, clear, diffused])[rows]
+def _through(scene: Scene) -> np.ndarray:
+    """Return transmittance, index of refraction and diffuse transmittance of each face, (n_faces, 2 + n_bands)."""
+    found = np.zeros((scene.n_faces, 2 + scene.n_bands))
+    for at, value in ((0, scene.transmittance), (1, scene.refractive_index)):
+        found[:, at] = 0 if value is None else value
+    found[:, 2:] = 0 if scene.diffuse_transmittance is None else scene.diffuse_transmittance
+    return found
+
+
+def _grouped(scene: Scene, rows: np.ndarray, reflectance, emission, back, through, tail: str) -> list[Piece]:
+    keys = np.column_stack([scene.surface, reflectance, emission, back, through])[rows]
     _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     index = index.reshape(-1)
     count: dict[int, int] = {}
@@ -93,8 +102,9 @@ def _grouped(scene: Scene, rows: np.ndarray, reflectance, emission, back, tail: 
                 reflectance[face],
                 emission[face],
                 Back(int(back[face])),
-                float(clear[face]),
-                diffused[face],
+                float(through[face, 0]),
+                float(through[face, 1]),
+                through[face, 2:],
             )
         )
     return result
@@ -124,8 +134,8 @@ def tell_of_rest(scene: Scene, told: Told, holds: frozenset[str]) -> None:
     """Note what of a scene a format does not hold.
 
     Args:
-        holds: of "backs", "cameras", "emission", "heat", "lights", "names", "openings", "panes", "patch sizes", "reflectance",
-            "sensors", "textures" and "units" what it holds.
+        holds: of "backs", "cameras", "diffusing panes", "emission", "glass", "heat", "lights", "names", "openings", "panes",
+            "patch sizes", "reflectance", "sensors", "textures" and "units" what it holds.
     """
     every, lights = np.ones(scene.n_faces, bool), scene.lights
     radiates = scene.back == Back.RADIATES
@@ -144,7 +154,13 @@ def tell_of_rest(scene: Scene, told: Told, holds: frozenset[str]) -> None:
             "lamps that shine to one side read back as shining alike to both",
             called(scene, single) if "emission" in holds else (),
         ),
-        ("panes", "panes become opaque", called(scene, scene.panes | scene.diffusers)),
+        ("panes", "panes become opaque", called(scene, scene.panes)),
+        ("diffusing panes", "panes that diffuse light become opaque", called(scene, scene.diffusers)),
+        (
+            "glass",
+            "glass gets one transmittance for all angles",
+            called(scene, scene.refractive_index > 0) if scene.refractive_index is not None and "panes" in holds else (),
+        ),
         ("textures", "means take the place of textures and vertex colours", called(scene, np.any([~every, *paints], axis=0))),
         ("lights", "lights without area are left out", [light.name for light in lights.all]),
         ("openings", "openings for the sky are left out", openings),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..scene.clear_glass import of_mean, share_at
 from ..scene.lights.model import Lights
 from ..scene.model import Back, Scene
 from ..scene.photopic import PHOTOPIC
@@ -22,6 +23,8 @@ HOLDS = frozenset({"names", "reflectance", "emission", "units", "backs", "panes"
     "sensors",
     "heat",
     "patch sizes",
+    "diffusing panes",
+    "glass",
 }
 BACKS = {Back.ABSORBS: "absorbs", Back.RADIATES: "radiates", Back.PASSES: "passes", Back.OPEN: "open"}
 
@@ -67,7 +70,19 @@ def write(scene: Scene, path: Path, told: Told) -> None:
 
 def _entry(scene: Scene, piece: Piece, name: str) -> dict:
     entry: dict = {"name": name, "reflectance": piece.reflectance, "emission": piece.emission, "back": BACKS[piece.back]}
-    return entry | _through(piece) | _of_surface(scene, piece.surface)
+    return entry | _light_through(piece) | _of_surface(scene, piece.surface)
+
+
+def _light_through(piece: Piece) -> dict:
+    """What an entry says of a pane; of glass its transmittance at right angles."""
+    entry: dict = {}
+    if piece.transmittance:
+        entry["transmittance"] = piece.transmittance
+    if piece.refractive_index:
+        index = piece.refractive_index
+        entry["transmittance"] = float(share_at(np.ones(1), of_mean(piece.transmittance, index), index)[0])
+        entry["refractive_index"] = index
+    return entry | ({"diffuse_transmittance": piece.diffuse} if piece.diffuse.any() else {})
 
 
 def _entries_beside(scene: Scene, parts: list[Piece], names: list[str]) -> list[dict]:
@@ -75,16 +90,11 @@ def _entries_beside(scene: Scene, parts: list[Piece], names: list[str]) -> list[
     found = []
     for piece, name in zip(parts, names, strict=True):
         entry: dict = {"name": name} | ({} if piece.back in (Back.ABSORBS, Back.RADIATES) else {"back": BACKS[piece.back]})
-        entry |= _through(piece) | _of_surface(scene, piece.surface)
+        entry |= _light_through(piece)
+        entry |= _of_surface(scene, piece.surface)
         if len(entry) > 1:
             found.append(entry)
     return found
-
-
-def _through(piece: Piece) -> dict:
-    """What an entry says of light that goes through."""
-    clear = {"transmittance": piece.transmittance} if piece.transmittance else {}
-    return clear | ({"diffuse_transmittance": piece.diffused} if piece.diffused.any() else {})
 
 
 def _of_surface(scene: Scene, surface: int) -> dict:
@@ -164,8 +174,7 @@ def _far(scene: Scene, told: Told):
     rows = len(sky.radiance) // 2
     upper, lower = sky.radiance[rows:], sky.radiance[:rows]
     if np.ptp(upper) == 0 and not lower.any():
-        level = float(sky.horizontal[0])
-        yield "sky", {"type": "uniform", "name": sky.name, "horizontal": level, "up": sky.axes[2], "north": sky.axes[0]}
+        yield "sky", {"type": "uniform", "name": sky.name, "horizontal": float(sky.horizontal[0]), "up": sky.axes[2]}
     else:
         told.add("skies that are not uniform are left out; write [sky] anew", [sky.name])
 
