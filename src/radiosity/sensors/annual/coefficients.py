@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...algorithms.gather.packets import Packets
+from ...patches.scatter import Scatter
 from ...problem.model import Problem
 from ...sampling.streams import Purpose, Seed
 from ...scene.lights.sky_patches import SkyPatches
@@ -47,7 +48,7 @@ class Replicate:
     def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
         """Return what sensors get from each sky patch of radiance 1, straight and reflected, (n_sensors, n_sky_patches) each."""
         seen, factors = self.receivers.mean_of_planes(self.sensors.shares()), self.patches.shares()
-        parts = (np.float32(share) * weights(seen, factors, rho) for share, rho in photopic_reflectances(self.problem))
+        parts = (np.float32(share) * weights(seen, factors, one) for share, one in photopic_scatters(self.problem))
         of_patches = np.sum(list(parts), axis=0)
         seen_at_all = np.flatnonzero(of_patches.any(axis=0))
         self.places, self.weights = self.patches.lines.packets.place[seen_at_all], of_patches[:, seen_at_all]
@@ -69,13 +70,11 @@ class Replicate:
         return self.receivers.mean_of_planes(straight.T), self.weights @ lit.T
 
 
-def photopic_reflectances(problem: Problem) -> list[tuple[float, np.ndarray]]:
-    """Return the reflectances of patches, (n_patches,) each, and the share of white light that they are for."""
-    columns, groups = problem.groups.reflectance, problem.groups.index
-    if len(groups) == 1:
-        return [(1.0, columns[:, 0])]
-    shares = np.bincount(groups, PHOTOPIC, columns.shape[1])
-    return [(float(share), columns[:, group]) for group, share in enumerate(shares)]
+def photopic_scatters(problem: Problem) -> list[tuple[float, Scatter]]:
+    """Return what patches send on of what they receive, in groups of bands, and the share of white light of each."""
+    scatter, groups = problem.groups.scatter, problem.groups.index
+    shares = np.bincount(groups, PHOTOPIC if len(groups) > 1 else None, problem.groups.n_groups)
+    return [(float(share), scatter.column(group)) for group, share in enumerate(shares)]
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,34 +4,37 @@ from typing import Any
 
 import numpy as np
 
+from ...patches.scatter import Scatter
+
 TOLERANCE = 1e-4  # of the light that has come: reflections end where those left are less
 MOST = 2000  # reflections
 AT_ONCE = 256  # sensors
 
 
-def weights(seen: Any, factors: Any, reflectance: np.ndarray) -> np.ndarray:
+def weights(seen: Any, factors: Any, scatter: Scatter) -> np.ndarray:
     """Return the irradiance of each sensor by a unit of irradiance on each patch, all reflections together.
 
-    A sensor gets g B from B = rho (H + F B), so that its weights are y rho, where y = g + (y rho) F: the equation is solved
-    backwards, for each sensor in place of each light.
+    A sensor gets g B from B = S (H + F B), so that its weights are y S, where y = g + (y S) F: the equation is solved backwards,
+    for each sensor in place of each light. S, what patches send on, is symmetric.
 
     Args:
         seen: g, the share of each sensor's lines that hit each patch, a sparse array (n_sensors, n_patches).
         factors: F, that of each patch's lines, a sparse array (n_patches, n_patches).
-        reflectance: (n_patches,) rho.
+        scatter: S, (n_patches,) numbers.
 
     Returns:
         (n_sensors, n_patches) float32.
     """
-    backwards, rho = factors.T.tocsr(), reflectance[:, None]
+    backwards, least = factors.T.tocsr(), TOLERANCE * (1 - scatter.albedo.max())
+    sent = scatter.in_column
     found = np.empty(seen.shape, np.float32)
     for at in range(0, seen.shape[0], AT_ONCE):
-        new = seen[at : at + AT_ONCE].T.toarray() * rho
+        new = sent.of_rows(seen[at : at + AT_ONCE].toarray(), 0).T
         total = new.copy()
         for _ in range(MOST):
-            new = (backwards @ new) * rho
+            new = sent.of_rows((backwards @ new).T, 0).T
             total += new
-            if new.sum() <= TOLERANCE * total.sum() * (1 - reflectance.max()):
+            if new.sum() <= least * total.sum():
                 break
         found[at : at + AT_ONCE] = total.T
     return found
