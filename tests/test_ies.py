@@ -136,9 +136,7 @@ def test_tilt_of_the_lamp(photometry, tmp_path):
         assert factors == pytest.approx([1, 0.9, 0.8, 1 - 0.2 / 3], rel=1e-5)
     assert power((0, -1, 0), up="y") == pytest.approx(1, rel=1e-5)
     assert power((0, 1, 0), lumens=500) == pytest.approx(500 / FLUX)
-    with pytest.warns(
-        rd.RadiosityWarning, match=r"tilted by 135.0 degrees, and the factors of its file \(TILT\) are for 0 to"
-    ):
+    with pytest.warns(rd.RadiosityWarning, match=r"tilted by 135.0 degrees, and the factors of its file \(TILT\) are for 0 to"):
         assert power((1, 0, 1)) == pytest.approx(0.8, rel=1e-5)
     assert "bulb.tlt" in photometry(ies(tilt="TILT=../bulb.tlt")).notes[0]
     damaged = {"0 90\n1 -1": "a factor of TILT is -1", "90 0\n1 1": "do not ascend", "0 90\n1 0": "gives no light"}
