@@ -119,12 +119,30 @@ def test_planes_that_stop_before_360_are_closed_and_told(photometry):
     assert "330" in found.notes[0]
 
 
-def test_tilt_is_read_past_and_told(photometry):
-    assert photometry(ies(tilt="Tilt = none")).notes == ()
+def test_tilt_of_the_lamp(photometry, tmp_path):
+    """A lamp of 1.0, 0.9 and 0.8 at 0, 45 and 90 degrees from straight down: linear between them, also in a file of its own."""
+    assert photometry(ies(tilt="Tilt = none")).tilt is None
+    assert photometry(ies(tilt="TILT=INCLUDE\n3\n2\n0 90\n1 1")).tilt is None
     found = photometry(ies(tilt="TILT=INCLUDE\n1\n3\n0 45 90\n1.0 0.9 0.8"))
-    assert found.flux == pytest.approx(FLUX, rel=1e-5)
-    assert "0.8 to 1" in found.notes[0]
-    assert "bulb.tlt" in photometry(ies(tilt="TILT=bulb.tlt")).notes[0]
+    assert (found.notes, found.flux) == ((), pytest.approx(FLUX, rel=1e-5))
+    (tmp_path / "bulb.tlt").write_text("1\n3\n0 45 90\n1.0 0.9 0.8\n")
+    (tmp_path / "named.ies").write_text(ies(tilt="TILT=bulb.tlt"))
+
+    def power(way, lamp=found, **more):
+        return rd.read_luminaire(lamp, position=(0, 0, 0), direction=way, **more).power[0] / FLUX
+
+    for lamp in (found, rd.load_photometry(tmp_path / "named.ies")):
+        factors = [power(way, lamp) for way in ((0, 0, -1), (1, 0, -1), (0, 1, 0), (0, np.tan(np.radians(30)), -1))]
+        assert factors == pytest.approx([1, 0.9, 0.8, 1 - 0.2 / 3], rel=1e-5)
+    assert power((0, -1, 0), up="y") == pytest.approx(1, rel=1e-5)
+    assert power((0, 1, 0), lumens=500) == pytest.approx(500 / FLUX)
+    with pytest.warns(rd.RadiosityWarning, match=r"tilted by 135.0 degrees, and the factors of its file \(TILT\) are for 0 to"):
+        assert power((1, 0, 1)) == pytest.approx(0.8, rel=1e-5)
+    assert "bulb.tlt" in photometry(ies(tilt="TILT=../bulb.tlt")).notes[0]
+    damaged = {"0 90\n1 -1": "a factor of TILT is -1", "90 0\n1 1": "do not ascend", "0 90\n1 0": "gives no light"}
+    for tilt, words in damaged.items():
+        with pytest.raises(rd.SceneError, match=words):
+            power((1, 0, 0), photometry(ies(tilt=f"TILT=INCLUDE\n1\n2\n{tilt}")))
 
 
 @pytest.mark.parametrize(

@@ -4,15 +4,18 @@ formulas (the tables of the report have errata), a disc lamp, and the daylight f
 Integrals over the sky are sums over a window's points, with the sky's formula (ISO 15469:2004) written out here.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from light_samples import bulb, lit
-from test_sensors import agrees, measured
+from test_sensors import ALPHA, agrees, measured
 
 import radiosity as rd
 from radiosity.factors.polygons import from_points
 from radiosity.scene.lights.web import Web
 from radiosity.scene.shapes import box, quad
+from radiosity.sensors.target import half_width
 
 GENERAL = {  # gradation a, b and indicatrix c, d, e of ISO 15469:2004
     1: (4.0, -0.70, 0.0, -1.0, 0.0),
@@ -214,8 +217,8 @@ def test_5_6_and_5_7_light_reflected_by_a_floor_with_and_without_an_obstacle():
 
 
 @pytest.mark.parametrize("reflectance", [0.2, 0.8])
-def test_5_8_a_point_lamp_in_a_cube_and_in_a_sphere(reflectance):
-    """The mean is Phi / (A (1 - rho)). In a sphere, what is reflected is the same everywhere and on all planes: rho Phi / ..."""
+def test_5_8_a_point_lamp_in_a_cube(reflectance):
+    """The mean is Phi / (A (1 - rho))."""
     cube = rd.subdivide(
         lit(("walls", reflectance, 0.0, box((0, 0, 0), (4, 4, 4), inward=True)), luminaires=(bulb((1, 2, 2.5), power=1000.0),)),
         cells=3,
@@ -224,6 +227,33 @@ def test_5_8_a_point_lamp_in_a_cube_and_in_a_sphere(reflectance):
     inside = cube.scene.surface[cube.face] == cube.scene.names.index("walls")
     mean = (solution.irradiance[:, 0] * cube.area)[inside].sum() / cube.area[inside].sum()
     assert mean == pytest.approx(1000 / (96 * (1 - reflectance)), rel=3e-3)
+
+
+@pytest.mark.parametrize("reflectance", [0.3, 0.8])
+def test_5_8_a_point_lamp_in_a_sphere(reflectance):
+    """On the wall of a sphere what is reflected is the same everywhere, wherever the lamp is: rho Phi / (A (1 - rho)). The sphere
+    has 32 x 16 facets, which err by a few thousandths."""
+    height, turn = np.linspace(-np.pi / 2, np.pi / 2, 17), np.linspace(0, 2 * np.pi, 33)
+    ways = np.stack(
+        [np.outer(np.cos(height), np.cos(turn)), np.outer(np.cos(height), np.sin(turn)), np.outer(np.sin(height), turn**0)]
+    )
+    grid = np.moveaxis(2 * ways, 0, -1)
+    a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
+    corners_of = np.concatenate(
+        [np.stack(x, axis=2).reshape(-1, 3, 3)[keep] for x, keep in (((a, c, b), slice(32, None)), ((a, d, c), slice(None, -32)))]
+    )
+    scene = rd.Scene.from_arrays(corners_of.reshape(-1, 3), np.arange(corners_of.size // 3).reshape(-1, 3), reflectance, 0.0)
+    lamp = bulb((0.5, -0.3, 0.8), power=1000.0)
+    facets = np.arange(0, len(corners_of), 97)
+    points, normals = corners_of[facets].mean(axis=1), scene.normal[facets]
+    assert ((normals * points).sum(axis=1) < 0).all()
+    points = points + 0.01 * normals
+    way = lamp.position - points
+    distance = np.linalg.norm(way, axis=1)
+    direct = 1000 / (4 * np.pi) * (way * normals).sum(axis=1) / distance**3
+    exact = direct + reflectance * 1000 / (scene.area.sum() * (1 - reflectance))
+    found = measured(replace(scene, photometric=True).with_lights([lamp]), rd.Sensors.of(points, normals), each=512)
+    np.testing.assert_allclose(found.illuminance[:, 0], exact, rtol=0.015)
 
 
 # ---- 5.9 to 5.14: the sky through openings ----------------------------------------------------------------------------------
@@ -277,6 +307,37 @@ def test_masks_before_a_window(case):
     )  # the sum's own error is 1/150 of a shadow
     assert (found.standard_error <= 0.003 * found.illuminance + 0.5).all()
     assert not agrees(found, through(corners(window), points, normals, radiance_of("overcast")), 0.03)
+
+
+def test_5_13_a_shelf_that_reflects_the_ground():
+    """A shelf of reflectance 0.6 above the window sees the ground, but for what the black facade hides: its luminance follows
+    from the factor of the facade, and sensors see it beside the sky and the ground."""
+    window, ground = ((1, 0, 1), (3, 0, 2)), 0.3
+    shelf, facade = quad((0, -1.5, 2), (0, 1.5, 0), (4, 0, 0)), quad((0, 0, 0), (4, 0, 0), (0, 0, 2))
+    sun_free = rd.cie_sky("overcast", LUX, ground=ground)
+    scene = lit(room((4, 3, 3), window), ("shelf", 0.6, 0.0, [shelf])).with_lights(sky=sun_free, openings=[corners(window)])
+    points = np.array([[2, 0.5, 0], [2, 1.5, 0.8], [0.5, 2, 0.8], [2, 3, 1.4]])
+    normals = np.array([[0, 0, 1]] * 3 + [[0, -1, 0]], float)
+    outside = radiance_of("overcast", ground=ground)
+
+    def seen_from(point):
+        def radiance(ways):
+            hit = point + ((2 - point[2]) / np.where(ways[:, 2] == 0, 1e-12, ways[:, 2]))[:, None] * ways
+            on = (ways[:, 2] > 0) & (hit[:, 0] >= 0) & (hit[:, 0] <= 4) & (hit[:, 1] >= -1.5) & (hit[:, 1] <= 0)
+            light, spots = outside(ways), np.where(on[:, None], hit, [2, -1, 2])
+            hidden = from_points(spots, np.tile([0, 0, -1.0], (len(spots), 1)), facade[None])
+            return np.where(on, 0.6 * (1 - hidden) * ground * LUX / np.pi, light)
+
+        return radiance
+
+    pairs = zip(points, normals, strict=True)
+    exact = np.array([through(corners(window), p[None], m, seen_from(p), n=150, hidden=lambda *_: False)[0] for p, m in pairs])
+    found = measured(scene, rd.Sensors.of(points, normals), each=1 << 13, cells=8)
+    width = half_width(found.values, 1 - ALPHA / len(points))[:, 0]
+    assert (width < 0.15 * exact).all()
+    assert (np.abs(found.illuminance[:, 0] - exact) < width + 0.01 * exact).all()  # a shelf of 64 patches
+    black = through(corners(window), points, normals, outside, n=60, hidden=lambda point, way: way[:, 2] > 0)
+    assert (np.abs(found.illuminance[:, 0] - black) > width + 0.01 * exact).all()
 
 
 def test_the_daylight_factor_of_a_room_to_2_percent():

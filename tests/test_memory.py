@@ -3,6 +3,7 @@
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import radiosity as rd
@@ -206,3 +207,19 @@ def test_memory_does_not_grow_with_the_number_of_lines():
     few, many = measured("room", 5_000, "random-walk", [("1M", {"rays": 10**6}), ("30M", {"rays": 3 * 10**7})], warm=True)
     assert many.lines > 25 * few.lines
     assert many.memory - few.memory < memory_estimate.MEMORY_ESTIMATES["firing"].fixed
+
+
+@pytest.mark.parametrize("method", ["gather", "random-walk"])
+def test_large_images_of_a_sky_count(method):
+    """1.6 million entries took 165 bytes each at the peak; lines through openings have tables of their own."""
+    floor = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.5, 0.0, photometric=True)
+    patches = rd.subdivide(floor.with_lights(sky=rd.uniform_sky(1.0)), cells=1)
+    sky = rd.Sky("image", np.ones((512, 1024, 3)) * [1.0, 2.0, 3.0], np.eye(3))
+    image, window = rd.subdivide(floor.with_lights(sky=sky), cells=1), [[0, 0, 1], [1, 0, 1], [0, 1, 1]]
+    opened = rd.subdivide(floor.with_lights(sky=sky, openings=[window]), cells=1)
+    few, many, more = (memory_estimate.memory_needed(rd.PRESETS[method].method, p, 1, 1, 1e4) for p in (patches, image, opened))
+    assert many - few == pytest.approx(165 * 512 * 1024 * 3, rel=0.01)
+    assert more - many == pytest.approx(2 * 90 * 512 * 1024 * 3 if method == "random-walk" else 0, rel=0.01)
+    with pytest.raises(rd.MethodError, match="would take about"):
+        rd.solve(image, method, rays=1e4, memory="200M")
+    assert rd.solve(patches, method, rays=1e4, memory="200M").status == "complete"

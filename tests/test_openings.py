@@ -186,3 +186,15 @@ def test_a_restored_state_goes_on_to_the_same_integers(geometry_of):
     again.advance(1 << 12, lambda lines: None)
     found, wanted = again.capture().arrays(), whole.capture().arrays()
     assert all(np.array_equal(found[name], wanted[name]) for name in ("arrivals", "fired", "received", "sent"))
+
+
+def test_sensors_read_a_walk_whose_lines_go_through_openings():
+    """Its state has rows of lines through openings; a measurement that did not know of them refused the solution."""
+    from light_samples import lit
+    from test_light_referees import corners, room
+
+    window = ((1.0, 1.0, 3), (2.0, 2.0, 3))
+    scene = lit(room((3, 3, 3), window, 0.5)).with_lights(sky=rd.uniform_sky(1000.0), openings=[corners(window)])
+    patches, point = rd.subdivide(scene, cells=2), rd.Sensors.of([[1.5, 1.5, 1.0]])
+    walk, gather = (rd.measure(rd.solve(patches, m, rays=200_000), point, rays=40_000) for m in ("random-walk", "gather"))
+    assert walk.illuminance[0, 0] == pytest.approx(gather.illuminance[0, 0], rel=0.03)

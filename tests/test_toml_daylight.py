@@ -1,6 +1,7 @@
 """The [sky], [sun] and [[opening]] of .toml scenes: what they give, and what is refused by name."""
 
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -160,3 +161,45 @@ def test_a_sun_alone_in_watts_is_a_scene_in_watts(tmp_path):
     assert not scene.photometric
     assert scene.lights.suns[0].irradiance.tolist() == [900]
     assert list(daylight(scene)) == ["sun       900 W/m² across its light, towards (0, 0.7071, 0.7071)"]
+
+
+def test_colours_keep_the_lux(tmp_path):
+    """Blue light of a sky and yellow light of a sun: red, green and blue by the colour, the photopic mean as without it."""
+    weights = np.array([0.2126, 0.7152, 0.0722])
+    text = '[sky]\ntype = "uniform"\nhorizontal = 1000\ncolor = [1, 2, 4]\n[sun]\nilluminance = 500\naltitude = 30\nazimuth = 0\n'
+    scene = read(tmp_path, text + "color = [2, 1, 0]")
+    sky, (sun,) = scene.lights.sky, scene.lights.suns
+    assert sky is not None
+    assert (sky.horizontal @ weights, sun.irradiance @ weights) == pytest.approx((1000, 500))
+    assert sky.horizontal / sky.horizontal[0] == pytest.approx([1, 2, 4])
+    assert sun.irradiance / sun.irradiance[1] == pytest.approx([2, 1, 0])
+    perez = '[sky]\ntype = "perez"\ndirect = 600\ndiffuse = 150\naltitude = 40\nazimuth = 180\nsun_color = [3, 2, 1]'
+    found = read(tmp_path, perez).lights
+    assert found.suns[0].irradiance / found.suns[0].irradiance[2] == pytest.approx([3, 2, 1])
+    assert found.sky is not None
+    assert np.ptp(found.sky.horizontal) == pytest.approx(0)
+    sun = "[sun]\ndirection = [0, 0, 1]\nilluminance = "
+    for text, words in (
+        (sun + "[1, 2, 3]\ncolor = [1, 1, 1]", "has a colour already"),
+        (sun + "1\ncolor = [0, 0, 0]", "and one above zero"),
+        (SKY + "sun_color = [1, 1, 1]", "has no use for sun_color"),
+    ):
+        with pytest.raises(rd.SceneError, match=words):
+            read(tmp_path, text)
+
+
+@pytest.mark.parametrize("up", ["", '[sky]\ntype = "uniform"\nhorizontal = 1\nup = "y"'])
+def test_files_with_other_axes_up_in_one_scene_are_told(tmp_path, up):
+    """A .rad file, in which z is up, and a .glb, in which y is: nothing turns them. What [sky] says holds for sensors, too."""
+    grey = "void plastic grey 0 0 5 0.5 0.5 0.5 0 0\n"
+    (tmp_path / "floor.rad").write_text(grey + "grey polygon floor 0 0 12 0 0 0 4 0 0 4 4 0 0 4 0\n")
+    triangle = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.5, 1.0)
+    rd.solve(rd.subdivide(triangle, cells=1), "gather", rays=2000).export(tmp_path / "b.glb")
+    text = 'geometry = ["floor.rad", "b.glb"]\n[[sensors]]\npoints = [[1, 1, 1]]\n'
+    (tmp_path / "a.toml").write_text(text + up)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        scene = rd.load_scene(tmp_path / "a.toml")
+    words = "in 'floor.rad' z is up, and in 'b.glb' y; no file is turned, and "
+    assert any(words + ("z" if not up else "y") in str(one.message) for one in told) == (not up)
+    assert scene.sensors[0].normals == ((0, 1, 0) if up else (0, 0, 1),)

@@ -99,9 +99,7 @@ def measure(
     if levels and observers:
         raise MethodError("--dim and --ugr: glare is rated with all lights as the scene has them; leave one of them out")
     if levels:
-        if isinstance(loaded, rd.Solution):
-            raise MethodError(f"{scene} holds a solution of all lights together; --dim needs the scene")
-        check_levels(levels, list(parts_of(loaded, {})))
+        check_levels(levels, list(parts_of(loaded.patches if isinstance(loaded, rd.Solution) else loaded, {})))
     sensors = sensors_of(scene_read, places)
     with bar() as progress:
         found = rd.measure(loaded, sensors, **options, groups=bool(levels), progress=progress)

@@ -1,10 +1,11 @@
 """Luminaires so near to a face, or in it, that shadow rays from its patches hardly find their light.
 
 A lamp that hangs a millimetre below a ceiling lights a spot of a millimetre there. Shadow rays of gather begin at uniform points
-of a patch, so that they meet the spot by chance alone: what is missing is in no error bar. Random walks begin at the lamp.
+of a patch, so that they meet the spot by chance alone: what is missing is in no error bar. Random walks begin at the lamp. So
+it is with the part of a soft luminaire's area that is as near to a face, as where the area goes through a wall.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from ..scene.precision import OFFSET
 
 NEAR = 0.02  # of the size of a patch: luminaires nearer to it than this
 LEAST = 0.005  # of all light of luminaires: less in spots is not told
+ACROSS, LOOKED_AT = 128, 9  # points along a side of a soft area; and those near a face whose light is followed
 GAMMAS, PLANES = 60, 24  # directions that its web is looked up at
 
 
@@ -50,20 +52,34 @@ def spots(patches: Patches) -> list[Spot]:
     origin, first, second = scene.frames
     power = sum(float(one.power.sum()) for one in scene.lights.luminaires)
     for one in scene.lights.luminaires:
-        if one.soft:
-            continue
-        way = one.position - origin
+        way, points = one.position - origin, _points(one)
+        half = np.abs((points - one.position) @ scene.normal.T).max(axis=0) if one.soft else 0.0
         height = (way * scene.normal).sum(axis=1)
         reach = NEAR * sizes
-        beside = np.linalg.norm(way, axis=1) <= np.linalg.norm(first, axis=1) + np.linalg.norm(second, axis=1) + reach
-        for face in np.flatnonzero((np.abs(height) <= reach) & beside):
-            share = _share(one, scene, int(face))
+        longest = np.linalg.norm(first, axis=1) + np.linalg.norm(second, axis=1) + np.linalg.norm(one.size) / 2
+        beside = np.linalg.norm(way, axis=1) <= longest + reach
+        for face in np.flatnonzero((np.abs(height) <= reach + half) & beside):
+            heights = np.abs((points - origin[face]) @ scene.normal[face])
+            near = np.flatnonzero(heights <= reach[face])
+            some = near[np.linspace(0, len(near) - 1, min(len(near), LOOKED_AT)).astype(int)]
+            shares = [_share(replace(one, position=points[i]), scene, int(face)) for i in some]
+            share = float(np.mean(shares)) * len(near) / len(points) if shares else 0.0
             if share > 0:
                 name, light = scene.names[scene.surface[face]], share * float(one.power.sum()) / power
-                found.append(Spot(one.name, name, float(abs(height[face])), float(sizes[face]), share, light))
+                found.append(Spot(one.name, name, float(heights.min()), float(sizes[face]), share, light))
     if sum(spot.light for spot in found) < LEAST:
         return []
     return sorted(found, key=lambda spot: -spot.light)
+
+
+def _points(one: Luminaire) -> np.ndarray:
+    """Return points from which a luminaire's light leaves, (n, 3): its middle, or points all over a soft one's area."""
+    if not one.soft:
+        return one.position[None]
+    steps = (np.arange(ACROSS) + 0.5) / ACROSS - 0.5
+    u, v = (axis.ravel() for axis in np.meshgrid(steps, steps))
+    kept = np.hypot(u, v) <= 0.5 if one.disc else np.ones(len(u), bool)
+    return one.position + np.outer(u[kept] * one.size[0], one.axes[0]) + np.outer(v[kept] * one.size[1], one.axes[1])
 
 
 def warn_of_spots(patches: Patches) -> None:

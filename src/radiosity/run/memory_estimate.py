@@ -13,6 +13,7 @@ from ..device import memory
 from ..factors.lines import FEW
 from ..method import Baseline, Method
 from ..patches import Patches
+from ..problem.lights.through import COLUMNS, ENTRIES, PLANES, ROWS
 from ..solution.local_linear import Regions
 from .budget import Budget, first_stage
 
@@ -20,6 +21,7 @@ FACE = 800  # bytes a face, for the BVH and the hit records
 REACHED = 100  # bytes a cell within a kernel, while planes are fitted; 76 to 100 were measured, and 12 are kept
 SMOOTHED, SMOOTHED_ONE = 650, 80  # bytes a patch, and a patch in a replicate, while values are smoothed; 8 of a group are kept
 TURNS = 12  # bytes a patch in a replicate, and 8 more in each group of bands: what steps in turns keep apart
+SKY, THROUGH = 165, 90  # bytes an entry of a sky's table, and of tables of its lines through openings, at their peak
 PAIR = 24  # bytes a pair of patches that is counted, while counts are merged
 
 
@@ -71,7 +73,20 @@ def memory_needed(method: Method, patches: Patches, groups: int, replicates: int
     if method.machine == "matrix":
         lines = LIMIT if rays is None else max(rays, FEW * n * replicates)
         total += PAIR * min(replicates * n * (n + 2.0), lines, LIMIT)
-    return total
+    return total + _of_sky(patches, method)
+
+
+def _of_sky(patches: Patches, method: Method) -> float:
+    """Return the bytes of the tables of a sky, and of those of its lines through openings, which random walks have."""
+    lights = patches.scene.lights
+    if lights.sky is None:
+        return 0.0
+    total, openings = SKY * lights.sky.radiance.size, lights.openings
+    if openings is None or method.machine != "firing":
+        return float(total)
+    rows, columns, bands = lights.sky.radiance.shape
+    table = 2 * max(ROWS, rows // 2) * max(COLUMNS, columns) * bands
+    return float(total + THROUGH * min(table * (min(PLANES, len(openings)) + 1), ENTRIES + table))
 
 
 def _cells_reached(patches: Patches, hit_tally: float) -> float:

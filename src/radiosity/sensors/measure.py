@@ -90,7 +90,8 @@ def measure(
         if groups is False:
             found = one(scene, Budget(rays=rays, error=error))
         elif isinstance(scene, Solution):
-            raise MethodError("groups of lights are solved one by one: give the scene or its patches, not a solution")
+            name = _only_group(scene, {} if groups is True else groups)
+            found = _together({name: one(scene, Budget(rays=rays, error=error))})
         else:
             of_group, done = parts_of(scene, {} if groups is True else groups), {}
             budget = Budget(rays=None if rays is None else max(rays / len(of_group), 1.0), error=error)
@@ -102,6 +103,22 @@ def measure(
         found = replace(found, seconds=perf_counter() - begun)
     _tell_of_inside(found)
     return found
+
+
+def _only_group(solution: Solution, groups: dict[str, list[str]]) -> str:
+    """Return the one group of lights that a solution has.
+
+    Raises:
+        MethodError: it has several, or none.
+    """
+    names = list(parts_of(solution.patches, groups))
+    if len(names) != 1:
+        held = shown(names) or "there are none"
+        raise MethodError(
+            f"the solution holds the light of all groups together ({held}), and their sum tells of none alone: give the "
+            "scene or its patches, from which each group is solved by itself"
+        )
+    return names[0]
 
 
 def _together(parts: dict[str, Measurement]) -> Measurement:

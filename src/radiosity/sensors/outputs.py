@@ -99,7 +99,8 @@ def _grid(found, number: int, axes, figure) -> None:
         axes.clabel(lines, fmt="%g", fontsize=7)
     row = next(row for row in found.table() if row["name"] == sensors.names[number])
     what = "illuminance" if found.photometric else "irradiance"
-    figures = f"mean {row['mean']:.4g} {found.unit}, min {row['min']:.4g}, U0 {row['U0']:.2f}"
+    uniformity = "dark" if np.isnan(row["U0"]) else f"U0 {row['U0']:.2f}"
+    figures = f"mean {row['mean']:.4g} {found.unit}, min {row['min']:.4g}, {uniformity}"
     axes.set_title(f"{printable(row['name'])}: {figures}", fontsize=9)
     axes.set_xlabel("m")
     axes.set_ylabel("m")

@@ -20,11 +20,13 @@ def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.nd
         return mean_reflected(solution, problem)[None]
     facts = solution.provenance
     seed = Seed(facts["seed"], facts.get("first_replicate", 0))
-    algorithm = make(geometry, problem, Method(**facts["choices"]), seed, solution.replicates)
+    method = Method(**facts["choices"])
+    own = Problem.of(solution.patches, through=True) if method.machine == "firing" else problem  # as the run had it
+    algorithm = make(geometry, own, method, seed, solution.replicates)
     state = algorithm.read(solution.state, algorithm.sizes)
     found = []
     for group in range(problem.groups.n_groups):
-        power, scale = algorithm.tally.irradiance(problem, state, group)
+        power, scale = algorithm.tally.irradiance(own, state, group)
         received = np.asarray(power, np.float64) * (scale / unit[group]) / problem.patches.area
         found.append(problem.groups.scatter.of_rows(received, group))
     return np.stack(found, axis=-1)

@@ -4,7 +4,7 @@ import io
 
 import numpy as np
 
-from ..errors import printable
+from ..errors import printable, shown
 
 WIDE = 1000  # columns; names are never cut off
 MESH = "± holds what lines leave unknown, not the size of patches: finer ones (--cells, --patch-size) show what that is"
@@ -32,6 +32,19 @@ def _daylight(found) -> list[str]:
     return lines
 
 
+def _uniformity(row: dict, name: str) -> str:
+    """Return a uniformity with half of its interval, or a word where there is none."""
+    if np.isnan(row[name]):
+        return "dark" if row["sensors"] else "-"
+    return f"{row[name]:.3f}" if np.isnan(row[f"{name} ±"]) else f"{row[name]:.3f} ± {row[f'{name} ±']:.1g}"
+
+
+def _dark(found) -> list[str]:
+    """Return a line that names the sets of sensors that no light reaches."""
+    names = [row["name"] for row in found.table() if row["sensors"] and row["max"] == 0]
+    return [f"no light reaches any sensor of {shown(names)}: uniformity has no meaning there"] if names else []
+
+
 def report(found) -> str:
     """Return a head, a row for each set of sensors, and what the figures mean; ± is half of the 95 % interval."""
     from rich.console import Console
@@ -49,8 +62,8 @@ def report(found) -> str:
             f"{row['min']:.4g}",
             f"{row['mean']:.4g} ± {row['mean ±']:.1g}",
             f"{row['max']:.4g}",
-            f"{row['U0']:.3f}",
-            f"{row['U1']:.3f}",
+            _uniformity(row, "U0"),
+            _uniformity(row, "U1"),
             f"{row['sensor ±']:.1g}",
         )
     text = io.StringIO()
@@ -61,7 +74,7 @@ def report(found) -> str:
     )
     head += "" if found.status == "complete" else f", {found.status}"
     lines = [line.rstrip() for line in text.getvalue().splitlines()]
-    notes = [*_groups(found), *_daylight(found)]
+    notes = [*_dark(found), *_groups(found), *_daylight(found)]
     notes += ["U0 = min / mean, U1 = min / max; sensor ±: of the least certain sensor", MESH]
     if len(found.values) < 2:
         notes.append("errors are unknown: one replicate tells none")

@@ -12,6 +12,7 @@ from ..scene.photopic import PHOTOPIC, RGB
 from ..solution.model import Solution
 from .groups import check_levels
 from .model import Sensors
+from .set_row import set_row
 from .target import half_width
 
 
@@ -163,29 +164,10 @@ class Measurement:
     def table(self, level: float = 0.95) -> list[dict]:
         """Return a row for each set of sensors: number, min, mean, max, U0 = min / mean, U1 = min / max, in ``unit``.
 
-        It has half the width of the mean's interval, too, and of the widest interval of a sensor.
+        It has half the width of the intervals of the mean, of U0 and of U1, too, and of the widest interval of a sensor. Those of
+        U0 and U1 follow the sensors that have least and most in the mean. Where all sensors are dark U0 and U1 are NaN.
         """
-        rows = []
-        for number, name in enumerate(self.sensors.names):
-            values = self.single[:, (self.sensors.set == number) & ~self.inside]
-            if not values.size:
-                values = np.full((len(self.values), 1), np.nan)
-            mean_of_each = values.mean(axis=0)
-            low, mean, high = (float(f(mean_of_each)) for f in (np.min, np.mean, np.max))
-            rows.append(
-                {
-                    "name": name,
-                    "sensors": int(((self.sensors.set == number) & ~self.inside).sum()),
-                    "min": low,
-                    "mean": mean,
-                    "max": high,
-                    "U0": low / mean if mean else float("nan"),
-                    "U1": low / high if high else float("nan"),
-                    "mean ±": float(half_width(values.mean(axis=1), level)),
-                    "sensor ±": float(np.max(half_width(values, level))),
-                }
-            )
-        return rows
+        return [set_row(self, number, level) for number in range(len(self.sensors.names))]
 
     def report(self) -> str:
         """Return the table as text."""

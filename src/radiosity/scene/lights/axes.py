@@ -19,21 +19,28 @@ def sky_axes(up: ArrayLike | str = "z", north: ArrayLike | None = None) -> np.nd
     Raises:
         SceneError: a direction is no direction, or north points up or down, or none is given where ``up`` is a direction.
     """
-    if isinstance(up, str):
-        if up not in UP:
-            raise SceneError(f"up: it is '{up}'; give 'z' or 'y', or a direction such as [0, 0, 1]")
-        above, usual = UP[up]
-        upward, north = np.array(above), usual if north is None else north
-    else:
-        upward = unit("up", up)
-        if north is None:
-            raise SceneError(f"north is missing: where up is a direction ({list(upward)}), give north as one, too")
-    level = unit("north", north)
+    upward = up_of(up)
+    if north is None and not isinstance(up, str):
+        raise SceneError(f"north is missing: where up is a direction ({list(upward)}), give north as one, too")
+    level = unit("north", UP[str(up)][1] if north is None else north)
     level = level - (level @ upward) * upward
     if np.linalg.norm(level) < 1e-6:
         raise SceneError(f"north: the direction {np.asarray(north).tolist()} points up or down; give a level one")
     level /= np.linalg.norm(level)
     return np.stack([level, np.cross(level, upward), upward])
+
+
+def up_of(up: ArrayLike | str) -> np.ndarray:
+    """Return the unit direction that is up, (3,), of "z", "y" or a direction.
+
+    Raises:
+        SceneError: it is something else.
+    """
+    if not isinstance(up, str):
+        return unit("up", up)
+    if up not in UP:
+        raise SceneError(f"up: it is '{up}'; give 'z' or 'y', or a direction such as [0, 0, 1]")
+    return np.array(UP[up][0])
 
 
 def unit(what: str, direction: ArrayLike) -> np.ndarray:

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import RadiosityWarning, SceneError
-from ..photopic import PHOTOPIC
+from ..habits import warn
 from . import eulumdat, ies, webs
+from .axes import up_of
+from .color import bands_of
 from .frames import frame, point
 from .luminaire import Luminaire
 from .photometry import Photometry
@@ -37,6 +39,7 @@ class Placing:
     group: str = ""
     name: str | None = None
     soft: bool = False
+    up: Any = "z"
 
     def luminaire(self, web: Web, flux: float, what: str, **more) -> Luminaire:
         """Return a luminaire of a web that sends ``flux``.
@@ -58,7 +61,7 @@ class Placing:
             flux = self.lumens
         if not 0 < flux < LARGEST:
             raise SceneError(f"{what}: sends {flux}; the light must be a number above zero")
-        power = flux * self.maintenance * _bands(self.color, what)
+        power = flux * self.maintenance * bands_of(self.color, what)
         axes = frame(way, self.rotate, self.along, what)
         size = more.pop("size", np.zeros(3))
         if self.soft and not size[:2].any():
@@ -113,6 +116,7 @@ def read_luminaire(
     name: str | None = None,
     soft: bool = False,
     lamp_set: int | None = None,
+    up: ArrayLike | str = "z",
 ) -> Luminaire:
     """Read a luminaire file, and place it. `Scene.with_lights` adds it to a scene.
 
@@ -131,6 +135,7 @@ def read_luminaire(
         name: default: that in the file.
         soft: light leaves from the whole luminous area of the file, so that shadows are soft; default: from its middle.
         lamp_set: see `load_photometry`.
+        up: "z" or "y", or a direction. Where a file has factors of light for tilts (TILT), they count from straight down.
 
     Raises:
         SceneError: the file cannot be read, or a value makes no sense.
@@ -146,7 +151,8 @@ def read_luminaire(
     photometry = file if isinstance(file, Photometry) else load_photometry(file, lamp_set=lamp_set)
     if not isinstance(file, Photometry):
         tell(photometry)
-    placing = Placing(position, aim, direction, rotate, along, lumens, maintenance, color, group, name or photometry.name, soft)
+    called = name or photometry.name
+    placing = Placing(position, aim, direction, rotate, along, lumens, maintenance, color, group, called, soft, up)
     return placed(photometry, placing)
 
 
@@ -156,7 +162,28 @@ def placed(photometry: Photometry, placing: Placing) -> Luminaire:
     luminaire = placing.luminaire(
         photometry.web, photometry.flux, what, size=photometry.size, disc=photometry.disc, source=photometry.source
     )
-    return replace(luminaire, name=placing.name or photometry.name)
+    power = luminaire.power if placing.lumens is not None else luminaire.power * _of_tilt(photometry, luminaire, placing.up, what)
+    return replace(luminaire, name=placing.name or photometry.name, power=power)
+
+
+def _of_tilt(photometry: Photometry, luminaire: Luminaire, up: Any, what: str) -> float:
+    """Return the factor of the lamp's light for where a luminaire is aimed.
+
+    Raises:
+        SceneError: the factor is 0.
+    """
+    tilt = photometry.tilt
+    if tilt is None:
+        return 1.0
+    angle = float(np.degrees(np.arccos(np.clip(-luminaire.axes[2] @ up_of(up), -1, 1))))
+    if not tilt.reaches(angle):
+        ends = f"{tilt.angles[0]:g} to {tilt.angles[-1]:g}"
+        text = f"is tilted by {angle:.1f} degrees, and the factors of its file (TILT) are for {ends}"
+        warn(f"{what}: {text}; that of the end is taken")
+    factor = tilt.at(angle)
+    if not factor > 0:
+        raise SceneError(f"{what}: its lamp gives no light at a tilt of {angle:.1f} degrees (TILT); aim it elsewhere")
+    return factor
 
 
 def tell(photometry: Photometry) -> None:
@@ -214,17 +241,3 @@ def point_light(
     )
     flux = value * web.flux if key == "intensity" else value
     return replace(placing.luminaire(web, flux, what, photometric=key != "watts"), name=name or kind)
-
-
-def _bands(color: ArrayLike | None, what: str) -> np.ndarray:
-    """Return what the flux is multiplied by in each band: 1, or three numbers whose photopic mean is 1.
-
-    Raises:
-        SceneError: the colour is none.
-    """
-    if color is None:
-        return np.ones(1)
-    values = point(color, "color", what)
-    if values.min() < 0 or not values.any():
-        raise SceneError(f"{what}: color is {values.tolist()}; expected three numbers, not negative, and one above zero")
-    return values / (PHOTOPIC @ values)

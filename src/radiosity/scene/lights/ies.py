@@ -10,6 +10,7 @@ from ...errors import SceneError, printable
 from .angle_types import to_type_c
 from .photometry import AGREE, Photometry
 from .text import Words, lines_of, whole
+from .tilt import Tilt, read_tilt, tilt_of_file
 from .unfold import checked_angles, checked_intensities, unfolded
 from .web import Web
 
@@ -56,7 +57,7 @@ def read(path: Path) -> Photometry:
     keywords = _keywords(lines[:tilt])
     words, notes = Words.of(lines[tilt + 1 :], tilt + 2, source), []
     version = _version(lines[0], notes)
-    _tilt(lines[tilt].split("=", 1)[1].strip(), words, notes)
+    leaning = _tilt(lines[tilt].split("=", 1)[1].strip(), words, path, notes)
     header = _header(words)
     vertical = words.several(header.n_vertical, "the vertical angles")
     horizontal = words.several(header.n_horizontal, "the horizontal angles")
@@ -69,7 +70,8 @@ def read(path: Path) -> Photometry:
     size, disc = _size(header)
     name = next((keywords[key] for key in NAMES if keywords.get(key)), path.stem)
     stated = np.nan  # a file states the lamps' flux, and that of the luminaire nowhere
-    return Photometry(web, web.flux, stated, size, disc, name, keywords.get("MANUFAC", ""), header.watts, source, tuple(notes))
+    maker = keywords.get("MANUFAC", "")
+    return Photometry(web, web.flux, stated, size, disc, name, maker, header.watts, source, tuple(notes), leaning)
 
 
 def _version(line: str, notes: list[str]) -> int:
@@ -92,20 +94,12 @@ def _keywords(lines: list[str]) -> dict[str, str]:
     return found
 
 
-def _tilt(said: str, words: Words, notes: list[str]) -> None:
-    """Read past what the file says of the lamp's flux at other tilts."""
+def _tilt(said: str, words: Words, path: Path, notes: list[str]) -> Tilt | None:
+    """Return what the file says of the lamp's light at other tilts; None where it says nothing."""
     if said.upper() == "NONE":
-        return
-    if said.upper() != "INCLUDE":
-        notes.append(f"the lamp's flux at other tilts stands in '{printable(said)}', which is not read")
-        return
-    whole(words.take("the lamp's place (TILT)"), words.where, "the lamp's place (TILT)", 1, 3)
-    count = whole(words.take("the number of tilts"), words.where, "the number of tilts", 1, MOST_ANGLES)
-    words.several(count, "the angles of TILT")
-    factors = words.several(count, "the factors of TILT")
-    if min(factors) != max(factors) or factors[0] != 1:
-        text = f"the lamp's flux changes by {min(factors):g} to {max(factors):g} as the luminaire is tilted (TILT); that is not"
-        notes.append(f"{text} applied: give lumens = for one that is tilted")
+        return None
+    tilt = read_tilt(words) if said.upper() == "INCLUDE" else tilt_of_file(path, said, notes)
+    return tilt if tilt is not None and tilt.matters else None
 
 
 def _header(words: Words) -> _Header:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .tilt import Tilt
 from .web import Web
 
 AGREE = 0.02  # share by which a file's stated flux may differ from that of its intensities without a word
@@ -23,6 +24,7 @@ class Photometry:
         watts: electric power, or NaN.
         source: the file.
         notes: what was found that differs from what the file says, or is left out.
+        tilt: factors of the lamp's light where the luminaire is not aimed straight down; None: it is the same.
 
     Example:
         >>> import pathlib
@@ -43,6 +45,7 @@ class Photometry:
     watts: float
     source: str
     notes: tuple[str, ...] = ()
+    tilt: Tilt | None = None
 
 
 def differs(stated: float, found: float) -> bool:

@@ -146,11 +146,7 @@ class _Run:
     def found(self, hourly: bool) -> AnnualDaylight:
         begun, stop, teller = perf_counter(), Stop(), Teller(self.budget, self.progress)
         geometry = Geometry(self.patches.solid, choose(self.device))
-        if geometry.some_backs_pass:
-            raise MethodError(
-                f"{self.patches.scene.source}: some backs let lines pass, so what a sensor sees is not what sees the sensor; "
-                "daylight of a year needs both to be equal: make these surfaces radiate or absorb on both sides"
-            )
+        _refuse_passing(geometry)
         geometry.prepare()
         problem = Problem.of(self.patches)
         teller.begin(0)
@@ -268,6 +264,14 @@ def _tell_of_lights(scene: Scene) -> None:
     if names := [*(one.name for one in scene.lights.all), *lit]:
         told = "annual daylight is of the weather's skies and suns; the scene's own light is left out"
         warn(f"{scene.source}: {told}: {shown(names)}")
+
+
+def _refuse_passing(geometry: Geometry) -> None:
+    if geometry.some_backs_pass:
+        raise MethodError(
+            f"{geometry.scene.source}: some backs let lines pass, so that a line sees several surfaces; a year counts one: "
+            "make these surfaces radiate or absorb on both sides"
+        )
 
 
 def _refuse_large(sensors: int, patches: int, sky: int, replicates: int, hours: int) -> None:

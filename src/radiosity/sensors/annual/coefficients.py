@@ -48,7 +48,7 @@ class Replicate:
     def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
         """Return what sensors get from each sky patch of radiance 1, straight and reflected, (n_sensors, n_sky_patches) each."""
         seen, factors = self.receivers.mean_of_planes(self.sensors.shares()), self.patches.shares()
-        parts = (np.float32(share) * weights(seen, factors, one) for share, one in photopic_scatter(self.problem))
+        parts = (np.float32(share) * weights(seen, factors, one) for share, one in photopic_scatters(self.problem))
         of_patches = np.sum(list(parts), axis=0)
         seen_at_all = np.flatnonzero(of_patches.any(axis=0))
         self.places, self.weights = self.patches.lines.packets.place[seen_at_all], of_patches[:, seen_at_all]
@@ -70,12 +70,10 @@ class Replicate:
         return self.receivers.mean_of_planes(straight.T), self.weights @ lit.T
 
 
-def photopic_scatter(problem: Problem) -> list[tuple[float, Scatter]]:
-    """Return what patches send on, of each group of bands, and the share of white light that it is for."""
+def photopic_scatters(problem: Problem) -> list[tuple[float, Scatter]]:
+    """Return what patches send on of what they receive, in groups of bands, and the share of white light of each."""
     scatter, groups = problem.groups.scatter, problem.groups.index
-    if len(groups) == 1:
-        return [(1.0, scatter.column(0))]
-    shares = np.bincount(groups, PHOTOPIC, problem.groups.n_groups)
+    shares = np.bincount(groups, PHOTOPIC if len(groups) > 1 else None, problem.groups.n_groups)
     return [(float(share), scatter.column(group)) for group, share in enumerate(shares)]
 
 

@@ -14,26 +14,27 @@ AT_ONCE = 256  # sensors
 def weights(seen: Any, factors: Any, scatter: Scatter) -> np.ndarray:
     """Return the irradiance of each sensor by a unit of irradiance on each patch, all reflections together.
 
-    A sensor gets g B from B = rho (H + F B), so that its weights are y rho, where y = g + (y rho) F: the equation is solved
-    backwards, for each sensor in place of each light. On diffusing panes rho couples both sides, alike in both directions.
+    A sensor gets g B from B = S (H + F B), so that its weights are y S, where y = g + (y S) F: the equation is solved backwards,
+    for each sensor in place of each light. S, what patches send on, is symmetric.
 
     Args:
         seen: g, the share of each sensor's lines that hit each patch, a sparse array (n_sensors, n_patches).
         factors: F, that of each patch's lines, a sparse array (n_patches, n_patches).
-        scatter: what patches send on, of one band.
+        scatter: S, (n_patches,) numbers.
 
     Returns:
         (n_sensors, n_patches) float32.
     """
-    backwards, sent_on = factors.T.tocsr(), scatter.in_column.of
+    backwards, least = factors.T.tocsr(), TOLERANCE * (1 - scatter.albedo.max())
+    sent = scatter.in_column
     found = np.empty(seen.shape, np.float32)
     for at in range(0, seen.shape[0], AT_ONCE):
-        new = sent_on(seen[at : at + AT_ONCE].T.toarray())
+        new = sent.of_rows(seen[at : at + AT_ONCE].toarray(), 0).T
         total = new.copy()
         for _ in range(MOST):
-            new = sent_on(backwards @ new)
+            new = sent.of_rows((backwards @ new).T, 0).T
             total += new
-            if new.sum() <= TOLERANCE * total.sum() * (1 - scatter.albedo.max()):
+            if new.sum() <= least * total.sum():
                 break
         found[at : at + AT_ONCE] = total.T
     return found

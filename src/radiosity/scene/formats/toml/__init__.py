@@ -22,6 +22,7 @@ from .heat import check_bands, heat_of, reflecting
 from .luminaires import luminaires_of, warn_of_y_up
 from .panes import check_pane, clear_light
 from .sensors import sensors_of
+from .upward import upward_of
 
 BACKS = {"absorbs": Back.ABSORBS, "radiates": Back.RADIATES, "passes": Back.PASSES, "open": Back.OPEN}
 SIDES = {1: Back.ABSORBS, 2: Back.RADIATES}
@@ -75,10 +76,11 @@ def read(path: Path, options: ReadOptions) -> Scene:
     own = {name: e for one in scenes if one.heat for name, e in zip(one.names, one.heat.emissivity, strict=True)}
     heat = heat_of(asked, scene.names, looks.means, str(path), own)
     scene = looks.with_powers(replace(scene, cameras=cameras + scene.cameras, heat=heat), str(path))
-    scene = replace(scene, sensors=sensors_of(asked.sensors, UNITS[asked.unit] * asked.scale, scene, options, path))
-    luminaires = luminaires_of(asked.luminaire, UNITS[asked.unit] * asked.scale, options, path)
-    warn_of_y_up(asked.luminaire, scene, path)
-    lights = daylight_of(asked, scene, UNITS[asked.unit] * asked.scale, options, path)
+    factor, up = UNITS[asked.unit] * asked.scale, upward_of(asked, scene, path)
+    scene = replace(scene, sensors=sensors_of(asked.sensors, factor, scene, options, path, up))
+    luminaires = luminaires_of(asked.luminaire, factor, options, path, up)
+    warn_of_y_up(asked.luminaire, up, path)
+    lights = daylight_of(asked, scene, factor, options, path, up)
     return _lit(scene, replace(lights, luminaires=tuple(luminaires)), asked.photometric, path)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ....errors import SceneError, shown
 from ...assemble import warn
+from ...lights.color import colored
 from ...lights.model import Lights
 from ...lights.openings import opening
 from ...lights.perez import DEW_POINT
@@ -19,11 +20,10 @@ from ...lights.sun_position import YEAR, day_of_year, sun_position
 from ...lights.weather import epw_sky, perez_sky
 from ...model import Scene
 from ...parts import ReadOptions
-from ...up import Z_UP, up_axis
 from ..beside import named_file
 
 
-def daylight_of(asked: Any, scene: Scene, factor: float, options: ReadOptions, source: Path) -> Lights:
+def daylight_of(asked: Any, scene: Scene, factor: float, options: ReadOptions, source: Path, up: np.ndarray) -> Lights:
     """Return the sky, the suns, and the openings of a file.
 
     Args:
@@ -32,12 +32,13 @@ def daylight_of(asked: Any, scene: Scene, factor: float, options: ReadOptions, s
         factor: metres of a unit of length of the file.
         options: of reading.
         source: the .toml file.
+        up: (3,) the direction that seems to be up.
 
     Raises:
         SceneError: a value makes no sense; the message names the entry.
     """
     try:
-        sky, suns = _far(asked, scene, options, source)
+        sky, suns = _far(asked, options, source, up)
     except SceneError as error:
         said = str(error)
         raise SceneError(said if said.startswith(str(source)) else f"{source}: {said}") from None
@@ -49,13 +50,12 @@ def daylight_of(asked: Any, scene: Scene, factor: float, options: ReadOptions, s
     return Lights(suns=suns, sky=sky, openings=np.concatenate(polygons) if polygons else None)
 
 
-def _far(asked: Any, scene: Scene, options: ReadOptions, source: Path) -> tuple[Sky | None, tuple[Sun, ...]]:
+def _far(asked: Any, options: ReadOptions, source: Path, up: np.ndarray) -> tuple[Sky | None, tuple[Sun, ...]]:
     sky, sun = asked.sky, asked.sun
     if sky is None and sun is None:
         return None, ()
     in_lumens = sky is not None or sun.illuminance is not None if asked.photometric is None else asked.photometric
-    of_z = all(Path(entry.file).suffix.lower() in Z_UP for entry in asked.geometry)
-    frame = _frame(sky, sun, source, "z" if of_z else up_axis(scene))
+    frame = _frame(sky, sun, source, "y" if up[1] == 1 else "z")
     if _place(sky) and _place(sun) and _place(sky) != _place(sun):
         raise SceneError(f"sky and sun place the sun at {_place(sky)} and {_place(sun)} (altitude, azimuth); give its place once")
     suns = () if sun is None else (_sun(sun, _place(sun) or _place(sky), frame, in_lumens),)
@@ -63,7 +63,8 @@ def _far(asked: Any, scene: Scene, options: ReadOptions, source: Path) -> tuple[
         return None, suns
     if suns and sky.type in ("perez", "epw"):
         raise SceneError(f"the sky of type {sky.type} has a sun of its own; leave [sun] out, or take another type of sky")
-    return _sky(sky, None if sun is None else _place(sun), suns, frame, in_lumens, options, source)
+    found, suns = _sky(sky, None if sun is None else _place(sun), suns, frame, in_lumens, options, source)
+    return colored(found, sky.color), tuple(colored(one, sky.sun_color) for one in suns)
 
 
 def _sun(entry: Any, place: tuple[float, float] | None, frame: dict, in_lumens: bool) -> Sun:
@@ -74,7 +75,7 @@ def _sun(entry: Any, place: tuple[float, float] | None, frame: dict, in_lumens: 
         how = "the light of a sky is in lm/m² unless photometric = false" if in_lumens else "photometric is false"
         raise SceneError(f"sun: {given} is in {unit}, and {how}; give {key}, or photometric = {str(not in_lumens).lower()}")
     altitude, azimuth = (None, None) if place is None or entry.direction else place
-    return sun_of(
+    found = sun_of(
         light,
         altitude=altitude,
         azimuth=azimuth,
@@ -84,6 +85,7 @@ def _sun(entry: Any, place: tuple[float, float] | None, frame: dict, in_lumens: 
         name=entry.name,
         **frame,
     )
+    return colored(found, entry.color)
 
 
 def _sky(entry, place, suns, frame: dict, in_lumens: bool, options: ReadOptions, source: Path):

@@ -10,14 +10,12 @@ from ...assemble import warn
 from ...lights.build import Placing, load_photometry, placed, point_light, tell
 from ...lights.luminaire import Luminaire
 from ...lights.photometry import Photometry
-from ...model import Scene
 from ...parts import ReadOptions
-from ...up import up_axis
 from ..beside import named_file
 from ..names import numbered
 
 
-def luminaires_of(entries, factor: float, options: ReadOptions, source: Path) -> list[Luminaire]:
+def luminaires_of(entries, factor: float, options: ReadOptions, source: Path, up: np.ndarray) -> list[Luminaire]:
     """Return the luminaires of a file. Each luminaire file is read once.
 
     Args:
@@ -25,6 +23,7 @@ def luminaires_of(entries, factor: float, options: ReadOptions, source: Path) ->
         factor: metres of a unit of length of the file.
         options: of reading.
         source: the .toml file.
+        up: (3,) the direction that is up.
 
     Raises:
         SceneError: a luminaire file is missing or damaged, or a value makes no sense; the message names the entry.
@@ -35,7 +34,7 @@ def luminaires_of(entries, factor: float, options: ReadOptions, source: Path) ->
     for number, entry in enumerate(entries, 1):
         for position in entry.positions or [entry.position]:
             try:
-                one = _luminaire(entry, np.asarray(position) * factor, factor, options, source, read)
+                one = _luminaire(entry, np.asarray(position) * factor, factor, options, source, read, up)
             except SceneError as error:
                 said = str(error)
                 raise SceneError(said if said.startswith(f"{source}: ") else f"{source}: luminaire {number}: {said}") from None
@@ -43,15 +42,15 @@ def luminaires_of(entries, factor: float, options: ReadOptions, source: Path) ->
     return result
 
 
-def warn_of_y_up(entries, scene: Scene, source: Path) -> None:
+def warn_of_y_up(entries, up: np.ndarray, source: Path) -> None:
     """Tell once that luminaires look along -z by default, where the scene seems to have y upwards."""
     unaimed = [entry for entry in entries if entry.aim is None and entry.direction is None and entry.type != "point"]
-    if unaimed and up_axis(scene) == "y":
+    if unaimed and up[1] == 1:
         text = f"{len(unaimed)} luminaires have neither aim nor direction, and point along -z; the scene seems to have y upwards"
         warn(f"{source}: {text}: give direction = [0, -1, 0], or [0, 0, -1] where z is up")
 
 
-def _luminaire(entry, position, factor: float, options: ReadOptions, source: Path, read: dict) -> Luminaire:
+def _luminaire(entry, position, factor: float, options: ReadOptions, source: Path, read: dict, up: np.ndarray) -> Luminaire:
     aim = None if entry.aim is None else np.asarray(entry.aim) * factor
     common = {"position": position, "aim": aim, "direction": entry.direction, "maintenance": entry.maintenance}
     common |= {"color": entry.color, "group": entry.group, "name": entry.name}
@@ -64,4 +63,4 @@ def _luminaire(entry, position, factor: float, options: ReadOptions, source: Pat
         read[key] = load_photometry(path, lamp_set=entry.lamp_set)
         tell(read[key])
     turned = {"rotate": entry.rotate, "along": entry.along, "lumens": entry.lumens, "soft": entry.soft}
-    return placed(read[key], Placing(**common, **turned))
+    return placed(read[key], Placing(**common, **turned, up=up))

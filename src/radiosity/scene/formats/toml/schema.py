@@ -195,8 +195,8 @@ OF_SKIES = {  # the keys that a sky of each type needs, and those that it may ha
     "cie-clear": (("horizontal",), (*PLACE, *DATE)),
     "cie-intermediate": (("horizontal",), (*PLACE, *DATE)),
     "cie-general": (("horizontal", "cie_type"), (*PLACE, *DATE)),
-    "perez": (("direct", "diffuse"), ("dew_point", "diameter", *PLACE, *DATE)),
-    "epw": (("file", *DATE), ("diameter",)),
+    "perez": (("direct", "diffuse"), ("dew_point", "diameter", "sun_color", *PLACE, *DATE)),
+    "epw": (("file", *DATE), ("diameter", "sun_color")),
 }
 
 
@@ -212,6 +212,7 @@ class _Far(_Table):
     day: Annotated[int, Field(ge=1, le=31)] | None = None
     hour: Annotated[float, Field(ge=0, le=24)] | None = None
     year: int | None = None
+    color: Annotated[list[NotNegative], Field(min_length=3, max_length=3)] | None = None
     diameter: Annotated[float, Field(ge=0, lt=180)] | None = None
     up: Up | None = None
     north: Point | None = None
@@ -238,6 +239,7 @@ class SkyEntry(_Far):
     file: Annotated[str, Field(min_length=1)] | None = None
     ground: Annotated[float, Field(ge=0, le=1)] = 0.0
     openings: Annotated[list[str], BeforeValidator(_listed)] = []
+    sun_color: Annotated[list[NotNegative], Field(min_length=3, max_length=3)] | None = None
     name: str = "sky"
 
     @model_validator(mode="after")

@@ -10,11 +10,10 @@ from ...model import Scene
 from ...parts import ReadOptions
 from ...sensor_request import SensorRequest
 from ...sensor_table import read
-from ...up import up_vector
 from ..beside import named_file
 
 
-def sensors_of(entries, factor: float, scene: Scene, options: ReadOptions, source: Path) -> tuple[SensorRequest, ...]:
+def sensors_of(entries, factor: float, scene: Scene, options: ReadOptions, source: Path, up) -> tuple[SensorRequest, ...]:
     """Return the sensors that a file asks for.
 
     Args:
@@ -23,11 +22,12 @@ def sensors_of(entries, factor: float, scene: Scene, options: ReadOptions, sourc
         scene: of all geometry.
         options: of reading.
         source: the .toml file.
+        up: (3,) the direction in which planes look that have none.
 
     Raises:
         SceneError: no such surface or file, a file that cannot be read, or two sets of one name; it names the entry.
     """
-    up = up_vector(scene)
+    up = tuple(up.tolist())
     made: dict[str, SensorRequest] = {}
     for number, entry in enumerate(entries, 1):
         where = f"{source}: sensors {number}"
