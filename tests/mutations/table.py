@@ -176,7 +176,7 @@ MISTAKES = (
         "cones and rings have another area than they should",
     ),
     Mistake(
-        "scene/formats/glazing.py",
+        "scene/clear_glass.py",
         "** (1 / inside)",
         "** 1.0",
         ("test_formats_radiance.py", "test_formats_honeybee.py"),
