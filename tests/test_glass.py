@@ -94,6 +94,22 @@ def test_all_methods_solve_a_box_behind_glass(method):
     assert (np.abs(walls) < 5 * error[:2] + 5 * means(solution, solution.irradiance_standard_error)[:2, 0]).all()
 
 
+def test_what_glass_takes_and_sends_is_reciprocal():
+    """A_i F_ij = A_j F_ji between its solid part and each wall, along lines that begin at either. Flat ones meet more of it."""
+    scene = two_boxes((3.0, 1.0), (0.0, 0.0), rho=0.0, tau=0.0, clear=MEAN)
+    patches = rd.subdivide(replace(scene, refractive_index=INDEX * scene.panes), cells=1)
+    lines = rd.trace_lines(patches, rays=300_000, replicates=8).one_way
+    factors = lines.pairs.between(np.arange(len(patches)))[:, :, : len(patches)]
+    exchange = factors * patches.solid.area[:, None]
+    pane, walls = np.flatnonzero(patches.surface == 2)[0], np.arange(5)
+    there, back = exchange[:, pane, walls], exchange[:, walls, pane]
+    error = np.sqrt((there.var(axis=0, ddof=1) + back.var(axis=0, ddof=1)) / 8)
+    assert (np.abs(there.mean(axis=0) - back.mean(axis=0)) < 5 * error).all()
+    assert (error < 0.06 * back.mean(axis=0)).all()
+    # between opposite squares of a cube 0.1998 of cosine distributed lines: glass lets most of these through
+    assert there.mean(axis=0)[4] + 5 * error[4] < 0.9 * 0.1998 * patches.solid.area[pane]
+
+
 def test_hashes_files_and_choices_of_faces(tmp_path):
     scene = glazed([WINDOW, np.add(WINDOW, [0, 1, 0])], [False, True], emission=[1.0, 0.0])
     plain = replace(scene, refractive_index=None)

@@ -155,7 +155,7 @@ def tell_of_rest(scene: Scene, told: Told, holds: frozenset[str]) -> None:
             called(scene, single) if "emission" in holds else (),
         ),
         ("panes", "panes become opaque", called(scene, scene.panes)),
-        ("diffusing panes", "panes that diffuse light become opaque", called(scene, scene.diffusers)),
+        ("diffusing panes", "diffusing panes become opaque", called(scene, scene.diffusers)),
         (
             "glass",
             "glass gets one transmittance for all angles",
