@@ -25,7 +25,7 @@ class Live:
         live: Show in a browser how the solution improves, with a plot of its error. The results stay the same to the last bit.
         host: The address to listen at. Default: only this machine can open the page. 0.0.0.0 lets everybody in the same network
             open it, who needs no password.
-        port: The first port to try; 0: any that is free.
+        port: The first port to try; 0: any that is free. Default: 8080.
     """
 
     live: Flag = False
@@ -65,7 +65,7 @@ def page(options: Live, scene) -> Iterator[Any]:
     from ..viewer.live import Live as Page
 
     shown = rd.subdivide(scene, cells=1) if isinstance(scene, rd.Scene) else scene
-    host, port = options.host or Served.host, Served.port if options.port is None else options.port
+    host, port = Served(options.host, options.port).place
     with rd.view(shown, host=host, port=port) as viewer:
         tell(address_told(viewer.url, port, "ends the run early"))
         yield Page(viewer)

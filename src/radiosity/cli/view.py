@@ -7,12 +7,14 @@ from typing import Annotated
 
 from cyclopts import Group, Parameter
 
-from ..errors import MethodError, RadiosityWarning, SceneError, printable
+from ..errors import MethodError, OutputError, RadiosityWarning, SceneError, printable
 from . import interrupts
 from .false_colors import range_of
 from .options import Flag, Pair, Stops
 from .solve_options import SceneOptions, Size, Unset
 from .streams import tell
+
+HOST, PORT = "localhost", 8080
 
 
 @dataclass(frozen=True)
@@ -48,13 +50,27 @@ class Served:
     Attributes:
         host: The address to listen at. Default: only this machine can open the page. 0.0.0.0 lets everybody in the same network
             open it, who needs no password.
-        port: The first port to try; 0: any that is free.
+        port: The first port to try; 0: any that is free. Default: 8080.
         html: Write the page to this .html file instead, which needs no server and no network.
     """
 
-    host: str = "localhost"
-    port: int = 8080
+    host: str | None = None
+    port: int | None = None
     html: Path | None = None
+
+    @property
+    def place(self) -> tuple[str, int]:
+        """Host and port to listen at.
+
+        Raises:
+            OutputError: a file has neither.
+        """
+        if self.html is None:
+            return self.host or HOST, PORT if self.port is None else self.port
+        given = [f"--{name}" for name in ("host", "port") if getattr(self, name) is not None]
+        if given:
+            raise OutputError(f"{' and '.join(given)}: of a page that is served; leave out, or --html {self.html}")
+        return HOST, 0
 
 
 class Usual:
@@ -86,15 +102,15 @@ def view(
 
     from ..viewer.server import require
 
-    interval = range_of(shown)
+    interval, (host, port) = range_of(shown), served.place
     require()
     if served.html is not None:
         _check_html(served.html)
     subject, findings = _subject(scene, size, reading)
     viewer = rd.view(
         subject,
-        host="localhost" if served.html is not None else served.host,
-        port=0 if served.html is not None else served.port,
+        host=host,
+        port=port,
         quantity=shown.quantity,
         band=shown.band,
         smooth=shown.smooth,
@@ -110,7 +126,7 @@ def view(
             viewer.save_html(served.html)
             tell(f"wrote {printable(served.html)}")
             return 0
-        tell(address_told(viewer.url, served.port))
+        tell(address_told(viewer.url, port))
         try:
             viewer.wait()
         except KeyboardInterrupt:  # the usual end

@@ -11,7 +11,7 @@ from . import glb, tone_mapping
 from .frame import Frame
 from .look import Look
 from .mesh import Shapes, Triangles
-from .refinement import refined
+from .refinement import MOST, refined
 from .shades import Colours
 from .subject import Subject
 
@@ -74,7 +74,7 @@ class Content:
                 continue
             part = whole.take(order[begin:end])
             part = part if look.cut is None else part.cut(look.cut)
-            part = refined(part, colours.linear) if look.smooth else part
+            part = refined(part, colours.linear) if look.smooth and len(whole.corners) <= MOST else part
             if len(part.corners):
                 yield f"/surfaces/{number}", self._glb(part, colours)
 

@@ -29,8 +29,11 @@ class Triangles:
 
     def take(self, keep: np.ndarray) -> "Triangles":
         """Return some of the triangles (indices or mask), with the vertices that they use."""
-        used, corners = np.unique(self.corners[keep], return_inverse=True)
-        return Triangles(self.vertices[used], self.values[used], corners.reshape(-1, 3), self.patch[keep])
+        corners = self.corners[keep]
+        flags = np.zeros(len(self.vertices), bool)
+        flags[corners] = True
+        number = np.cumsum(flags) - 1
+        return Triangles(self.vertices[flags], self.values[flags], number[corners], self.patch[keep])
 
     def cut(self, plane: Cut) -> "Triangles":
         """Return what lies on the shown side of a plane; triangles across it are cut, with values interpolated linearly."""

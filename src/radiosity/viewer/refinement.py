@@ -8,13 +8,15 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..image.tone import srgb
 from . import tone_mapping
 from .mesh import Triangles
 
 DIFFERENCE = 1.5 / 255  # of display values: what is left between corners
+ALIKE = 5 / 255  # of display values: between colours that differ by less, no difference of more than about two levels arises
 SAMPLES = (0.25, 0.5, 0.75)  # places on an edge where colours are compared
 ROUNDS = 7  # of halving: an edge becomes at most 128 pieces
-MOST = 3_000_000  # triangles: above that they are left as they are
+MOST = 300_000  # triangles: more of them are so small that they are left as they are
 
 
 def refined(triangles: Triangles, linear: Callable[[np.ndarray], np.ndarray]) -> Triangles:
@@ -26,30 +28,53 @@ def refined(triangles: Triangles, linear: Callable[[np.ndarray], np.ndarray]) ->
     """
     fresh = np.arange(len(triangles.corners))
     for _ in range(ROUNDS):
-        edges = np.sort(triangles.corners[fresh][:, [[0, 1], [1, 2], [2, 0]]], axis=2)
-        key = edges[..., 0].astype(np.int64) * len(triangles.vertices) + edges[..., 1]
-        unique, place = np.unique(key, return_inverse=True)
-        ends = np.stack([unique // len(triangles.vertices), unique % len(triangles.vertices)])
+        rows, edge, ends = _unlike(triangles, fresh, linear)
         wrong = _wrong(triangles.values[ends[0]], triangles.values[ends[1]], linear)
-        if not wrong.any() or len(triangles.corners) > MOST:
+        if not wrong.any():
             return triangles
-        middle = np.where(wrong, len(triangles.vertices) + np.cumsum(wrong) - 1, -1)[place.reshape(key.shape)]
+        middle = np.full((len(fresh), 3), -1)
+        number = np.where(wrong, len(triangles.vertices) + np.cumsum(wrong) - 1, -1)
+        middle[rows] = np.where(edge >= 0, number[edge], -1)
         triangles, fresh = _halved(triangles, fresh, middle, ends[:, wrong])
     return triangles
 
 
+def _unlike(
+    triangles: Triangles, rows: np.ndarray, linear: Callable[[np.ndarray], np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return edges whose ends differ in colour, of some of the triangles.
+
+    Returns:
+        Which of ``rows`` have such edges, (k,); the number of each of their edges, (k, 3), -1 where it is none of them; and the
+        vertices at the ends of the edges, (2, n).
+    """
+    corners = triangles.corners[rows]
+    shown = np.empty((len(triangles.vertices), 3))
+    used = _used(corners, len(shown))
+    shown[used] = srgb(linear(triangles.values[used]))
+    far = np.stack([np.abs(shown[corners[:, i]] - shown[corners[:, (i + 1) % 3]]).max(axis=1) > ALIKE for i in range(3)], axis=1)
+    some = np.flatnonzero(far.any(axis=1))
+    pairs = np.sort(corners[some][:, [[0, 1], [1, 2], [2, 0]]], axis=2)[far[some]]
+    key, place = np.unique(pairs[:, 0].astype(np.int64) * len(shown) + pairs[:, 1], return_inverse=True)
+    edge = np.full((len(some), 3), -1)
+    edge[far[some]] = place
+    return some, edge, np.stack([key // len(shown), key % len(shown)])
+
+
+def _used(corners: np.ndarray, count: int) -> np.ndarray:
+    flags = np.zeros(count, bool)
+    flags[corners] = True
+    return np.flatnonzero(flags)
+
+
 def _wrong(first: np.ndarray, second: np.ndarray, linear: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
     """Return which edges, with values (n, n_bands) at their ends, show wrong colours between them, (n,) bool."""
-    from ..image.tone import srgb
-
-    a, b = linear(first), linear(second)
-    result = np.zeros(len(a), bool)
-    unlike = np.flatnonzero(np.abs(srgb(a) - srgb(b)).max(axis=1) > DIFFERENCE)
-    one, other = tone_mapping.before(a[unlike]), tone_mapping.before(b[unlike])
+    one, other = tone_mapping.before(linear(first)), tone_mapping.before(linear(second))
+    result = np.zeros(len(one), bool)
     for share in SAMPLES:
         shown = tone_mapping.after(one + share * (other - one))
-        meant = linear(first[unlike] + share * (second[unlike] - first[unlike]))
-        result[unlike] |= np.abs(srgb(shown) - srgb(meant)).max(axis=1) > DIFFERENCE
+        meant = linear(first + share * (second - first))
+        result |= np.abs(srgb(shown) - srgb(meant)).max(axis=1) > DIFFERENCE
     return result
 
 
