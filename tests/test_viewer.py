@@ -214,3 +214,14 @@ def test_who_watches_a_run_changes_nothing(method, order, rays, stages):
         np.testing.assert_array_equal(getattr(watched, name), getattr(plain, name))
     assert all(np.array_equal(plain.state[key], watched.state[key]) for key in plain.state)
     assert (watched.quanta, watched.status) == (plain.quanta, "complete")
+
+
+def test_too_many_edges_are_refused(solution, monkeypatch):
+    content = Content.of(Subject.of(solution))
+    points, _, lines, _ = parsed(content.edges(Look()))
+    sides = points[lines]
+    assert len(lines) == 4 * len(solution.patches)
+    assert np.linalg.norm(sides[:, 0] - sides[:, 1], axis=1).min() > 0.05
+    monkeypatch.setattr("radiosity.viewer.content.MOST_EDGED", 10)
+    with pytest.raises(rd.OutputError, match=r"patches have too many edges to see; hide surfaces until 10 are left"):
+        content.edges(Look())

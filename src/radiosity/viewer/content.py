@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..errors import OutputError
 from . import glb, tone_mapping
 from .frame import Frame
 from .look import Look
@@ -18,6 +19,7 @@ from .subject import Subject
 MOST_NODES = 128  # surfaces with a mesh of their own, the largest ones; smaller ones share one, since each costs a draw call
 LIFT = 2e-3  # of a patch's size, by which its edges lie in front of it
 EDGE = 0.35  # linear grey of edges
+MOST_EDGED = 300_000  # patches whose edges can be drawn: more of them could not be told apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +81,15 @@ class Content:
                 yield f"/surfaces/{number}", self._glb(part, colours)
 
     def edges(self, look: Look) -> bytes | None:
-        """Return the edges of the patches that are shown, as a GLB of lines; None where there are none."""
+        """Return the edges of the patches that are shown, as a GLB of lines; None where there are none.
+
+        Raises:
+            OutputError: there are too many of them.
+        """
         patches = self.subject.patches
         shown = np.flatnonzero(~np.isin(patches.surface, list(look.hidden)))
+        if len(shown) > MOST_EDGED:
+            raise OutputError(f"{len(shown):,} patches have too many edges to see; hide surfaces until {MOST_EDGED:,} are left")
         corners = patches.corners[shown]
         if look.cut is not None:  # a patch that the plane cuts shows no edges
             kept = (look.cut.beyond(corners) <= 0).all(axis=1)

@@ -34,7 +34,7 @@ def told(subject: Subject, patch: int, point) -> str:
     ]
     if solution is not None:
         for title, unit in (("radiosity", solution.unit), ("irradiance", solution.irradiance_unit)):
-            low, high = (end[patch] for end in solution.interval(0.95, title))
+            low, high = (end[patch] for end in subject.intervals[title])
             for i, (band, value) in enumerate(_bands(scene, getattr(solution, title)[patch])):
                 known = np.isfinite([low[i], high[i]]).all()
                 between = f" ({_number(low[i])} to {_number(high[i])})" if known else " (error unknown)"

@@ -80,6 +80,7 @@ def _refuse_others(server: Server, host: str) -> None:
     A browser lets any page open a connection to this machine; it says which page that is. The library takes all of them, and
     has a button that shares the page through a server on the internet.
     """
+    server.gui.set_panel_label("radiosity")
     server.gui.configure_theme(show_logo=False, show_share_button=False, dark_mode=True)
     server.request_share_url = lambda verbose=True: None
 

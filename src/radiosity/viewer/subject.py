@@ -1,6 +1,7 @@
 """What the viewer shows: a solution, or a scene that is not solved yet, with the quantities that each has."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from ..image.quantity import Quantity
 from ..patches import Patches
 from ..scene import Scene
 from ..solution import Solution
+from ..solution.intervals import QUANTITIES
 
 ARRIVALS, LINES = "arrivals", "lines that hit the patch"
 OF_SCENES = {"reflectance": "reflectance", "emission": "emission"}
@@ -42,6 +44,11 @@ class Subject:
         if isinstance(what, Patches):
             return Subject(what)
         raise MethodError(f"view takes a Solution, a Scene or Patches, not {type(what).__name__}; load a file with load_solution")
+
+    @cached_property
+    def intervals(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """The ends of 95 % intervals of radiosity and irradiance, (n_patches, n_bands) each; empty before it is solved."""
+        return {} if self.solution is None else {name: self.solution.interval(0.95, name) for name in QUANTITIES}
 
     @property
     def names(self) -> dict[str, str]:
