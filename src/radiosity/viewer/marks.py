@@ -38,7 +38,7 @@ def _sensors(server, scene, frame: Frame, size: float) -> list[str]:
             tips = points + length * sensors.normals[rows]
             _arrows(server, f"/marks/sensors {number}", np.stack([points, tips], axis=1), SENSOR, length)
         server.scene.add_point_cloud(
-            f"/marks/points {number}", points, SENSOR, point_size=length / 2, precision="float32", point_shading="flat"
+            f"/marks/points {number}", points, SENSOR, point_size=length / 5, precision="float32", point_shading="flat"
         )
         told.append(f"{len(rows)} sensors '{name}'")
     return told

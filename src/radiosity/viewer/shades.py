@@ -10,7 +10,7 @@ from ..image.look import Look
 from ..image.quantity import Quantity
 from ..scene.formats.textures import decode_srgb
 
-LEGEND = 420  # pixels
+LEGEND = 300  # pixels
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,8 @@ class Colours:
         if shades.false:
             low, high = shades.limits or automatic_limits(values[:, 0], shades.log)
             return Colours(quantity, Palette(low, high, shades.log, shades.color_map), 1.0)
-        scale = tone.chosen_scale(Look(exposure=shades.exposure), lambda: tone.automatic_scale(values, area))
+        share = 1.0 if quantity.unit == "1" else None  # reflectances are shown as they are: 1 is white
+        scale = tone.chosen_scale(Look(exposure=shades.exposure, scale=share), lambda: tone.automatic_scale(values, area))
         return Colours(quantity, None, scale)
 
     def linear(self, values: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ from ..scene import Scene
 from ..solution import Solution
 from ..solution.replacing import replacing
 from . import about, eye, html, marks
-from .content import Content
+from .content import MOST_EDGED, Content
 from .look import Look
 from .page import Page
 from .panel import Panel
@@ -67,7 +67,7 @@ class Viewer:
             self.panel.parts["about"].content = about.text(subject, (), self._marks)
             return
         with self.page.paused(), self.server.atomic():  # there are other quantities to choose from
-            self.page.show(replace(self.page.look, quantity=None, band=None), subject)
+            self.page.show(replace(self.page.look, quantity=None, band=None, wireframe=False), subject)
             self.server.gui.reset()
             self.panel = Panel(self.page, about.text(subject, (), self._marks), self._views)
             self.panel.build()
@@ -150,4 +150,6 @@ def view(
         'http://localhost:41873'
     """
     shades = Shades(false_color, log, None if range is None else (float(range[0]), float(range[1])), color_map, exposure or 0.0)
-    return Viewer(Subject.of(what), Look(quantity, band, smooth, shades), host, port, findings)
+    subject = Subject.of(what)
+    edges = subject.solution is None and len(subject.patches) <= MOST_EDGED  # there is no light yet that would show shapes
+    return Viewer(subject, Look(quantity, band, smooth, shades, wireframe=edges), host, port, findings)
