@@ -15,6 +15,48 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "viewer/tone_mapping.py",
+        "return EXPOSURE * (np.sqrt(b * b - 4 * a * c) - b)",
+        "return (np.sqrt(b * b - 4 * a * c) - b)",
+        ("test_viewer.py",),
+        "the page shows other colours than its legend",
+    ),
+    Mistake(
+        "viewer/picking.py",
+        "((slope < 0) | ((slope > 0) & (scene.back == Back.RADIATES)))",
+        "(slope != 0)",
+        ("test_viewer.py",),
+        "a click meets backs that the page does not show",
+    ),
+    Mistake(
+        "viewer/mesh.py",
+        "share = (beyond[a] / (beyond[a] - beyond[other]))[:, None]",
+        "share = (beyond[other] / (beyond[other] - beyond[a]))[:, None]",
+        ("test_viewer.py",),
+        "cuts run beside their plane",
+    ),
+    Mistake(
+        "viewer/server.py",
+        "return urlsplit(origin).netloc == asked",
+        "return True",
+        ("test_viewer.py",),
+        "pages of other sites may read the scene",
+    ),
+    Mistake(
+        "viewer/refinement.py",
+        "(np.argmin(split, axis=1) + 1) % 3",
+        "np.argmin(split, axis=1)",
+        ("test_viewer.py",),
+        "triangles with two halved edges leave gaps",
+    ),
+    Mistake(
+        "run/run.py",
+        "at_once = self.watch is None and self.ladder",
+        "at_once = self.ladder",
+        ("test_viewer.py",),
+        "who watches a run sees its end alone",
+    ),
+    Mistake(
         "tally/far_sides.py",
         "dr.gather(u32, arrivals, self.beyond(number), tau > 0)",
         "dr.gather(u32, arrivals, number, tau > 0)",

@@ -96,13 +96,12 @@ def _halved(triangles: Triangles, rows: np.ndarray, middle: np.ndarray, ends: np
         here = np.flatnonzero(count == halves)
         # turned so that its halved edges come first, in the order of the template
         split = middle[here] >= 0
-        turn = (
-            np.argmax(split, axis=1)
-            if halves == 1
-            else (np.argmin(split, axis=1) + 1) % 3
-            if halves == 2
-            else np.zeros(len(here), int)
-        )
+        if halves == 1:
+            turn = np.argmax(split, axis=1)
+        elif halves == 2:
+            turn = (np.argmin(split, axis=1) + 1) % 3
+        else:
+            turn = np.zeros(len(here), int)
         order = (turn[:, None] + np.arange(3)) % 3
         six = np.concatenate(
             [np.take_along_axis(triangles.corners[rows[here]], order, axis=1), np.take_along_axis(middle[here], order, axis=1)],
