@@ -69,9 +69,10 @@ class Rows(Ours):
         one, other = np.repeat(self.rows, n), np.tile(np.arange(n), len(self.rows))
         values = np.concatenate([exchange(corners[np.full(n, row)], corners) for row in self.rows])
         values[one == other] = 0
-        some = np.flatnonzero(values)
+        some, area = np.flatnonzero(values), self.patches.area
         pairs = FacingPairs(Geometry(self.patches, choose("auto")), one[some], other[some], values[some])
-        values[some] *= pairs.shares(size, self.REPLICATES, Seed(seed)).mean(axis=0)
+        rays = size * self.REPLICATES * len(some)
+        values[some] *= pairs.shares((values[some] / area[one[some]]) ** 2, rays, self.REPLICATES, Seed(seed)).values
         return values.reshape(len(self.rows), n) / self.patches.area[self.rows, None], used() - begun
 
 

@@ -10,7 +10,7 @@ from radiosity.errors import MethodError
 from radiosity.scene.shapes import quad
 from radiosity.tracing.faces import OFFSET
 from radiosity.tracing.geometry import INSET, Geometry
-from radiosity.tracing.visibility import Polygons, _records, visible_share
+from radiosity.tracing.visibility import Polygons, records_of, visible_share
 from validation.closed_forms.rectangles import parallel
 
 
@@ -23,7 +23,7 @@ def test_rays_begin_and_end_as_far_from_every_edge():
     scene = black([quad((0, 0, 0), (8, 0, 0), (0, 1, 0)), quad((0, 0, 3), (0, 1, 0), (8, 5, 0))])
     geometry = geometry_of(scene)
     polygons, tree = Polygons.of(geometry.patches), geometry.bvh
-    records = _records(geometry, polygons).astype(float)
+    records = records_of(geometry, polygons).astype(float)
     corners = (polygons.corners - tree.centre) * tree.scale
     for corner, record in zip(corners, records, strict=True):
         origin, first, second, offset = record[:3], record[3:6], record[6:9], record[9]

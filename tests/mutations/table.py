@@ -344,11 +344,25 @@ MISTAKES = (
         "what a group sends to itself counts twice where many groups are restored",
     ),
     Mistake(
-        "exchange/small_gaps.py",
+        "exchange/closing.py",
         "MOVED = 6",
         "MOVED = 1e9",
         ("test_view_factors.py",),
         "polygons across a thin gap see each other whole",
+    ),
+    Mistake(
+        "exchange/visible_shares.py",
+        "lost = hidden[code] - (pilot.arriving < pilot.weights)",
+        "lost = hidden[code]",
+        ("test_pair_factors.py",),
+        "a pair whose first ray is hidden gets more rays for that",
+    ),
+    Mistake(
+        "factors/polygons/kernel.py",
+        "ORDERS = {2: 24.0, 3: 9.0, 4: 4.5, 5: 3.0}",
+        "ORDERS = {2: 6.0, 3: 4.0, 4: 2.5, 5: 1.5}",
+        ("test_pair_factors.py",),
+        "rules over both areas are taken too near",
     ),
     Mistake(
         "algorithms/gather/tally.py",

@@ -16,7 +16,7 @@ from ..run.whole_number import whole
 from ..sampling.streams import Seed
 from ..scene.model import Scene
 from ..tracing.geometry import Geometry
-from .choice import PILOT, Choice, Rays
+from .choice import MANY, PILOT, Choice, Rays
 from .factor_target import FactorTarget, until
 from .from_lines import from_lines
 from .from_polygons import FacingPairs, from_polygons
@@ -26,7 +26,6 @@ from .view_factors import ViewFactors
 
 METHODS = ("auto", "lines", "polygons")
 USUAL = 1_000_000  # lines
-LEAST_RAYS = 2  # of a pair and replicate, where polygons are asked for by name
 LEAST = 16  # lines of a patch and replicate in the pilot; runs that are not twice as long count lines without one
 
 
@@ -62,7 +61,7 @@ def view_factors(
             "patch", a dictionary of names to names of surfaces or patterns, such as ``{"walls": ["north", "south"]}`` (surfaces
             that it does not name are groups of their own), or a whole number for each patch.
         method: "lines" are counted. "polygons" have exact factors without obstacles, and rays find the visible share of each
-            pair, 2 or more in each replicate. "auto" takes what has the smaller predicted error after the work of as many lines.
+            pair, one or more. "auto" takes what has the smaller predicted error after the work of as many lines.
         replicates: independent randomised runs; from 2 on there are standard errors. Of lines that were counted: theirs.
         seed: with the same inputs, the same bits.
         sources: names of small surfaces that get more lines, as of `trace_lines`.
@@ -104,20 +103,26 @@ def view_factors(
         geometry, pilot = Geometry(patches, choose(device)), None
         if method == "polygons":
             tell(patches.scene, any_light=True)
-            pairs = FacingPairs.of(geometry, replicates)
+            pairs = FacingPairs.of(geometry, len(groups.names))
             spent = Rays.of(work, len(patches), len(pairs.one), replicates)
             return _polygons(pairs, groups, spent, replicates, number, facts)
-        few = LEAST * replicates * len(patches)
-        few = max(min(work // PILOT, 4 * few), few)
-        if method == "auto" and few <= work // 2 and (choice := Choice.of(geometry, work, replicates, number)):
-            pilot = trace_lines(patches, rays=few, progress=progress, **arguments)
-            some = from_lines(pilot.pairs, groups, pilot.rays, {"line_set": pilot.provenance}, pilot.status)
-            if pilot.status == "interrupted":
-                return some
-            predicted = choice.predicted(some.restored(), groups, work, number)
-            facts |= {"predicted": predicted}
-            if predicted["polygons"] < predicted["lines"]:
-                return _polygons(FacingPairs.of(geometry, replicates), groups, choice.spent, replicates, number, facts)
+        if method == "auto" and (choice := Choice.of(geometry, groups, work, replicates, number)):
+            few = LEAST * replicates * len(patches)
+            few = max(min(work // PILOT, 4 * few), few)
+            predicted = {}
+            if len(groups.names) > MANY:
+                predicted = choice.by_counts(groups, work, number)
+            elif few <= work // 2:
+                pilot = trace_lines(patches, rays=few, progress=progress, **arguments)
+                some = from_lines(pilot.pairs, groups, pilot.rays, {"line_set": pilot.provenance}, pilot.status)
+                if pilot.status == "interrupted":
+                    return some
+                predicted = choice.by_pilot(some.restored(), groups, work, number)
+            if predicted:
+                facts |= {"predicted": predicted}
+                if predicted["polygons"] < predicted["lines"]:
+                    pairs = FacingPairs.of(geometry, len(groups.names), choice.sample.facing)
+                    return _polygons(pairs, groups, choice.spent, replicates, number, facts)
         warn_of_narrow(geometry, groups)
         lines = trace_lines(patches, rays=work, progress=progress, resume=pilot, **arguments)
         return from_lines(lines.pairs, groups, lines.rays, facts | {"line_set": lines.provenance}, lines.status)
@@ -147,6 +152,6 @@ def _of_lines(lines: LineSet, rays, group, method: str) -> ViewFactors:
 
 
 def _polygons(pairs: FacingPairs, groups: Groups, spent: Rays, replicates: int, seed: Seed, facts: dict) -> ViewFactors:
-    rays = max(spent.pair, LEAST_RAYS)
+    rays = max(spent.pair, 1.0)
     facts = facts | {"rays_of_a_pair": rays, "lines_of_a_patch": spent.missed}
-    return from_polygons(pairs, groups, rays, spent.missed, replicates, seed, facts)
+    return from_polygons(pairs, groups, int(rays * len(pairs.one)), spent.missed, replicates, seed, facts)

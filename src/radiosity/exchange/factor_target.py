@@ -17,6 +17,7 @@ ROW = "row:"
 FIRST = 64  # lines of a patch in the first run
 MOST = 2**34  # lines in all
 LEAP = 4  # most doublings from a run to the next
+NORMAL = 1.645  # standard deviations that 95 % are below
 SLOPE = 0.5  # of the error against work, by which the next run is chosen
 
 
@@ -73,6 +74,9 @@ class FactorTarget:
         wide = 1.0
         if factors.samples is not None:
             wide = margin(inner_products(factors.samples[:, here], np.ones(int(here.sum()))), factors.replicates)
+        elif variance > 0:  # the sum of squared errors is spread by this much; both directions of a pair are one number
+            spread = float((factors.errors[here] ** 4).sum()) ** 0.5 / variance
+            wide = (1 + NORMAL * 2 * spread) ** 0.5
         return wide * float(np.sqrt(variance / size))
 
 

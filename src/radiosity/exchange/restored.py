@@ -26,7 +26,6 @@ from .restoration import LEAST_SQUARES, RAW, SAMPLED
 from .restored_many import by_scaling
 
 PRIOR = 64  # degrees of freedom of Poisson's variance: weights that follow the replicates make stated errors too small
-UNKNOWN = 0.01  # relative error of factors whose errors are unknown: only a weight
 LEAST = 1e-9  # relative: no counted or integrated value is more accurate
 
 
@@ -91,9 +90,6 @@ def _by_least_squares(factors):
 
 def _variance(factors, place: np.ndarray) -> np.ndarray:
     """Return the variance of each entry, (m,), see the head of this file."""
-    if factors.method != "lines":
-        known = factors.errors if factors.replicates > 1 else UNKNOWN * factors.values
-        return np.where((factors.values > 0) | (factors.columns >= len(factors)), known**2, 0)
     model = _poisson(factors, place)
     if factors.replicates < 2:
         return model
@@ -118,8 +114,6 @@ def _poisson(factors, place: np.ndarray) -> np.ndarray:
 
 def _trust_of_none(factors, place, one, other, variance) -> np.ndarray:
     """Return the reciprocal variance of a direction in which no line went, where one went the other way, (pairs,) 1/m⁴."""
-    if factors.method != "lines":
-        return np.zeros(len(one))
     there = np.zeros(len(one), np.int64)
     there[place] = factors.rows
     back = np.where(there == one, np.minimum(other, len(factors) - 1), one)
@@ -146,15 +140,7 @@ def _from(factors, found: Nearest, one, other, samples: np.ndarray, place: np.nd
     values = found.values[pair] / area
     of_samples = found.of_samples(samples)[:, pair] / area
     hits = np.bincount(place, factors.hits)[pair].astype(np.int64)
-    if factors.method != "lines":
-        own = np.zeros(len(one))  # what is zero stays zero, and keeps its error
-        np.maximum.at(own, place, np.where(factors.values == 0, factors.errors * factors.area[factors.rows], 0))
-        known = np.nan
-        if factors.replicates > 1:  # weights that few replicates tell make the variance of least squares too small
-            known = np.maximum(np.sqrt(found.variance[pair]), mean_and_error(of_samples)[1] * area)
-        errors = np.where(values == 0, own[pair], known) / area
-        hits = np.full(len(rows), -1)
-    elif factors.replicates > 1:
+    if factors.replicates > 1:
         mean, spread = mean_and_error(samples[:, pair])
         lucky = by_luck(mean, spread) & (hits >= 0) & (hits < FEW)  # few counts that agree by chance
         least = np.where(lucky, np.sqrt(found.unknowns.variance[pair]) / area, LEAST * values)

@@ -112,7 +112,7 @@ class _Chunk:
 
     Attributes:
         count: number of pairs.
-        records: of both polygons, see `_records`.
+        records: of both polygons, see `records_of`.
         triangles: 1 where the first polygon is a triangle, and 2 where the second is.
         target: faces that lines should hit.
         words: keys of pairs, low words and high words.
@@ -135,8 +135,8 @@ class _Chunk:
             geometry,
             rays,
             count,
-            (upload(types.Float, _records(geometry, one)), upload(types.Float, _records(geometry, other))),
-            upload(types.UInt32, _is_triangle(one) | 2 * _is_triangle(other)),
+            (upload(types.Float, records_of(geometry, one)), upload(types.Float, records_of(geometry, other))),
+            upload(types.UInt32, is_triangle(one) | 2 * is_triangle(other)),
             upload(types.UInt32, other.face.astype(np.uint32)),
             (upload(types.UInt32, keys.astype(np.uint32)), upload(types.UInt32, (keys >> np.uint64(32)).astype(np.uint32))),
         )
@@ -189,13 +189,13 @@ def _point(types, records, pair, is_triangle, x, y):
     return origin + first * s + second * t, dr.normalize(dr.cross(first, second)), words[9]
 
 
-def _records(geometry: Geometry, polygons: Polygons) -> np.ndarray:
+def records_of(geometry: Geometry, polygons: Polygons) -> np.ndarray:
     """Return (m, WORDS) float32 in the BVH's coordinates; polygons are drawn in as whole faces are (`Geometry.face_records`)."""
     bvh = geometry.bvh
     points = (polygons.corners - bvh.centre) * bvh.scale
     offset = geometry.faces.offset(polygons.face, points)
     origin, first, second = points[:, 0], points[:, 1] - points[:, 0], points[:, 3] - points[:, 0]
-    flat = _is_triangle(polygons) == 1
+    flat = is_triangle(polygons) == 1
     area = np.maximum(np.linalg.norm(np.cross(first, second), axis=1), 1e-300)
     lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, second - first)]
     inset = offset * (INSET / OFFSET)
@@ -207,7 +207,7 @@ def _records(geometry: Geometry, polygons: Polygons) -> np.ndarray:
     return np.concatenate([drawn, *edges, offset[:, None]], axis=1).astype(np.float32)
 
 
-def _is_triangle(polygons: Polygons) -> np.ndarray:
+def is_triangle(polygons: Polygons) -> np.ndarray:
     """Return 1 for triangles and 0 for parallelograms, (m,) uint32."""
     same = polygons.corners[:, 2] == polygons.corners[:, 3]
     return (same[:, 0] & same[:, 1] & same[:, 2]).astype(np.uint32)

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..image import bitmap, tone
+from ..image import bitmap
 from ..image.false_color import beside
 from ..image.picture import first_hits
+from ..image.tone import luminance
 from ..scene import Camera
 from ..scene.up import up_axis
 from . import frame as frames
@@ -27,8 +28,7 @@ def cameras(subject: Subject) -> dict[str, Camera]:
     own = {f"camera {i}": camera for i, camera in enumerate(subject.patches.scene.cameras)}
     if own:
         return own
-    solution = subject.solution
-    light = np.ones(len(subject.patches)) if solution is None else tone.luminance(np.asarray(solution.radiosity, np.float64))
+    light = np.ones(len(subject.patches)) if subject.solution is None else luminance(subject.solution.radiosity)
     return {"fitted": fitted(subject.patches, light, first_hits)}
 
 
