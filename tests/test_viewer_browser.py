@@ -35,6 +35,14 @@ def box() -> rd.Scene:
     )
 
 
+def until(happened) -> None:
+    """Wait until something has happened."""
+    since = time.monotonic()
+    while not happened():
+        assert time.monotonic() - since < 20, "it did not happen"
+        time.sleep(0.05)
+
+
 class Shown:
     """A page in a browser, and its viewer."""
 
@@ -43,7 +51,7 @@ class Shown:
         self.page = context.pages[0]
         self.asked = []
         context.on("request", lambda request: self.asked.append(request.url))
-        self.page.goto(viewer.url)
+        self.page.goto(f"{viewer.url}/?fixedDpr=1")  # a page whose machine is busy is else drawn in fewer pixels
         self.page.wait_for_selector("canvas")
         self.page.get_by_text("Software WebGL").wait_for()
         self.page.add_style_tag(content=".mantine-Notification-root {display: none !important}")
@@ -64,6 +72,11 @@ class Shown:
         """Change the look, and return the page's pixels."""
         self.viewer.page.change(**changes)
         return self.steady()
+
+    def press(self, button: str, hidden: set[int]) -> None:
+        """Press a button of the panel, after which these surfaces are hidden."""
+        self.page.get_by_text(button, exact=True).click()
+        until(lambda: self.viewer.page.look.hidden == hidden)
 
     def places(self, patches) -> np.ndarray:
         """Return the pixels (x, y) of the middles of patches."""
@@ -144,17 +157,14 @@ def test_surfaces_are_hidden_and_shown_by_buttons(plain):
     x, y = plain.places([patch])[0]
     plain.page.mouse.click(int(x), int(y))
     plain.page.get_by_text(re.compile(rf"^{patch}, ")).wait_for()
-    plain.page.get_by_text("hide", exact=True).click()
-    time.sleep(0.2)
+    plain.press("hide", {0})
     assert not plain.steady()[y, x].any()
-    plain.page.get_by_text("only this", exact=True).click()
-    time.sleep(0.2)
+    plain.press("only this", {1, 2, 3})
     only = plain.steady()
     assert np.array_equal(only[y, x], whole[y, x])
     assert (only[:, :FREE].any(axis=2)).sum() < (whole[:, :FREE].any(axis=2)).sum() / 2
-    plain.page.get_by_text("all", exact=True).click()
-    time.sleep(0.2)
-    assert np.array_equal(plain.steady()[:, :FREE], whole[:, :FREE])
+    plain.press("all", set())
+    assert (plain.steady() != whole)[:, :FREE].any(axis=2).mean() < 0.02
 
 
 def test_edges_and_cuts_are_drawn(plain):
@@ -162,8 +172,7 @@ def test_edges_and_cuts_are_drawn(plain):
 
     whole = plain.look()
     edges = plain.look(wireframe=True)
-    changed = (edges != whole).any(axis=2)[:, :FREE].sum()
-    assert 200 < changed < 20_000
+    assert 200 < (np.abs(edges - whole).max(axis=2)[:, :FREE] > 10).sum() < 20_000
     cut = plain.look(wireframe=False, cut=Cut(2, 1.5))
     x, y = plain.places(np.arange(4)).T  # of the left panel: two rows, below and above the cut
     assert cut[y, x].any(axis=1).tolist() == [True, True, False, False]
@@ -177,7 +186,10 @@ def test_the_picture_that_is_saved_is_what_is_seen(plain, tmp_path):
     waiting.value.save_as(tmp_path / "view.png")
     saved = pixels_of((tmp_path / "view.png").read_bytes())
     assert saved.shape[1] > SIZE["width"], "a legend is beside it"
-    np.testing.assert_array_equal(saved[: SIZE["height"], :FREE], found[:, :FREE])
+    x, y = plain.places(seen(plain)).T
+    np.testing.assert_array_equal(saved[y, x], found[y, x])
+    unlike = np.abs(saved[: SIZE["height"], :FREE] - found[:, :FREE]).max(axis=2) > 2
+    assert unlike.mean() < 0.02  # edges
     from PIL import Image
 
     text = Image.open(tmp_path / "view.png").text["options"]

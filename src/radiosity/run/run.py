@@ -146,7 +146,8 @@ class Run(Generic[R]):
             known = self.replicates > 1 and self._error_matters
             error = self.target.error(snapshot) if known else math.nan
             margin = self._margin(snapshot)
-            lines = snapshot.lines if known or large else round(snapshot.about_lines)
+            counted = large or (known and self.budget.error is not None)  # whoever listens: the next stage depends on this number
+            lines = snapshot.lines if counted else round(snapshot.about_lines)
             self.teller.complete(lines, target, error, margin, algorithm.tally.swept_lines(self.problem, snapshot.state))
             if self.watch is not None:
                 self._watched(self.watch, snapshot)

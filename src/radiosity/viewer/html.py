@@ -7,7 +7,11 @@ import io
 from .library import Server
 from .shades import Colours
 
-STYLE = "position:fixed;left:12px;bottom:12px;z-index:10;background:white;color:black;font:12px sans-serif;padding:6px"
+# not quite opaque: behind what is opaque, Chromium without a graphics card leaves out a part of the page that lies elsewhere
+STYLE = (
+    "position:fixed;left:12px;bottom:12px;width:auto;height:auto;z-index:10;opacity:0.999;"
+    "background:white;color:black;font:12px sans-serif;padding:6px"
+)
 
 
 def document(server: Server, colours: Colours) -> str:
