@@ -293,6 +293,16 @@ def test_the_command_converts_scenes_and_solutions(tmp_path, capsys):
     assert "no results" in capsys.readouterr().err
 
 
+def test_libraries_have_no_blanks_in_their_names(tmp_path):
+    """Many programs read the name of a library up to its first blank."""
+    scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.25, 2.0, two_sided=True, names=["a wall"])
+    read, told = again(scene, tmp_path / "my room.obj")
+    assert not told
+    assert read.reflectance.tolist() == [[0.25]]
+    assert "mtllib my_room.mtl\n" in (tmp_path / "my room.obj").read_text()
+    assert read.names == ("a wall",)
+
+
 def test_scenes_of_other_bands_are_refused(tmp_path):
     scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [[0.1, 0.2]], [[1, 2]], bands=("a", "b"))
     with pytest.raises(rd.OutputError, match="2 bands"):

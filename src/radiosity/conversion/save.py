@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import OutputError
 from ..image.output import check_writable
 from ..scene.model import Scene
+from .obj import library_of
 from .told import Told
 
 SUFFIXES = {
@@ -27,8 +28,9 @@ KNOWN_BANDS = (("grey",), ("red", "green", "blue"))
 def files_of(path) -> tuple[Path, ...]:
     """The files that `save_scene` writes for a path, without images: itself, and what it refers to."""
     path = Path(path)
-    beside = {".toml": (".obj",), ".obj": (".mtl",)}.get(path.suffix.lower(), ())
-    return (path, *(path.with_suffix(suffix) for suffix in beside))
+    if path.suffix.lower() == ".toml":
+        return path, path.with_suffix(".obj")
+    return (path, library_of(path)) if path.suffix.lower() == ".obj" else (path,)
 
 
 def save_scene(scene: Scene, path) -> None:
