@@ -105,6 +105,20 @@ def test_points_lie_in_the_patches_of_both_cuts(scene):
         assert (one.patches.is_back[patch] == place.patches.is_back).all()
 
 
+def test_a_mesh_that_follows_the_light_is_compared_with_a_plain_one(one):
+    cut = rd.solve(rd.subdivide(ROOM, patches=150), rays=20_000, seed=4)
+    for pair in ((cut, one), (one, cut)):
+        place = places(*pair)
+        assert place.patches is cut.patches
+        which = place.second if pair[0] is cut else place.first
+        corners, points = one.patches.corners[which], place.patches.centroid
+        assert (points >= corners.min(axis=1) - 1e-9).all()
+        assert (points <= corners.max(axis=1) + 1e-9).all()
+        assert one.patches.normal[which] @ [0, 0, 1] == pytest.approx(place.patches.normal @ [0, 0, 1])
+        assert (one.patches.surface[which] == place.patches.surface).all()
+        assert rd.compare(*pair, within=0.5).agrees
+
+
 def test_other_patches_and_other_faces_are_compared_by_surface(one):
     finer = rd.compare(one, solved(cells=3, seed=5), within=0.2, of="surfaces")
     assert finer.agrees

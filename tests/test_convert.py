@@ -285,12 +285,34 @@ def test_the_command_converts_scenes_and_solutions(tmp_path, capsys):
         ([], "no output"),
         ([source], "written over"),
         ([str(tmp_path / "x.foo")], "unknown output format"),
-        ([str(tmp_path / "y.toml"), str(tmp_path / "y.obj")], "written over"),
+        ([str(tmp_path / "y.toml"), str(tmp_path / "y.geometry.obj")], "written over"),
     ):
         assert main(["convert", source, *wrong]) == 2
         assert says in capsys.readouterr().err
     assert main(["convert", "room", str(tmp_path / "x.csv")]) == 2
     assert "no results" in capsys.readouterr().err
+
+
+def test_libraries_have_no_blanks_in_their_names(tmp_path):
+    """Many programs read the name of a library up to its first blank."""
+    scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.25, 2.0, two_sided=True, names=["a wall"])
+    read, told = again(scene, tmp_path / "my room.obj")
+    assert not told
+    assert read.reflectance.tolist() == [[0.25]]
+    assert "mtllib my_room.mtl\n" in (tmp_path / "my room.obj").read_text()
+    assert read.names == ("a wall",)
+
+
+@pytest.mark.parametrize("suffix", [".glb", ".obj"])
+def test_a_toml_of_the_same_name_leaves_its_source_as_it_is(suffix, tmp_path):
+    source = tmp_path / f"room{suffix}"
+    scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.25, 2.0, two_sided=True, names=["wall"])
+    colours = Paint((), np.full(1, -1, np.int32), np.zeros((1, 4, 2), np.float32), np.full((1, 4, 1), 0.5, np.float32), 0.95)
+    rd.save_scene(replace(scene, reflectance_paint=colours) if suffix == ".glb" else scene, source)
+    before = source.read_bytes()
+    assert main(["convert", str(source), str(tmp_path / "room.toml")]) == 0
+    assert source.read_bytes() == before
+    assert (tmp_path / f"room.geometry{suffix}").exists()
 
 
 def test_scenes_of_other_bands_are_refused(tmp_path):

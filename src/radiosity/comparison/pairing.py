@@ -50,15 +50,36 @@ def check_comparable(a: Solution, b: Solution) -> None:
 
 def places(a: Solution, b: Solution) -> Places | None:
     """The patches or points that both solutions have; None where their faces differ."""
-    if a.patches.scene.geometry_hash != b.patches.scene.geometry_hash:
-        return None
     one, two = a.patches, b.patches
+    if one.scene.is_cut_of(two.scene):
+        return Places(one, np.arange(len(one)), _within(one, two), False)
+    if two.scene.is_cut_of(one.scene):
+        return Places(two, _within(two, one), np.arange(len(two)), False)
+    if one.scene.geometry_hash != two.scene.geometry_hash:
+        return None
     if one.cut_hash == two.cut_hash:
         every = np.arange(len(one))
         return Places(one, every, every, True)
     common = Patches(one.scene, np.maximum(one.columns, two.columns), np.maximum(one.rows, two.rows))
     u, v = _middles(common)
     return Places(common, _number(one, common, u, v), _number(two, common, u, v), False)
+
+
+def _within(parts: Patches, whole: Patches) -> np.ndarray:
+    """The patch of a whole scene that the middle of each patch of a cut one is on (`Scene.cut`), (n_patches,) int."""
+    cut = parts.scene.cut
+    assert cut is not None
+    face = cut.face[parts.face]
+    origin, first, second = (frame[face] for frame in whole.scene.frames)
+    from_origin = parts.centroid - origin
+    products = [np.einsum("ij,ij->i", one, other) for one, other in ((first, first), (first, second), (second, second))]
+    along = [np.einsum("ij,ij->i", from_origin, edge) for edge in (first, second)]
+    determinant = products[0] * products[2] - products[1] ** 2
+    u = (products[2] * along[0] - products[1] * along[1]) / determinant
+    v = (products[0] * along[1] - products[1] * along[0]) / determinant
+    u, v = np.clip(u, 0, 1), np.clip(v, 0, 1)
+    cell = cells.number(u, v, whole.columns[face], whole.rows[face], whole.scene.is_quad[face])
+    return whole.first[face] + np.where(parts.is_back, whole.cells_per_face[face], 0) + cell
 
 
 def _middles(patches: Patches) -> tuple[np.ndarray, np.ndarray]:
@@ -108,6 +129,8 @@ def row_areas(solution: Solution) -> np.ndarray:
 
 def other_light(a: Scene, b: Scene) -> list[str]:
     """Notes about equal faces that emit or reflect differently: that is a difference that no error explains."""
+    if a.is_cut_of(b) or b.is_cut_of(a):  # the record of a cut holds for equal light alone
+        return []
     found = []
     for what, names in (("reflectance", ("reflectance", "back_reflectance")), ("emission", ("emission", "back_emission"))):
         pairs = [(getattr(a, name), getattr(b, name)) for name in names]

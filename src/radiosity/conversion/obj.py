@@ -26,12 +26,17 @@ def write(scene: Scene, path: Path, told: Told) -> None:
     """
     tell_of_rest(scene, told, HOLDS)
     parts = pieces(plain(scene, of_surfaces=True), told, pairs=False)
-    names, library, lines = object_names(parts, told), path.with_suffix(".mtl"), []
+    names, library, lines = object_names(parts, told), library_of(path), []
     for piece, name in zip(parts, names, strict=True):
         lines += [f"newmtl {name}", f"Kd {_numbers(piece.reflectance)}", f"Ke {_numbers(piece.emission / np.pi)}", "illum 1"]
     with whole_file(library) as file:
         file.write(("\n".join(lines) + "\n").encode())
     write_geometry(scene, path, parts, names, library.name)
+
+
+def library_of(path: Path) -> Path:
+    """Return the .mtl of an .obj: without blanks, at which many programs end the name of a library."""
+    return path.with_name("_".join(path.stem.split()) + ".mtl")
 
 
 def write_geometry(scene: Scene, path: Path, parts: list[Piece], names: list[str], library: str = "") -> None:

@@ -11,7 +11,9 @@ import numpy as np
 from ..errors import OutputError
 from ..image.output import check_writable
 from ..scene.model import Scene
+from .obj import library_of
 from .told import Told
+from .toml import geometry_of
 
 SUFFIXES = {
     ".toml": "toml",
@@ -25,14 +27,15 @@ KNOWN_BANDS = (("grey",), ("red", "green", "blue"))
 
 
 def files_of(path) -> tuple[Path, ...]:
-    """The files that `save_scene` writes for a path, without images: itself, and what it refers to."""
+    """The files that `save_scene` may write for a path: itself, and what it refers to."""
     path = Path(path)
-    beside = {".toml": (".obj",), ".obj": (".mtl",)}.get(path.suffix.lower(), ())
-    return (path, *(path.with_suffix(suffix) for suffix in beside))
+    if path.suffix.lower() == ".toml":
+        return path, geometry_of(path, ".obj"), geometry_of(path, ".glb")
+    return (path, library_of(path)) if path.suffix.lower() == ".obj" else (path,)
 
 
 def save_scene(scene: Scene, path) -> None:
-    """Write a scene as .toml (with an .obj beside it), .glb, .gltf, .obj (with an .mtl beside it), .ply or .stl.
+    """Write a scene as .toml (with its geometry beside it), .glb, .gltf, .obj (with an .mtl beside it), .ply or .stl.
 
     A warning for each kind of thing that the format cannot hold names what it is. A .toml holds most.
 

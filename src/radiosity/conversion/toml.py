@@ -1,6 +1,7 @@
 """TOML with the geometry beside it: the format that holds most (docs/scene-toml.md).
 
-The geometry is an .obj, whose numbers keep all their digits. Where the scene has textures it is a .glb, which holds them.
+The geometry is ``NAME.geometry.obj``, whose numbers keep all their digits. Where the scene has textures it is
+``NAME.geometry.glb``, which holds them.
 """
 
 import json
@@ -39,11 +40,11 @@ def write(scene: Scene, path: Path, told: Told) -> None:
     painted = scene.reflectance_paint is not None or scene.emission_paint is not None
     parts = pieces(scene, told)
     if painted:
-        geometry = path.with_suffix(".glb")
+        geometry = geometry_of(path, ".glb")
         names = gltf.write_geometry(scene, geometry, told)
         entries = _entries_beside(scene, parts, names)
     else:
-        geometry = path.with_suffix(".obj")
+        geometry = geometry_of(path, ".obj")
         names = object_names(parts, told)
         write_geometry(scene, geometry, parts, names)
         entries = [_entry(scene, piece, name) for piece, name in zip(parts, names, strict=True)]
@@ -66,6 +67,11 @@ def write(scene: Scene, path: Path, told: Told) -> None:
         lines += ["", f"[{name}]", *(f"{key} = {_value(value)}" for key, value in entry.items())]
     with whole_file(path) as file:
         file.write(("\n".join(lines) + "\n").encode())
+
+
+def geometry_of(path: Path, suffix: str) -> Path:
+    """Return the file beside a .toml that holds its geometry; a scene of the same name in another format is not written over."""
+    return path.with_name(f"{path.stem}.geometry{suffix}")
 
 
 def _entry(scene: Scene, piece: Piece, name: str) -> dict:

@@ -198,6 +198,8 @@ def _summary(solution: Solution, sets: list[SensorSet]) -> Markup:
 
 def _provenance(solution: Solution, wishes: Wishes) -> Markup:
     known, scene = solution.provenance, solution.patches.scene
+    versions = known.get("versions")
+    versions = versions if isinstance(versions, dict) else {}
     pairs: list[tuple[str, object]] = [
         ("Scene", _called(scene.source)),
         ("Scene hash", known.get("scene", scene.hash)),
@@ -210,7 +212,7 @@ def _provenance(solution: Solution, wishes: Wishes) -> Markup:
         ("Packets for each repetition", f"{solution.quanta:,}"),
         ("Status", solution.status),
         ("Device", known.get("device", "unknown")),
-        ("Versions", ", ".join(f"{name} {version}" for name, version in known.get("versions", {}).items())),
+        ("Versions", ", ".join(f"{name} {version}" for name, version in versions.items())),
     ]
     if isinstance(known.get("auto"), dict):
         pairs.insert(5, ("Method chosen", f"{known['auto'].get('chosen')}: {known['auto'].get('why')}"))
