@@ -1,9 +1,9 @@
 """RMS errors of pictures for CPU seconds, with and without a final gather, and of Mitsuba's path tracer: ``make bench-pictures``.
 
-Scenes are built in, or files. Backs that let lines pass absorb, here and there: Mitsuba has no such thing. A scene without a camera
-gets a fitted one. The error is the RMS of (picture - truth) in linear radiance over all pixels that see no lamp, nor lie beside one, relative to the
-mean of the truth. The truth is two path traced pictures of other seeds, a and b; the mean of (picture - a)(picture - b) holds
-none of their own noise. CPU seconds of ours hold the solution.
+Scenes are built in, or files. Backs that let lines pass absorb, here and there: Mitsuba has no such thing. A scene without a
+camera gets a fitted one. The error is the RMS of (picture - truth) in linear radiance over all pixels that see no lamp, nor lie
+beside one, relative to the mean of the truth. The truth is two path traced pictures of other seeds, a and b; the mean of
+(picture - a)(picture - b) holds none of their own noise. CPU seconds of ours hold the solution.
 
 python benchmarks/pictures.py [--width 256] [--truth 256] [--scenes cornell-box room]
 """
