@@ -6,6 +6,7 @@ from image_samples import UTM, far_room, quad_scene, solution
 
 import radiosity as rd
 from radiosity.image import display_mesh, export
+from radiosity.image.plane_fit import at_vertices
 from radiosity.image.tone import srgb
 
 
@@ -26,7 +27,7 @@ def test_vertices_carry_colour_values_and_surface(tmp_path):
     export(result, tmp_path / "a.ply", scale=0.1)
     lines, vertex, face = read(tmp_path / "a.ply")
     mesh = display_mesh.build(result.patches)
-    smooth = mesh.smoothed(result.radiosity)
+    smooth = at_vertices(result.patches, mesh, result.radiosity)
     np.testing.assert_allclose(np.stack([vertex[axis] for axis in "xyz"], axis=1), mesh.vertices, atol=1e-7)
     for i, band in enumerate(("red", "green", "blue")):
         np.testing.assert_allclose(vertex[f"radiosity_{band}"], smooth[:, i], rtol=1e-6)

@@ -64,7 +64,7 @@ EDGES = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0.5, 0], [0, 0.3, 0.7],
 
 def test_each_texel_has_the_light_at_its_point(lamp_over_floor):
     """To single precision: at texels in charts, and at those beside them, which have the light of the nearest edge."""
-    found = rd.bake_lightmap(lamp_over_floor, size=96, lines=16, quantity="irradiance")
+    found = rd.bake_lightmap(lamp_over_floor, size=96, lines=16, quantity="irradiance", samples=1)
     texels, scene = found.texels, lamp_over_floor.patches.scene
     face = found.atlas.triangles.face[texels.triangle]
     origin, first, second = (edge[face] for edge in scene.frames)
@@ -80,13 +80,30 @@ def test_each_texel_has_the_light_at_its_point(lamp_over_floor):
 
 def test_viewers_show_the_light_at_each_point_to_the_very_edges(lamp_over_floor):
     """Places on the page and points in the scene fit, and nothing bleeds in at edges and seams: 1 % of the light there."""
-    found = rd.bake_lightmap(lamp_over_floor, size=200, lines=16, quantity="irradiance")
+    found = rd.bake_lightmap(lamp_over_floor, size=200, lines=16, quantity="irradiance", samples=1)
     scene, triangles = lamp_over_floor.patches.scene, found.atlas.triangles
     for shares in (INNER, EDGES):
         places, points = on_triangles(found, shares)
         for k, normal in enumerate(scene.normal[triangles.face]):
             shown = at(found, places[k])[:, 0]
             np.testing.assert_allclose(shown, expected(points[k], normal), rtol=0.01, atol=0.01, err_msg=f"triangle {k}")
+
+
+def test_points_are_spread_over_a_texel(lamp_over_floor):
+    """Their mean is the middle, they differ, and stay within half a texel and the face."""
+    from radiosity.lightmap.texels import Texels, points_of
+
+    atlas = atlases.make(Triangles.of(lamp_over_floor.patches.scene), density=10.0)
+    texels = Texels.of(atlas)
+    places = np.array(points_of(atlas, texels, 4))
+    floor = (atlas.triangles.face[texels.triangle] == 1) & texels.inside
+    assert floor.sum() > 300
+    inner = floor & (np.abs(texels.place - 0.5).max(axis=1) < 0.45)
+    np.testing.assert_allclose(places[:, inner].mean(axis=0), texels.place[inner], atol=0.01)
+    apart = np.abs(places[:, inner] - texels.place[inner])
+    assert apart.max() <= 0.5 / 20 * 1.01  # of two metres, at ten texels a metre
+    assert apart.max() > 0.3 / 20
+    assert (places[:, ~texels.inside] == texels.place[~texels.inside]).all()
 
 
 def test_radiosity_has_the_colour_and_irradiance_has_not(lamp_over_floor):
@@ -166,7 +183,7 @@ def test_equal_seeds_give_equal_bits():
 def test_errors_are_those_of_the_lines():
     """The spread of two bakes is what both say, over some 1 000 texels: the ratio of RMS values within 15 %."""
     solution = solved(rd.load_scene("room"), 50_000)
-    one, other = (rd.bake_lightmap(solution, size=48, lines=64, errors=True, seed=seed) for seed in (1, 2))
+    one, other = (rd.bake_lightmap(solution, size=48, lines=64, samples=1, errors=True, seed=seed) for seed in (1, 2))
     here = one.texels.row, one.texels.column
     spread = np.sqrt(np.mean((one.values[here] - other.values[here]) ** 2))
     said = np.sqrt(np.mean(one.standard_error[here] ** 2) + np.mean(other.standard_error[here] ** 2))
@@ -177,7 +194,7 @@ def test_noise_is_filtered():
     """The RMS error against many lines falls by a tenth at least, where texels are small."""
     solution = solved(rd.load_scene("room"), 50_000)
     rough, less, best = (
-        rd.bake_lightmap(solution, size=96, lines=lines, denoise=denoise)
+        rd.bake_lightmap(solution, size=96, lines=lines, samples=1, denoise=denoise)
         for lines, denoise in ((16, False), (16, True), (512, False))
     )
     here = rough.texels.row, rough.texels.column
@@ -216,7 +233,7 @@ def test_a_glb_holds_the_texture_and_where_it_lies(tmp_path, lamp_over_floor):
 
 def test_the_command_writes_what_it_says(tmp_path, capsys):
     solved(rd.load_scene("cornell-box")).save(tmp_path / "a.npz")
-    options = ["--size", "64", "--lines", "16", "--errors", "--tone-map", "agx", "--quantity", "irradiance"]
+    options = ["--size", "64", "--lines", "64", "--errors", "--tone-map", "agx", "--quantity", "irradiance"]
     assert main(["lightmap", str(tmp_path / "a.npz"), "-o", str(tmp_path / "b.glb"), *options]) == 0
     said = capsys.readouterr().out
     for name in ("b.glb", "b.exr", "b.error.exr"):
@@ -233,9 +250,10 @@ def test_the_command_writes_what_it_says(tmp_path, capsys):
         ({"texels_per_metre": 0}, "positive"),
         ({"padding": 1}, "padding is 1"),
         ({"size": 16, "padding": 60}, "does not hold a place for each of its 6 triangles"),
-        ({"lines": 2}, "lines is 2; it must be a whole number of lines a texel, from 4"),
-        ({"lines": 8, "errors": True}, "4 for each of 4 independent parts"),
+        ({"lines": 2}, "lines is 2; it must be a whole number of lines a texel, from 16"),
+        ({"lines": 8, "errors": True}, "4 for each of 16 samples and independent parts"),
         ({"quantity": "relative_error", "size": 32}, "a final gather finds"),
+        ({"samples": 0, "size": 32}, "samples is 0"),
         ({"quantity": "hits"}, "quantity 'hits' does not exist"),
     ],
 )

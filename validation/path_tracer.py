@@ -84,31 +84,46 @@ def _arriving(mi, dr, world, integrator, sampler, origin, normal):
     return dr.select(light.pdf > 0, direct, 0) + dr.pi * (radiance - emitted + straight)
 
 
-def world_of(mi, scene: rd.Scene, upload, types):
-    """Return a scene of Mitsuba's: a sheet for each radiating or absorbing side."""
+def world_of(mi, scene: rd.Scene, upload, types, *, merged: bool = False):
+    """Return a scene of Mitsuba's: a sheet for each radiating or absorbing side.
+
+    Args:
+        merged: sides of equal reflectance and emission are one mesh, for scenes of many faces.
+    """
     apart = APART * float(np.ptp(scene.bounds, axis=0).max())
     parts: dict = {"type": "scene"}
+    together: dict = {}
     for face in range(scene.n_faces):
         corners = scene.vertices[scene.faces[face][: 4 if scene.is_quad[face] else 3]]
+        sides = [("front", corners, scene.reflectance[face], scene.emission[face])]
         if scene.back[face] == rd.Back.RADIATES:  # a sheet for each side, since an emitter has one
             back = corners[::-1] - apart * scene.normal[face]
-            parts[f"back{face}"] = _sheet(mi, back, scene.back_reflectance[face], scene.back_emission[face], upload, types)
-        parts[f"front{face}"] = _sheet(mi, corners, scene.reflectance[face], scene.emission[face], upload, types)
+            sides.insert(0, ("back", back, scene.back_reflectance[face], scene.back_emission[face]))
+        for side, points, reflectance, emission in sides:
+            key = (reflectance.tobytes(), emission.tobytes()) if merged else f"{side}{face}"
+            together.setdefault(key, ([], reflectance, emission))[0].append(points)
+    for number, (key, (polygons, reflectance, emission)) in enumerate(together.items()):
+        name = f"side{number}" if merged else key
+        parts[name] = _sheet(mi, polygons, reflectance, emission, upload, types)
     return mi.load_dict(parts)
 
 
-def _sheet(mi, corners: np.ndarray, reflectance: np.ndarray, emission: np.ndarray, upload, types):
-    """One-sided: black from behind."""
+def _sheet(mi, polygons: list, reflectance: np.ndarray, emission: np.ndarray, upload, types):
+    """One-sided: black from behind. ``polygons`` hold the corners of triangles and quadrilaterals, (3 or 4, 3) each."""
     properties = mi.Properties()
     colour = {"type": "rgb", "value": np.broadcast_to(reflectance, 3).tolist()}
     properties["bsdf"] = mi.load_dict({"type": "diffuse", "reflectance": colour})
     if emission.any():
         radiance = {"type": "rgb", "value": np.broadcast_to(emission / np.pi, 3).tolist()}
         properties["emitter"] = mi.load_dict({"type": "area", "radiance": radiance})
-    mesh = mi.Mesh("sheet", len(corners), len(corners) - 2, props=properties)
+    points = np.concatenate(polygons)
+    first = np.cumsum([0, *(len(polygon) for polygon in polygons[:-1])])
+    fans = [at + np.array([[0, 1, 2], [0, 2, 3]][: len(polygon) - 2]) for at, polygon in zip(first, polygons, strict=True)]
+    triangles = np.concatenate(fans)
+    mesh = mi.Mesh("sheet", len(points), len(triangles), props=properties)
     parameters = mi.traverse(mesh)
-    parameters["vertex_positions"] = upload(types.Float, corners.ravel().astype(np.float32))
-    parameters["faces"] = upload(types.UInt32, np.array([[0, 1, 2], [0, 2, 3]][: len(corners) - 2], np.uint32).ravel())
+    parameters["vertex_positions"] = upload(types.Float, points.ravel().astype(np.float32))
+    parameters["faces"] = upload(types.UInt32, triangles.astype(np.uint32).ravel())
     parameters.update()
     return mesh
 

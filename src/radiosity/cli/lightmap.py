@@ -19,6 +19,7 @@ class Texture:
         texels_per_metre: Texels per metre of a surface, such as 20. Default: as many as fit --size.
         size: Texels along the page, at most 8192. Default: 1024.
         lines: Lines of each texel, as of a final gather. Default: 256.
+        samples: Points of each texel, which share its lines and make edges of shadows smooth. Default: 4.
         quantity: radiosity (what a surface sends: colours and images are in it), irradiance (what falls on it, to be multiplied
             by colours in another program), radiance, or luminance in cd/m².
         padding: Texels between charts, 2 or more. Default: 4.
@@ -32,6 +33,7 @@ class Texture:
     texels_per_metre: Density = None
     size: Count = None
     lines: Count = None
+    samples: Count = None
     quantity: str = "radiosity"
     padding: Count = None
     denoise: Flag = False
@@ -77,6 +79,7 @@ def lightmap(
             texels_per_metre=texture.texels_per_metre,
             size=texture.size,
             lines=256 if texture.lines is None else texture.lines,
+            samples=4 if texture.samples is None else texture.samples,
             quantity=texture.quantity,
             padding=4 if texture.padding is None else texture.padding,
             denoise=texture.denoise,

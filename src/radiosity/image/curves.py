@@ -19,9 +19,9 @@ MIXED = 0.12  # of each colour that goes to the two others: bright colours becom
 def filmic(linear: np.ndarray) -> np.ndarray:
     """Roll off as K. Narkowicz's fit of the ACES reference does ("ACES Filmic Tone Mapping Curve", 2015): much contrast.
 
-    The fit takes 0.6 of the light, so that middle grey keeps about its tone.
+    The fit takes 0.7 of the light, so that middle grey keeps about its tone.
     """
-    x = 0.6 * np.maximum(linear, 0)
+    x = 0.7 * np.maximum(linear, 0)
     return tone.srgb(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from ..patches import Patches, cells
 from ..scene import Back
 from .display_mesh import DisplayMesh, build
+from .plane_fit import PlaneFit
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +27,10 @@ class Lookup:
     def at_vertices(self) -> np.ndarray:
         return self.mesh.smoothed(self.values)
 
+    @cached_property
+    def planes(self) -> PlaneFit:
+        return PlaneFit(self.patches)
+
     @property
     def columns(self) -> int:
         """The number of values of a patch."""
@@ -43,6 +48,10 @@ class Lookup:
                 # a corner without weight adds nothing, unknown or not
                 share = weight[:, k, None] * self.at_vertices[corners[:, k]]
                 values[seen] += np.where(weight[:, k, None] > 0, share, 0.0)
+            fitted = seen[self.planes.fits(patch[seen])]
+            origin, first, second = (edge[self.patches.face[patch[fitted]]] for edge in self.patches.scene.frames)
+            u, v = (np.asarray(x, np.float64)[fitted, None] for x in (hits.u, hits.v))
+            values[fitted] = self.planes.at(self.values, patch[fitted], origin + u * first + v * second)
         else:
             values[seen] = self.values[patch[seen]]
         return values, patch

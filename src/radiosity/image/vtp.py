@@ -12,6 +12,7 @@ import numpy as np
 from ..solution.replacing import replacing
 from . import display_mesh
 from .look import Look
+from .plane_fit import at_vertices
 
 TYPES = {"f4": "Float32", "f8": "Float64", "i4": "Int32", "i8": "Int64", "u1": "UInt8"}
 CHUNK = 3 << 20  # bytes; a multiple of 3, so that base64 can be written piece by piece
@@ -22,7 +23,7 @@ def write(solution, path, look: Look) -> None:
     """Write a VTP file. Without ``look.smooth`` each patch has vertices of its own, and there is no point data."""
     patches = solution.patches
     mesh = display_mesh.build(patches)
-    points = {"radiosity": mesh.smoothed(solution.radiosity)} if look.smooth else {}
+    points = {"radiosity": at_vertices(patches, mesh, np.asarray(solution.radiosity, np.float64))} if look.smooth else {}
     mesh = mesh if look.smooth else mesh.flat()[0]
     used = np.ones(mesh.polygons.shape, bool)
     used[:, 3] = mesh.is_quad

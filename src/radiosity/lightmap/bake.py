@@ -8,14 +8,14 @@ from ..image.flat import planes
 from ..image.gathered import Gathered, lines_of
 from ..image.lookup import Lookup
 from ..image.output import require_results
-from ..image.picture import Picture
+from ..image.picture import Picture, checked_samples
 from ..image.quantity import choose
 from ..run.progress import Listener
 from ..scene import Camera
 from ..tracing.first_hits import Hits
 from . import atlas as atlases
 from .model import Lightmap
-from .texels import Texels
+from .texels import Texels, points_of
 from .triangles import Triangles
 
 PARTS = 4  # of the lines, which are independent, where errors are asked for or noise is filtered
@@ -28,6 +28,7 @@ def bake_lightmap(
     texels_per_metre: float | None = None,
     size: int | None = None,
     lines: int = 256,
+    samples: int = 4,
     quantity: str = "radiosity",
     padding: int = 4,
     denoise: bool = False,
@@ -42,6 +43,7 @@ def bake_lightmap(
         texels_per_metre: density; or
         size: texels along the page, at most; the density is the largest that fits. Default: 1024.
         lines: of each texel, as of a final gather: shadow rays to lamps, and cosine lines that read the solution.
+        samples: points spread over each texel, which share its lines, so that edges of shadows are smooth; 1: its middle alone.
         quantity: "radiosity" (what a surface sends: images and colours are in it) or "irradiance" (what falls on it, to be
             multiplied by reflectances elsewhere); and radiance and luminance.
         padding: texels between charts, 2 or more.
@@ -61,31 +63,40 @@ def bake_lightmap(
     """
     require_results(solution)
     parts = PARTS if errors or denoise else 1
-    each = lines_of(lines, parts, name="lines", of="a texel", parts="independent parts")
+    samples = checked_samples(samples)
+    each = lines_of(lines, parts * samples, name="lines", of="a texel", parts="samples and independent parts")
     patches, scene = solution.patches, solution.patches.scene
     shown = choose(solution, quantity)
     page = atlases.make(Triangles.of(scene), density=texels_per_metre, size=size, padding=padding)
     texels = Texels.of(page)
     lookup = Lookup(patches, shown.values, smooth=False)
-    patch, place = _patch(lookup, page, texels), texels.place.T
-    options = {"lines": each, "points": len(texels) * parts, "seed": seed, "progress": progress}
+    places = [texels.place] if samples == 1 else points_of(page, texels, samples)
+    patch = [_patch(lookup, page, texels, place) for place in places]
+    options = {"lines": each, "points": len(texels) * parts * samples, "seed": seed, "progress": progress}
     look = Gathered.of(solution, lookup, quantity, None, single=False, **options)
     with turn():
-        found = np.stack([look.values(patch, *place) for _ in range(parts)])
+        drawn = [[look.values(one, *place.T) for one, place in zip(patch, places, strict=True)] for _ in range(parts)]
+    found = np.mean(drawn, axis=1)
     mean = found.mean(axis=0)
     spread = found.std(axis=0, ddof=1) / np.sqrt(parts) if parts > 1 else None
     if denoise and spread is not None:
-        plane = planes(patches)[patch] * (int(page.chart.max()) + 1) + page.chart[texels.triangle]
+        plane = planes(patches)[patch[0]] * (int(page.chart.max()) + 1) + page.chart[texels.triangle]
         mean = _without_noise(page, texels, mean, spread, plane)
     nearest = _nearest(page, texels)
     covered = np.zeros((page.height, page.width), bool)
     covered[texels.row, texels.column] = True
-    facts = {"lines": f"{lines} a texel", "seed": str(seed), "denoised": str(denoise), "padding": str(padding)}
+    facts = {
+        "lines": f"{lines} a texel",
+        "samples": f"{samples} a texel",
+        "seed": str(seed),
+        "denoised": str(denoise),
+        "padding": str(padding),
+    }
     return Lightmap(
         mean[nearest],
         None if spread is None or not errors else spread[nearest],
         covered,
-        covered & shown.own_light[patch][nearest],
+        covered & shown.own_light[patch[0]][nearest],
         quantity,
         shown.unit,
         shown.bands,
@@ -96,10 +107,10 @@ def bake_lightmap(
     )
 
 
-def _patch(lookup: Lookup, page: atlases.Atlas, texels: Texels) -> np.ndarray:
-    """Return the patch of each texel, (n,)."""
+def _patch(lookup: Lookup, page: atlases.Atlas, texels: Texels, place: np.ndarray) -> np.ndarray:
+    """Return the patch of each texel at a point of it, (n,)."""
     face, back = page.triangles.face[texels.triangle], page.triangles.back[texels.triangle]
-    return lookup.patch(Hits(face, texels.place[:, 0], texels.place[:, 1], ~back, np.zeros(len(texels))))
+    return lookup.patch(Hits(face, place[:, 0], place[:, 1], ~back, np.zeros(len(texels))))
 
 
 def _nearest(page: atlases.Atlas, texels: Texels) -> np.ndarray:

@@ -11,6 +11,7 @@ import numpy as np
 from .atlas import Atlas
 
 BESIDE = 1.5  # texels from a chart within which interpolation reads a texel: the diagonal of one, and some more
+GOLDEN = 0.6180339887498949  # spreads points over a texel
 AT_ONCE = 1 << 20  # pairs of texels and triangles
 
 
@@ -52,6 +53,29 @@ class Texels:
         own = np.flatnonzero(owner >= 0)
         place = np.einsum("mk,mkc->mc", weights[own], atlas.triangles.place[owner[own]])
         return Texels(own // atlas.width, own % atlas.width, owner[own], np.clip(place, 0, 1), nearest[own] == 0)
+
+
+def points_of(atlas: Atlas, texels: Texels, count: int) -> list[np.ndarray]:
+    """Return face coordinates of ``count`` points spread over each texel, (n, 2) each; texels beside a chart keep theirs.
+
+    A texel then has the mean over its square, so that edges of shadows are smooth.
+    """
+    first, second = (atlas.places[:, i] - atlas.places[:, 0] for i in (1, 2))
+    edges, place = np.stack([first, second], axis=1), atlas.triangles.place
+    flat = np.abs(np.linalg.det(edges)) > 0
+    ways = np.stack([place[:, i] - place[:, 0] for i in (1, 2)], axis=1)
+    step = np.zeros((len(edges), 2, 2))
+    step[flat] = np.linalg.solve(edges[flat], ways[flat])  # of face coordinates, for a texel right and a texel down
+    scene = atlas.triangles.scene
+    is_quad = scene.is_quad[atlas.triangles.face[texels.triangle]]
+    found = []
+    for k in range(count):
+        offset = np.array([(k + 0.5) / count, (k * GOLDEN + 0.5) % 1]) - 0.5
+        there = texels.place + np.where(texels.inside[:, None], offset @ step[texels.triangle], 0.0)
+        there = np.clip(there, 0, 1)
+        beyond = np.maximum(there.sum(axis=1, keepdims=True), 1.0)
+        found.append(np.where(is_quad[:, None], there, there / beyond))
+    return found
 
 
 def _candidates(atlas: Atlas):
