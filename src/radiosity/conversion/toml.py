@@ -180,7 +180,8 @@ def _far(scene: Scene, told: Told):
     rows = len(sky.radiance) // 2
     upper, lower = sky.radiance[rows:], sky.radiance[:rows]
     if np.ptp(upper) == 0 and not lower.any():
-        yield "sky", {"type": "uniform", "name": sky.name, "horizontal": float(sky.horizontal[0]), "up": sky.axes[2]}
+        level = float(sky.horizontal[0])
+        yield "sky", {"type": "uniform", "name": sky.name, "horizontal": level, "up": sky.axes[2], "north": sky.axes[0]}
     else:
         told.add("skies that are not uniform are left out; write [sky] anew", [sky.name])
 
