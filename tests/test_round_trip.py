@@ -13,12 +13,14 @@ import radiosity as rd
 from radiosity.method.baseline import CHOICES, USED
 from radiosity.scene import Back, Camera
 from radiosity.scene.combine import combine
+from radiosity.scene.cut import Cut
 from radiosity.scene.heat import Heat
 from radiosity.scene.lights.model import Lights
 from radiosity.scene.lights.sun import Sun
 from radiosity.scene.paint import Paint
 from radiosity.scene.sampler import Sampler
 from radiosity.scene.sensor_request import SensorRequest
+from radiosity.solution.npz import CUT_ARRAYS
 
 
 def paint(random, n: int, limit: float) -> Paint:
@@ -64,6 +66,7 @@ def everything() -> rd.Scene:
     point = SensorRequest("point", points=((1.0, 2.0, 3.0),), normals=((0.0, 0.0, 1.0),))
     asked = (SensorRequest("plane", surface="floor", spacing=0.5), point)
     plain = {"patch_size": sizes, "scale": 0.01, "heat": heat, "assumed": room.names[:2]}
+    plain["cut"] = Cut("hash of the whole scene", np.arange(n) // 2, np.arange(n) % 3)
     panes = {"transmittance": through, "diffuse_transmittance": diffused, "refractive_index": np.where(through > 0, 1.5, 0.0)}
     return replace(scene, sensors=asked, **panes, **plain, **paints)
 
@@ -222,10 +225,10 @@ def test_a_choice_of_faces_keeps_all_of_them(masked):
     taken = scene.take(rows)
     for field in fields(scene):
         whole, part = getattr(scene, field.name), getattr(taken, field.name)
-        if isinstance(whole, Paint):
+        if isinstance(whole, Paint | Cut):
             for inner in fields(whole):
                 value = getattr(whole, inner.name)
-                same(value[rows] if inner.name in PAINT_FIELDS else value, getattr(part, inner.name), inner.name)
+                same(value[rows] if inner.name in (*PAINT_FIELDS, *CUT_ARRAYS) else value, getattr(part, inner.name), inner.name)
         else:
             same(whole[rows] if field.name in FACE_FIELDS else whole, part, field.name)
 
@@ -256,7 +259,7 @@ def test_a_scene_combined_with_nothing_or_with_itself_is_there_whole():
     assert twice.cameras == 2 * scene.cameras
 
 
-NO_LIGHT = ("cameras", "scale", "source", "patch_size", "heat", "assumed", "sensors")  # light does not depend on them
+NO_LIGHT = ("cameras", "scale", "source", "patch_size", "heat", "assumed", "sensors", "cut")  # light does not depend on them
 
 
 @pytest.mark.parametrize("name", [f.name for f in fields(rd.Scene) if f.name not in NO_LIGHT])

@@ -48,6 +48,7 @@ def combine(scenes: list[Scene], *, source: str, photometric: bool, scale: float
         scale=scale,
         source=source,
         lights=all_lights(scenes, len(bands), source),
+        cut=scenes[0].cut if len(scenes) == 1 else None,
         assumed=tuple(dict.fromkeys(name for scene in scenes for name in scene.assumed)),
     )
 
