@@ -57,7 +57,7 @@ def bake_lightmap(
 
     Example:
         >>> solution = rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=2), rays=20_000)
-        >>> lightmap = rd.bake_lightmap(solution, texels_per_metre=40, lines=16, quantity="irradiance", errors=True)
+        >>> lightmap = rd.bake_lightmap(solution, texels_per_metre=40, lines=64, quantity="irradiance", errors=True)
         >>> bool((lightmap.standard_error >= 0).all()), lightmap.image().shape[2]
         (True, 3)
     """
