@@ -17,6 +17,7 @@ from radiosity.problem.model import Problem
 from radiosity.problem.source_rows import THROUGH
 from radiosity.scene.lights.model import Lights
 from radiosity.scene.shapes import box, join, quad
+from radiosity.sensors.reflected import mean_reflected, reflected
 
 WINDOW = np.array([[[2, 0, 1], [3, 0, 1], [3, 0, 2], [2, 0, 2]]], float)
 TRIANGLES = WINDOW[:, [[0, 1, 2, 2], [0, 2, 3, 3]]][0]
@@ -186,3 +187,12 @@ def test_a_restored_state_goes_on_to_the_same_integers(geometry_of):
     again.advance(1 << 12, lambda lines: None)
     found, wanted = again.capture().arrays(), whole.capture().arrays()
     assert all(np.array_equal(found[name], wanted[name]) for name in ("arrivals", "fired", "received", "sent"))
+
+
+def test_sensors_read_walks_with_lines_through_openings(geometry_of):
+    """The run has rows that the sensors' own problem lacks; the mean of its replicates is the solution."""
+    solution = walked(room(0.5), WINDOW, size=2.0, rays=20_000)
+    problem = Problem.of(solution.patches)
+    found = reflected(solution, geometry_of(solution.patches), problem)
+    assert len(found) == solution.replicates
+    np.testing.assert_allclose(found.mean(axis=0), mean_reflected(solution, problem), rtol=1e-9, atol=1e-15)

@@ -20,11 +20,15 @@ def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.nd
         return mean_reflected(solution, problem)[None]
     facts = solution.provenance
     seed = Seed(facts["seed"], facts.get("first_replicate", 0))
-    algorithm = make(geometry, problem, Method(**facts["choices"]), seed, solution.replicates)
+    method = Method(**facts["choices"])
+    own = problem  # that of the run: the rows of lines through openings are among its states
+    if method.machine == "firing" and solution.patches.scene.lights.openings is not None:
+        own = Problem.of(solution.patches, through=True)
+    algorithm = make(geometry, own, method, seed, solution.replicates)
     state = algorithm.read(solution.state, algorithm.sizes)
     found = []
     for group in range(problem.groups.n_groups):
-        power, scale = algorithm.tally.irradiance(problem, state, group)
+        power, scale = algorithm.tally.irradiance(own, state, group)
         received = np.asarray(power, np.float64) * (scale / unit[group]) / problem.patches.area
         found.append(problem.groups.scatter.of_rows(received, group))
     return np.stack(found, axis=-1)
