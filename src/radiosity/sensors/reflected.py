@@ -21,7 +21,9 @@ def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.nd
     facts = solution.provenance
     seed = Seed(facts["seed"], facts.get("first_replicate", 0))
     method = Method(**facts["choices"])
-    own = Problem.of(solution.patches, through=True) if method.machine == "firing" else problem  # as the run had it
+    own = problem  # that of the run: the rows of lines through openings are among its states
+    if method.machine == "firing" and solution.patches.scene.lights.openings is not None:
+        own = Problem.of(solution.patches, through=True)
     algorithm = make(geometry, own, method, seed, solution.replicates)
     state = algorithm.read(solution.state, algorithm.sizes)
     found = []
