@@ -122,3 +122,11 @@ def test_a_daylight_factor_is_of_the_sky_alone():
         assert found.dimmed({"bulb": 0, "sky": level}).daylight_factor[0] == pytest.approx(1, rel=0.01)
     with pytest.raises(rd.MethodError, match="of the sky's light alone"):
         _ = found.dimmed({"sky": 0}).daylight_factor
+
+
+@pytest.mark.parametrize(("groups", "rays"), [(False, 20_001), (True, 20_000)])
+def test_lines_that_parts_cannot_share_evenly(groups, rays):
+    """Half of the lines go to the solution, and each of three groups takes a third."""
+    found = rd.measure(cut(hall()), POINTS, groups=groups, rays=rays)
+    assert found.status == "complete"
+    assert (found.illuminance > 0).all()

@@ -94,7 +94,9 @@ def measure(
             found = _together({name: one(scene, Budget(rays=rays, error=error))})
         else:
             of_group, done = parts_of(scene, {} if groups is True else groups), {}
-            budget = Budget(rays=None if rays is None else max(rays / len(of_group), 1.0), error=error)
+            budget = Budget(rays=rays, error=error)
+            if budget.rays is not None:
+                budget = Budget(rays=max(budget.rays // len(of_group), 1))
             for name, part in of_group.items():
                 done[name] = one(part, budget)
                 if done[name].status == "interrupted":

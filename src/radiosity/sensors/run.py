@@ -113,7 +113,8 @@ def traced(
         if given.replicates < 2 and len(found.values) > 1:
             warn(f"{given.patches.scene.source}: the solution has one replicate, whose error is not in the errors of sensors")
     elif budget.error is None:
-        solution = solve(given, rays=budget.rays and budget.rays * SHARE, replicates=replicates, **options)
+        rays = budget.rays and max(int(budget.rays * SHARE), 1)
+        solution = solve(given, rays=rays, replicates=replicates, **options)
         found = measured(solution)
     else:
         error = min(ROUGH * budget.error, ROUGHEST)
