@@ -136,6 +136,19 @@ def test_weather_that_is_no_year(tmp_path, year, edit, words):
         read_year(tmp_path / "a.epw")
 
 
+def test_a_year_in_another_time_zone_is_told(tmp_path, year):
+    """The global irradiance belongs to the sun of the head's time zone; three hours away it does not."""
+    weather, lines = read_year(year), year.read_text().splitlines()
+    height = np.sin(np.radians(np.maximum(weather.sun[0], 0)))
+    whole = np.append([9999, 9999], weather.diffuse + weather.direct * height)  # before it, the two lines of the head
+    told = [line.replace(",300,9999,", f",300,{value:.0f},") for line, value in zip(lines, whole, strict=True)]
+    (tmp_path / "right.epw").write_text("\n".join(told))
+    read_year(tmp_path / "right.epw")
+    (tmp_path / "wrong.epw").write_text("\n".join([told[0].replace(",13.4,1,", ",13.4,4,"), *told[1:]]))
+    with pytest.warns(rd.RadiosityWarning, match=r"in 2 hours global .* hour 9: 520 and 312 .*check the time zone"):
+        read_year(tmp_path / "wrong.epw")
+
+
 def test_a_leap_year_goes_on_after_february(tmp_path):
     found = read_year(epw(tmp_path / "leap.epw", days=366))
     assert (len(found), found.day[-1]) == (8784, 366)

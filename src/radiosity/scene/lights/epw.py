@@ -141,11 +141,16 @@ def _row(path: str | Path, lines: list[str], month: int, day: int, hour: int) ->
 def _compare(path: str | Path, number: int, hour: EpwHour, measured: float) -> None:
     """Warn where the global irradiance is another one than its parts make."""
     summed = hour.diffuse + hour.direct * max(np.sin(np.radians(hour.sun()[0])), 0)
-    if measured < MISSING[GLOBAL] and abs(measured - summed) > max(APART * measured, LEAST):
+    if apart(measured, summed):
         warn(
             f"{path}: line {number}: global horizontal irradiance is {measured:g} W/m², but direct normal and diffuse make "
             f"{summed:.0f} W/m² at the sun's altitude; check the time zone and the file (direct and diffuse are taken)"
         )
+
+
+def apart(measured, summed):
+    """Return where measured global irradiances, W/m², are others than the sums of their parts."""
+    return (measured < MISSING[GLOBAL]) & (np.abs(measured - summed) > np.maximum(APART * measured, LEAST))
 
 
 def _whole(cells: list[str]) -> list[int] | None:

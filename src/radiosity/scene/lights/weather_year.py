@@ -7,7 +7,8 @@ from os import PathLike
 import numpy as np
 
 from ...errors import SceneError
-from .epw import DEW_POINT, DIFFUSE, DIRECT, MISSING, lines_of, values_of
+from ..habits import warn
+from .epw import DEW_POINT, DIFFUSE, DIRECT, GLOBAL, MISSING, apart, lines_of, values_of
 from .perez import DEW_POINT as USUAL_DEW_POINT
 from .sun_position import YEAR, day_of_year, days_after_2000, sun_positions
 
@@ -88,15 +89,30 @@ def read_year(path: str | PathLike) -> WeatherYear:
                 "1 to 24, in the order of the days"
             )
         dates.append(date)
-        values.append([found[DIRECT], found[DIFFUSE], found[DEW_POINT]])
+        values.append([found[DIRECT], found[DIFFUSE], found[DEW_POINT], found[GLOBAL]])
     if len(dates) not in HOURS:
         raise SceneError(f"{path}: has {len(dates)} hours; a year has {HOURS[0]}, or {HOURS[1]} with the 29th of February")
     date = np.array(dates)
-    direct, diffuse, dew_point = np.array(values).T
+    direct, diffuse, dew_point, measured = np.array(values).T
     dew_point = np.where(dew_point < MISSING[DEW_POINT], dew_point, USUAL_DEW_POINT)
     year = WeatherYear(*place, date, direct, diffuse, dew_point, str(path))
     if (np.diff(year.day[::24]) != 1).any() or year.day[0] != 1:
         late = int(np.argmax(np.append(np.diff(year.day[::24]) != 1, True))) + 1
         month, day = date[24 * min(late, len(date) // 24 - 1), :2].tolist()
         raise SceneError(f"{path}: the days are not in order at month {month}, day {day}; a year goes from January to December")
+    _compare(year, measured)
     return year
+
+
+def _compare(year: WeatherYear, measured: np.ndarray) -> None:
+    """Warn where global horizontal irradiances, (n,) W/m², are others than their parts make at the sun's altitude."""
+    summed = year.diffuse + year.direct * np.sin(np.radians(np.maximum(year.sun[0], 0)))
+    wrong = np.flatnonzero(apart(measured, summed))
+    if len(wrong):
+        worst = wrong[np.argmax(np.abs(measured - summed)[wrong])]
+        month, day, hour = year.date[worst].tolist()
+        when = f"month {month}, day {day}, hour {hour}: {measured[worst]:g} and {summed[worst]:.0f} W/m²"
+        warn(
+            f"{year.source}: in {len(wrong)} hours global horizontal irradiance is another one than direct normal and diffuse "
+            f"make at the sun's altitude ({when}); check the time zone and the file (direct and diffuse are taken)"
+        )
