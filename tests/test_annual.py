@@ -219,6 +219,15 @@ def test_hours_of_a_room_are_those_of_single_runs(year):
     assert (errors[0] > 0).all()
 
 
+def test_sensors_that_no_light_was_found_for_are_told(year):
+    """A tiny window that is not named: zero for all hours, without an error, was the answer."""
+    small = ((2.0, 0, 1.0), (2.01, 0, 1.01))
+    patches = rd.subdivide(lit(room((5, 6, 3), small, 0.5)), cells=1)
+    with pytest.warns(rd.RadiosityWarning, match=r"no line found the sky for 3 of 3 sensors.*openings"):
+        found = rd.annual(patches, year, rd.Sensors.of(POINTS), rays=2000)
+    assert found.values["mean"].max() == 0
+
+
 def test_equal_seeds_give_equal_bits(year):
     with pytest.warns(rd.RadiosityWarning):
         one, other, third = (

@@ -156,6 +156,7 @@ class _Run:
             ]
             coefficients, status = self._staged(runs, teller, stop)
             inside = np.mean([run.behind() for run in runs], axis=0) > BEHIND
+            self._tell_of_dark(coefficients, inside)
             mean, each, lux = self._summed(runs, coefficients, teller, hourly)
         return AnnualDaylight(
             self.sensors,
@@ -189,7 +190,8 @@ class _Run:
             if self.budget.error is None:
                 return found, "complete"
             inside = np.mean([run.behind() for run in runs], axis=0) > BEHIND
-            now = worst((found.whole @ light)[..., None], self.sensors, "mean", inside)
+            year = found.whole @ light
+            now = worst(year[..., None], self.sensors, "mean", inside) if year.any() or inside.all() else np.inf  # none came yet
             teller.complete(teller.lines, each, now)
             if now <= self.budget.error:
                 return found, "complete"
@@ -199,6 +201,14 @@ class _Run:
                 )
                 return found, "not reached"
             each *= 2
+
+    def _tell_of_dark(self, coefficients: Coefficients, inside: np.ndarray) -> None:
+        """Tell of sensors whose zero is unknown, since no line brought them light."""
+        dark = int((~coefficients.whole.any(axis=(0, 2)) & ~inside).sum())
+        if dark:
+            source, many = self.patches.scene.source, f"{dark} of {len(self.sensors)} sensors"
+            told = f"{source}: no line found the sky for {many}, straight or reflected"
+            warn(f"{told}: their light is unknown and counts as 0; name the windows as openings, or take more lines")
 
     def _summed(self, runs: list[Replicate], coefficients: Coefficients, teller: Teller, hourly: bool):
         """Return the figures of means over replicates, those of each replicate, and the lux of hours where they are kept."""
