@@ -234,3 +234,15 @@ def test_sensors_in_the_coordinates_of_a_map():
         scene = join([walls], source="map").with_lights([rd.point_light(position=np.add(away, [2, 2, 2.5]), lumens=1000)])
         found.append(measured(scene, rd.Sensors.of(np.add(away, [[2, 2, 1], [1, 3, 0]])), 256).illuminance)
     assert np.array_equal(*found)
+
+
+def test_an_error_of_dark_sensors_is_not_reached():
+    """Beside a lit room stands a closed one, in which no line finds light: a relative error of nothing cannot be judged."""
+    rooms = [
+        ("lit", 0.5, 1.0, box((0, 0, 0), (1, 1, 1), inward=True)),
+        ("dark", 0.5, 0.0, box((2, 0, 0), (3, 1, 1), inward=True)),
+    ]
+    solution = rd.solve(rd.subdivide(join(rooms, source="rooms"), cells=1), "random-walk", rays=2000, seed=1)
+    point = rd.Sensors.of([[2.5, 0.5, 0.5]])
+    with pytest.warns(rd.RadiosityWarning, match="no line found light at the sensors"):
+        assert rd.measure(solution, point, error=0.1).status == "not reached"

@@ -129,10 +129,13 @@ def traced(
         found = replace(found, status="interrupted")
     if found.status == "not reached" and budget.error is not None:
         of, now = achieved(found, error_of)
-        warn(
-            f"the relative error of {of} is {now:.2g}, and {budget.error:.2g} was asked for; what is left is the error of the "
-            "solution: solve longer"
-        )
+        if np.isinf(now):
+            warn(f"no line found light at the sensors, so that the relative error of {of} is unknown")
+        else:
+            warn(
+                f"the relative error of {of} is {now:.2g}, and {budget.error:.2g} was asked for; what is left is the error of "
+                "the solution: solve longer"
+            )
     return solution, found
 
 

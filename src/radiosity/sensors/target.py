@@ -22,6 +22,8 @@ def half_width(values: np.ndarray, level: float = LEVEL) -> np.ndarray:
 def worst(values: np.ndarray, sensors: Sensors, of: str, inside: np.ndarray) -> float:
     """Return the largest relative error, for 95 % of runs: of means of sets, or of sensors. NaN with one replicate.
 
+    It is infinite where no line found light: such an error cannot be judged.
+
     Args:
         values: (replicates, n_sensors, k).
         of: one of `OF`.
@@ -36,7 +38,7 @@ def worst(values: np.ndarray, sensors: Sensors, of: str, inside: np.ndarray) -> 
         values = sums / np.maximum(number, 1)[:, None]
     mean, width = values.mean(axis=0), half_width(values)
     bright = mean > DARK * max(float(mean.max()), 1e-300)
-    return float((width[bright] / mean[bright]).max()) if bright.any() else 0.0
+    return float((width[bright] / mean[bright]).max()) if bright.any() else np.inf
 
 
 def achieved(measured, of: str) -> tuple[str, float]:

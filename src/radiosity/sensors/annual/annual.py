@@ -191,7 +191,7 @@ class _Run:
                 return found, "complete"
             inside = np.mean([run.behind() for run in runs], axis=0) > BEHIND
             year = found.whole @ light
-            now = worst(year[..., None], self.sensors, "mean", inside) if year.any() or inside.all() else np.inf  # none came yet
+            now = worst(year[..., None], self.sensors, "mean", inside)
             teller.complete(teller.lines, each, now)
             if now <= self.budget.error:
                 return found, "complete"
