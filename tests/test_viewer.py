@@ -64,7 +64,7 @@ def test_the_page_smooths_as_files_do():
     """A square of two triangles: its corners have fits to the plane, which vertices alone do not give."""
     corners = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 2, 0]]
     scene = rd.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], reflectance=0.5, emission=1.0, names=["wall"])
-    subject = Subject.of(rd.solve(rd.subdivide(scene, cells=3), "random-walk", rays=100, replicates=2))
+    subject = Subject.of(rd.solve(rd.subdivide(scene, cells=3), "random-walk", rays=1000, replicates=2))
     shown = replace(subject.quantity("radiosity"), values=subject.patches.centroid[:, :1] ** 2)
     mesh = display_mesh.build(subject.patches)
     values = Shapes(subject).triangles("radiosity", shown, None, smooth=True).values
