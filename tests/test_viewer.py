@@ -2,12 +2,14 @@
 
 import json
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.image import tone
+from radiosity.image import display_mesh, tone
+from radiosity.image.plane_fit import at_vertices
 from radiosity.viewer import about, numbers, tone_mapping
 from radiosity.viewer.content import Content
 from radiosity.viewer.frame import Frame, options
@@ -56,6 +58,18 @@ def test_each_patch_has_the_colour_of_the_legend(solution):
         shown |= {tuple(row) for row in colour}
         assert (points >= solution.patches.scene.bounds[0] - 1e-5).all()
     assert shown == wanted
+
+
+def test_the_page_smooths_as_files_do():
+    """A square of two triangles: its corners have fits to the plane, which vertices alone do not give."""
+    corners = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 2, 0]]
+    scene = rd.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], reflectance=0.5, emission=1.0, names=["wall"])
+    subject = Subject.of(rd.solve(rd.subdivide(scene, cells=3), "random-walk", rays=1000, replicates=2))
+    shown = replace(subject.quantity("radiosity"), values=subject.patches.centroid[:, :1] ** 2)
+    mesh = display_mesh.build(subject.patches)
+    values = Shapes(subject).triangles("radiosity", shown, None, smooth=True).values
+    np.testing.assert_array_equal(values, at_vertices(subject.patches, mesh, shown.values))
+    assert np.abs(values - mesh.smoothed(shown.values)).max() > 0.01
 
 
 def test_a_cut_keeps_the_area_on_its_side_and_the_values(solution):

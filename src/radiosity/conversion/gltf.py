@@ -10,12 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..image.glb import TURN, save
+from ..image.glb import TURN, Buffer, save
 from ..scene.model import Back, Scene
 from ..scene.paint import Paint
 from ..scene.up import up_axis
 from ..solution.whole import whole_file
-from .buffers import Buffers
 from .gltf_lights import PUNCTUAL, lights_of, matrix, turn
 from .gltf_materials import Materials
 from .pieces import Piece, called, painted, pieces, tell_of_rest, triangles
@@ -62,15 +61,15 @@ def document(scene: Scene, told: Told, *, whole: bool) -> tuple[dict, list, list
     Args:
         whole: with lights and cameras, turned to y-up.
     """
-    buffers = Buffers()
-    materials = Materials(scene, buffers, told)
+    buffer = Buffer()
+    materials = Materials(scene, buffer, told)
     parts = pieces(scene, told)
     nodes, meshes = [], []
     for name in dict.fromkeys(piece.name for piece in parts):
         own = [piece for piece in parts if piece.name == name]
         used = np.unique(np.concatenate([piece.corners[piece.corners >= 0] for piece in own]))
         origin = _origin(scene.vertices[used])
-        primitives = [one for piece in own for one in _primitives(scene, piece, origin, buffers, materials, told)]
+        primitives = [one for piece in own for one in _primitives(scene, piece, origin, buffer, materials, told)]
         move = {"translation": origin.tolist()} if origin.any() else {}
         nodes.append({"name": name, "mesh": len(meshes), **move})
         meshes.append({"name": name, "primitives": primitives})
@@ -91,10 +90,10 @@ def document(scene: Scene, told: Told, *, whole: bool) -> tuple[dict, list, list
     for key in ("images", "samplers", "textures"):
         if getattr(materials, key):
             contents[key] = getattr(materials, key)
-    contents |= {"accessors": buffers.accessors, "bufferViews": buffers.views, "buffers": [{"byteLength": buffers.length}]}
+    contents |= buffer.entries()
     if used_extensions:
         contents["extensionsUsed"] = sorted(used_extensions)
-    return contents, buffers.blocks, [piece.name for piece in parts]
+    return contents, buffer.blocks, [piece.name for piece in parts]
 
 
 def _origin(points: np.ndarray) -> np.ndarray:
@@ -104,7 +103,7 @@ def _origin(points: np.ndarray) -> np.ndarray:
     return middle if np.abs(middle).max() > FAR * (high - low).max() else np.zeros(3)
 
 
-def _primitives(scene: Scene, piece: Piece, origin, buffers: Buffers, materials: Materials, told: Told):
+def _primitives(scene: Scene, piece: Piece, origin, buffer: Buffer, materials: Materials, told: Told):
     """Yield a primitive for each pair of images on the faces of a piece."""
     images = np.column_stack([_images(paint, piece.rows) for paint in (scene.reflectance_paint, scene.emission_paint)])
     for pair in np.unique(images, axis=0):
@@ -117,13 +116,13 @@ def _primitives(scene: Scene, piece: Piece, origin, buffers: Buffers, materials:
             keys = np.column_stack([np.repeat(row, 3), corner.ravel()])  # each corner of a face is a vertex of its own
             some, index = np.unique(keys, axis=0, return_inverse=True)
             vertex = piece.corners[some[:, 0], some[:, 1]]
-            attributes = _painted(scene, piece, some, pair, buffers, told)
+            attributes = _painted(scene, piece, some, pair, buffer, told)
         else:
             vertex, index = np.unique(number.ravel(), return_inverse=True)
-        attributes["POSITION"] = buffers.vertices(scene.vertices[vertex] - origin, limits=True)
+        attributes["POSITION"] = buffer.vertices(scene.vertices[vertex] - origin, limits=True)
         yield {
             "attributes": attributes,
-            "indices": buffers.indices(index.reshape(-1)),
+            "indices": buffer.indices(index.reshape(-1)),
             "material": materials.add(piece, (int(pair[0]), int(pair[1]))),
         }
 
@@ -132,7 +131,7 @@ def _images(paint: Paint | None, rows: np.ndarray) -> np.ndarray:
     return np.full(len(rows), -1) if paint is None else paint.image[rows]
 
 
-def _painted(scene: Scene, piece: Piece, some: np.ndarray, pair, buffers: Buffers, told: Told) -> dict[str, int]:
+def _painted(scene: Scene, piece: Piece, some: np.ndarray, pair, buffer: Buffer, told: Told) -> dict[str, int]:
     """Texture coordinates and colours of vertices, which are corners (row of the piece, 0 to 3) of faces."""
     face, corner = piece.rows[some[:, 0]], some[:, 1]
     flipped = (piece.corners[:, 1] != scene.faces[piece.rows, 1])[some[:, 0]]
@@ -145,14 +144,14 @@ def _painted(scene: Scene, piece: Piece, some: np.ndarray, pair, buffers: Buffer
             continue
         if number >= 0:
             uv = paint.uv[face, corner].astype(np.float64)
-            attributes[f"TEXCOORD_{which}"] = buffers.vertices(np.column_stack([uv[:, 0], 1 - uv[:, 1]]))
+            attributes[f"TEXCOORD_{which}"] = buffer.vertices(np.column_stack([uv[:, 0], 1 - uv[:, 1]]))
         colour = np.broadcast_to(paint.color[face, corner], (len(face), 3))
         if (colour == 1).all():
             continue
         if what == "emission":
             told.add("vertex colours of emission are left out", [piece.name])
         else:
-            attributes["COLOR_0"] = buffers.vertices(colour)
+            attributes["COLOR_0"] = buffer.vertices(colour)
     return attributes
 
 

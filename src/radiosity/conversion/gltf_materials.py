@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..image.glb import Buffer
 from ..image.tone import srgb
 from ..scene.formats.color import luminance_weights
 from ..scene.formats.gltf.material import FILTERS, NOT_MIRRORED, WRAPS
 from ..scene.formats.textures import decode_srgb
 from ..scene.model import Back, Scene
 from ..scene.paint import Paint
-from .buffers import Buffers
 from .pieces import Piece
 from .told import Told
 
@@ -26,7 +26,7 @@ class Materials:
     """The materials of a file, with their textures; each image and sampler is written once."""
 
     scene: Scene
-    buffers: Buffers
+    buffer: Buffer
     told: Told
     materials: list[dict] = field(default_factory=list)
     images: list[dict] = field(default_factory=list)
@@ -95,7 +95,7 @@ class Materials:
             codes = np.round(srgb(image / scale) * 255).astype(np.uint8)
             if np.abs(decode_srgb(codes / 255) - image / scale).max() > ROUNDED:
                 self.told.add("images are rounded to 8 bits", [f"image {number} of {what}"])
-            view = self.buffers.image(_png(codes))
+            view = self.buffer.view(np.frombuffer(_png(codes), np.uint8))
             self.images.append({"bufferView": view, "mimeType": "image/png"})
             sampler = paint.sampler(number)
             kinds = {"wrapS": CODES[sampler.wrap[0]], "wrapT": CODES[sampler.wrap[1]], "magFilter": CODES[sampler.filter]}

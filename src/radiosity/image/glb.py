@@ -13,6 +13,7 @@ from ..solution.replacing import replacing
 
 FLOAT, USHORT, UINT = 5126, 5123, 5125
 ARRAY, ELEMENTS = 34962, 34963
+KINDS = {2: "VEC2", 3: "VEC3", 4: "VEC4"}  # by numbers a vertex
 TURN = [-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]  # quaternion: z up to y up
 
 
@@ -37,6 +38,16 @@ class Buffer:
         view = self.view(data.reshape(-1).view(np.uint8), target=target)
         self.accessors.append({"bufferView": view, "componentType": component, "count": len(data), "type": kind, **more})
         return len(self.accessors) - 1
+
+    def vertices(self, values: np.ndarray, *, limits: bool = False) -> int:
+        """Add values of vertices, (n, k) or (n,), as 32-bit floats, and return the number of their accessor."""
+        data = np.ascontiguousarray(values, "<f4")
+        ends = {"min": data.min(axis=0).tolist(), "max": data.max(axis=0).tolist()} if limits else {}
+        return self.add(data, "SCALAR" if data.ndim == 1 else KINDS[data.shape[1]], FLOAT, ARRAY, **ends)
+
+    def indices(self, values: np.ndarray) -> int:
+        """Add numbers of vertices, of any shape, and return the number of their accessor."""
+        return self.add(np.ascontiguousarray(values, "<u4").ravel(), "SCALAR", UINT, ELEMENTS)
 
     def view(self, data: np.ndarray, **more) -> int:
         """Add bytes, (n,) uint8, and return the number of their view."""

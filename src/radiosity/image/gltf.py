@@ -10,7 +10,7 @@ precision. Those of a surface far from the origin, for its size, are relative to
 
 import numpy as np
 
-from .glb import ARRAY, ELEMENTS, FLOAT, TURN, UINT, USHORT, Buffer, save
+from .glb import ARRAY, TURN, USHORT, Buffer, save
 from .look import Look
 from .mesh import ColouredMesh, coloured
 
@@ -32,15 +32,12 @@ def document(mesh: ColouredMesh) -> tuple[dict, list]:
         tint = np.full((len(points), 4), 65535, "<u2")
         tint[:, 3] = round((1 - part.transmittance) * 65535)
         tint[:, :3] = np.clip(np.nan_to_num(part.linear), 0, 1) * 65535 + 0.5
-        limits = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
-        attributes = {"POSITION": buffer.add(points, "VEC3", FLOAT, ARRAY, **limits)}
+        attributes = {"POSITION": buffer.vertices(points, limits=True)}
         attributes["COLOR_0"] = buffer.add(tint, "VEC4", USHORT, ARRAY, normalized=True)
         for band in range(part.values.shape[1]):
             # unknown values are not written: the standard forbids NaN
-            attributes[f"_{mesh.key.upper()}_{band}"] = buffer.add(
-                np.nan_to_num(part.values[:, band]).astype("<f4"), "SCALAR", FLOAT, ARRAY
-            )
-        indices = buffer.add(part.triangles.astype("<u4").ravel(), "SCALAR", UINT, ELEMENTS)
+            attributes[f"_{mesh.key.upper()}_{band}"] = buffer.vertices(np.nan_to_num(part.values[:, band]))
+        indices = buffer.indices(part.triangles)
         move = {"translation": part.origin.tolist()} if part.origin.any() else {}
         nodes.append({"name": part.name, "mesh": len(meshes), **move})
         meshes.append(

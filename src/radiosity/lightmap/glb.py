@@ -9,7 +9,7 @@ from io import BytesIO
 
 import numpy as np
 
-from ..image.glb import ARRAY, ELEMENTS, FLOAT, TURN, UINT, Buffer, save
+from ..image.glb import TURN, Buffer, save
 from ..image.mesh import origin_of, transmittances
 from ..scene.up import up_axis
 
@@ -36,16 +36,15 @@ def write(lightmap, path, pixels: np.ndarray, facts: dict[str, str]) -> None:
         used, local = np.unique(atlas.corners[surface == number], return_inverse=True)
         origin = origin_of(vertices[used])
         points = (vertices[used] - origin).astype("<f4")
-        limits = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
-        places = buffer.add((atlas.uv[used] / [atlas.width, atlas.height]).astype("<f4"), "VEC2", FLOAT, ARRAY)
+        places = buffer.vertices(atlas.uv[used] / [atlas.width, atlas.height])
         attributes = {
-            "POSITION": buffer.add(points, "VEC3", FLOAT, ARRAY, **limits),
+            "POSITION": buffer.vertices(points, limits=True),
             "TEXCOORD_0": places,
             "TEXCOORD_1": places,
         }
         primitive = {
             "attributes": attributes,
-            "indices": buffer.add(local.astype("<u4").ravel(), "SCALAR", UINT, ELEMENTS),
+            "indices": buffer.indices(local),
             "material": int(np.searchsorted(-alphas, through[number] - 1)),
         }
         nodes.append(

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ..image import density_mesh, display_mesh
+from ..image.plane_fit import at_vertices
 from ..image.quantity import Quantity
 from .picking import Cut
 from .subject import Subject
@@ -84,7 +85,7 @@ class Shapes:
             corners, polygon = mesh.triangles()
             return Triangles(mesh.vertices, values, corners, first[polygon])
         corners, patch = self._smooth_corners
-        return Triangles(self._smooth.vertices, self._smooth.smoothed(quantity.values), corners, patch)
+        return Triangles(self._smooth.vertices, at_vertices(self.subject.patches, self._smooth, quantity.values), corners, patch)
 
     def at(self, subject: Subject) -> "Shapes":
         """Return the meshes of another solution of the same patches."""
