@@ -11,13 +11,15 @@ from radiosity.cli import main
 from radiosity.report_page import pdf
 from radiosity.report_page.levels import plans
 from radiosity.report_page.markup import element, text
-from radiosity.report_page.page import _sensors
-from radiosity.report_page.quality import certainty, to_know
+from radiosity.report_page.page import _sensors, _summary
+from radiosity.report_page.quality import certainty, spot_error, to_know
 from radiosity.report_page.sensor_sets import of_table
 from radiosity.report_page.sensors import sensor_tables
 from radiosity.report_page.surfaces import surface_tables
 from radiosity.report_page.wishes import Wishes
 from radiosity.report_page.words import Words, number, percent
+from radiosity.sensors.isolines import draw
+from radiosity.solution.percent import margin
 
 EVIL = 'a<script>alert("x")</script>&\u202e'
 ROOM = rd.load_scene("room")
@@ -112,6 +114,44 @@ def test_a_plan_has_the_mean_of_its_surface(solution):
         plans(solution, ("cellar",))
 
 
+def test_lamps_are_no_places_to_work_at():
+    """The upper side of a lamp has a plan only where it is asked for, and no figure on the first page."""
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    corners = np.concatenate([square, 0.5 * square + np.array([0.2, 0.2, 1]), square[::-1] + np.array([0, 0, 2])])
+    faces = np.arange(12).reshape(3, 4)
+    emission, names = np.array([0, 50.0, 0])[:, None], ["floor", "lamp", "ceiling"]
+    scene = rd.Scene.from_arrays(corners, faces, surface=[0, 1, 2], reflectance=0.5, emission=emission, names=names)
+    found = rd.solve(rd.subdivide(scene, cells=2), "random-walk", rays=5_000, replicates=2)
+    assert [plan.name for plan in plans(found, ())] == ["floor"]
+    assert [plan.name for plan in plans(found, ("lamp",))] == ["lamp"]
+    assert "irradiance, lamp" not in str(_summary(found, []))
+    assert "irradiance, floor" in str(_summary(found, []))
+
+
+def test_the_error_of_a_spot_is_the_median_over_the_lit_area(solution):
+    """Half of the lit area is known better: not the error of the few patches that are bright."""
+    low, high = (end[:, 0] for end in solution.interval(0.95, "irradiance"))
+    value, area = solution.irradiance[:, 0], solution.patches.area
+    lit = ~solution.sides.left_out & (value > 0)
+    better = area[lit & ((high - low) / 2 < spot_error(solution) * value)].sum()
+    assert 0.45 < better / area[lit].sum() <= 0.5
+    assert f"typical error of a single spot is ± {percent(spot_error(solution))}" in str(certainty(solution))
+
+
+def test_isolines_leave_out_the_lowest_value():
+    """A dark place has no line at 0 along its noise, and even light none at all."""
+    from matplotlib.figure import Figure
+
+    x = np.arange(8.0)
+    axes = Figure().subplots()
+    draw(axes, x, x, np.clip(np.add.outer(x, x) - 6, 0, None))
+    assert len(axes.collections) == 1
+    assert axes.collections[0].levels.min() > 0
+    even = Figure().subplots()
+    draw(even, x, x, np.ones((8, 8)))
+    assert not even.collections
+
+
 def test_plans_of_scenes_with_y_up_are_seen_from_above():
     """A floor that is twice as bright on one half: in the plan that half lies where -z is up."""
     corners = [[0, 0, 0], [0, 0, 2], [1, 0, 2], [1, 0, 0]]
@@ -196,6 +236,7 @@ def test_a_baseline_shows_how_it_converged():
 
 
 def test_numbers_are_those_that_people_read():
+    assert [margin(value) for value in (27.0, 0.0164, 1234.0, np.nan)] == ["30", "0.02", "1000", "?"]
     values = (0, 0.012345, 1.2345, 12.345, 123.45, 12345.6, 9.999, 0.9996, 2.5e7, 1e-5, float("nan"))
     shown = ["0", "0.0123", "1.23", "12.3", "123", "12,300", "10.0", "1.00", "2.50e+07", "1.00e-05", "unknown"]
     assert [number(value) for value in values] == shown

@@ -119,7 +119,7 @@ def picture(found, *, camera=None, width=None, height=None, limit: float | None 
         raise OutputError("a picture of differences needs scenes with the same faces; here surfaces alone can be compared")
     title = f"{found.quantity}, difference"
     if len(found.bands) == 3:
-        title += ", luminance of three bands"
+        title += ", bands weighted as the eye does"
     elif len(found.bands) > 1:
         title += ", mean of the bands"
     values = tone.luminance(by.difference) if len(found.bands) > 1 else by.difference[:, 0]

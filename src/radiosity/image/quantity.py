@@ -66,7 +66,7 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
     if several and band is not None:
         title += f", {names[0]}"
     elif several and single:
-        title += ", luminance of three bands" if len(names) == 3 else ", mean of the bands"
+        title += ", bands weighted as the eye does" if len(names) == 3 else ", mean of the bands"
         # errors of the bands come from the same lines, so they are added as if fully correlated: never too small
         values, base, names = tone.luminance(values)[:, None], tone.luminance(base)[:, None], ["all"]
     if name != "relative_error":

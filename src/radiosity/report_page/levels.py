@@ -52,8 +52,10 @@ def plans(solution: Solution, wanted: tuple[str, ...]) -> list[Plan]:
     height = np.round(patches.centroid @ up, 3)
     surfaces = list(dict.fromkeys(i for name in wanted for i in surfaces_called(scene.names, name)))
     if not surfaces:
-        light = np.maximum(single(scene, solution.irradiance[flat]), 0) * patches.area[flat]
-        received = np.bincount(patches.surface[flat], light, len(scene.names))
+        dark = flat & ~(patches.emission > 0).any(axis=1)  # lamps are no planes to work on
+        usual = dark if dark.any() else flat
+        light = np.maximum(single(scene, solution.irradiance[usual]), 0) * patches.area[usual]
+        received = np.bincount(patches.surface[usual], light, len(scene.names))
         order = np.argsort(-received, kind="stable")[:USUAL]
         surfaces = [int(i) for i in order if received[i] > LEAST * received[order[0]]]
     found = []

@@ -8,13 +8,14 @@ import numpy as np
 
 from ..errors import MethodError, OutputError, RadiosityWarning
 from ..image.output import check_writable, require, require_results
+from ..scene.model import Scene
 from ..solution.model import Solution
 from ..solution.whole import whole_file
 from . import pdf
 from .markup import Markup, element, facts, section
 from .pictures import views
 from .plans import plan_views
-from .quality import balance, certainty, to_know
+from .quality import balance, certainty, spot_error, to_know
 from .sensor_sets import SensorSet, of_measurement, of_table
 from .sensors import sensor_tables
 from .style import STYLE
@@ -119,7 +120,7 @@ def html(solution: Solution, wishes: Wishes, progress=None) -> str:
             certainty(solution),
         ]
     told = [str(one.message) for one in caught if issubclass(one.category, RadiosityWarning)]
-    parts = [summary, to_know(solution, checked, told), *parts, _provenance(solution, wishes), _words(Words.of(scene))]
+    parts = [summary, to_know(solution, checked, told), *parts, _provenance(solution, wishes), _words(scene)]
     title = wishes.title or f"Light calculation: {_called(scene.source)}"
     head = element(
         "head",
@@ -180,11 +181,14 @@ def _summary(solution: Solution, sets: list[SensorSet]) -> Markup:
         if len(one.values):
             keys.append((f"{number(one.values.mean())} {words.falling_unit}", f"mean {words.falling}, {one.name}"))
     if len(keys) == 1:
-        for row in by_light(solution)[:3]:
-            tails = [f" [{band}]" for band in scene.bands] if scene.n_bands > 1 else [""]
+        tails = [f" [{band}]" for band in scene.bands] if scene.n_bands > 1 else [""]
+        rows_of_light = by_light(solution)
+        rooms = [row for row in rows_of_light if not any(row[f"emitted{tail}"] for tail in tails)]
+        for row in (rooms or rows_of_light)[:3]:
             mean = float(single(scene, np.array([row[f"irradiance{tail}"] for tail in tails])))
             keys.append((f"{number(mean)} {words.falling_unit}", f"mean {words.falling}, {row['surface']}"))
-    keys.append((f"± {percent(solution.error)}", "typical error of a single spot"))
+    spot = spot_error(solution)
+    keys.append((f"± {percent(spot)}" if np.isfinite(spot) else percent(spot), "typical error of a single spot"))
     boxes = element(
         "div", *(element("div", element("strong", value), element("span", name)) for value, name in keys), class_="key"
     )
@@ -222,8 +226,8 @@ def _provenance(solution: Solution, wishes: Wishes) -> Markup:
     return section("How it was calculated", element("p", about, class_="small"), facts(pairs), kind="keep")
 
 
-def _words(words: Words) -> Markup:
-    lux = words.falling == "illuminance"
+def _words(scene: Scene) -> Markup:
+    words = Words.of(scene)
     pairs: list[tuple[str, object]] = [
         (words.falling.capitalize(), f"light that falls on a surface, for each square metre, in {words.falling_unit}"),
         (words.leaving.capitalize(), f"light that leaves a surface towards the eye, in {words.leaving_unit}"),
@@ -232,7 +236,10 @@ def _words(words: Words) -> Markup:
         ("Uniformity", "the lowest value over the mean, or over the highest"),
         ("±", "half of the range that holds the true value of the calculation in 95 of 100 cases"),
     ]
-    if not lux:
+    if scene.n_bands > 1 and not scene.photometric:
+        how = "red, green and blue weighted as the eye does" if scene.n_bands == 3 else "the mean of all bands"
+        pairs.append(("One number for all bands", f"{how}, of {words.falling} and {words.leaving}; powers are sums"))
+    if not scene.photometric:
         pairs.append(("Watts", "the scene gives radiant power, not light as the eye weighs it: there are no lux"))
     return section("Words", facts(pairs), kind="keep")
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from ..sensors.isolines import draw
 from ..solution.model import Solution
 from .drawing import drawn, new_figure
 from .levels import Plan, plans
 from .markup import Markup, element, figure, section
 from .words import Words, number
 
-LEVELS = 8  # isolines at most
 WIDTH, HIGHEST = 7.0, 8.5  # inches
 
 
@@ -44,12 +44,9 @@ def _drawn(plan: Plan, words: Words) -> Markup:
 def isolines(axes, drawing, values: np.ndarray, extent, label: str) -> None:
     """Draw values, (rows, columns), as colours with isolines and a colour bar; NaN stays white."""
     shades = axes.imshow(values, origin="lower", extent=extent, cmap="viridis", interpolation="nearest", aspect="equal")
-    known = values[np.isfinite(values)]
-    if min(values.shape) > 1 and known.max() > known.min() * (1 + 1e-6):
-        left, right, bottom, top = extent
-        rows, columns = values.shape
-        x = left + (np.arange(columns) + 0.5) * (right - left) / columns
-        y = bottom + (np.arange(rows) + 0.5) * (top - bottom) / rows
-        lines = axes.contour(x, y, np.ma.masked_invalid(values), levels=LEVELS, colors="white", linewidths=0.8)
-        axes.clabel(lines, fmt="%g", fontsize=7)
+    left, right, bottom, top = extent
+    rows, columns = values.shape
+    x = left + (np.arange(columns) + 0.5) * (right - left) / columns
+    y = bottom + (np.arange(rows) + 0.5) * (top - bottom) / rows
+    draw(axes, x, y, values)
     drawing.colorbar(shades, ax=axes, label=label)

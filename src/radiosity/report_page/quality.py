@@ -60,10 +60,11 @@ def certainty(solution: Solution) -> Markup:
             "tells how sure the figures are."
         )
     mean_error = f"± {percent(float(known.max()))}" if known.size else "an unknown error"
-    spot = percent(solution.error) if math.isfinite(solution.error) else "unknown"
+    spot = spot_error(solution)
+    known_spots = f"± {percent(spot)}: half of the lit area is known better" if math.isfinite(spot) else "unknown"
     sure = (
         f"The mean {words.falling} of the scene is known to {mean_error} (in 95 of 100 calculations). The typical error of a "
-        f"single spot is {spot}."
+        f"single spot is {known_spots}."
     )
     mesh = (
         f"Surfaces are divided into {len(solution.patches):,} patches, and {words.falling} is one number for each of them. Finer "
@@ -73,6 +74,22 @@ def certainty(solution: Solution) -> Markup:
     if len(solution.history) > 1:
         parts.append(_history(solution))
     return section("How sure the figures are", *parts, kind="keep")
+
+
+def spot_error(solution: Solution) -> float:
+    """Return half of the 95 % interval of a patch's irradiance over its value, the median over the lit area; NaN where unknown.
+
+    `Solution.error` is no such figure: where little of a scene is bright, it tells of that part alone.
+    """
+    low, high = (end.sum(axis=1) for end in solution.interval(0.95, "irradiance"))  # bands share lines: never too small
+    light = solution.irradiance.sum(axis=1)
+    lit = np.flatnonzero(~solution.sides.left_out & (light > 0))
+    share = ((high - low) / 2)[lit] / light[lit]
+    if not len(lit) or np.isnan(share).any():
+        return math.nan
+    order = np.argsort(share, kind="stable")
+    below = np.cumsum(solution.patches.area[lit][order])
+    return float(share[order][np.searchsorted(below, below[-1] / 2)])
 
 
 def _history(solution: Solution) -> Markup:

@@ -22,7 +22,7 @@ table { border-collapse: collapse; width: 100%; margin: .8rem 0 1.4rem; font-siz
 th, td { padding: .28rem .6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 th { font-weight: normal; }
 thead th { font-weight: 600; border-bottom: 2px solid var(--ink); vertical-align: bottom; }
-tbody th { overflow-wrap: anywhere; min-width: 13rem; } .short { break-inside: avoid; }
+tbody th { overflow-wrap: anywhere; min-width: 9rem; } .short { break-inside: avoid; }
 tbody tr:nth-child(even) { background: var(--band); }
 .number { text-align: right; white-space: nowrap; } thead .number { white-space: normal; }
 tr { break-inside: avoid; } thead { display: table-header-group; }
@@ -30,6 +30,7 @@ tr { break-inside: avoid; } thead { display: table-header-group; }
   overflow-wrap: anywhere; }
 .good { border-color: #15803d; background: #f0fdf4; }
 .small { color: var(--soft); font-size: .88rem; }
+@media screen { section { overflow-x: auto; } }
 @page { size: A4; margin: 18mm 16mm 20mm;
   @bottom-right { content: counter(page) " / " counter(pages); font: 9pt sans-serif; color: #55606e; } }
 @media print {

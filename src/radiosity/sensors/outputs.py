@@ -10,10 +10,10 @@ from ..errors import OutputError, printable
 from ..image.output import check_writable, require
 from ..solution.replacing import replacing
 from ..solution.whole import whole_file
+from .isolines import draw
 from .target import half_width
 
 SUFFIXES = (".csv", ".png", ".svg", ".pdf")
-LEVELS = 8  # isolines at most
 DIGITS = 9
 
 
@@ -93,10 +93,7 @@ def _grid(found, number: int, axes, figure) -> None:
     height, width = len(values), len(values[0])
     extent = (0, width * along, 0, height * across)
     shades = axes.imshow(values, origin="lower", extent=extent, cmap="inferno", interpolation="nearest")
-    if min(values.shape) > 1 and np.nanmax(values) > np.nanmin(values):
-        x, y = (np.arange(width) + 0.5) * along, (np.arange(height) + 0.5) * across
-        lines = axes.contour(x, y, np.ma.masked_invalid(values), levels=LEVELS, colors="white", linewidths=0.8)
-        axes.clabel(lines, fmt="%g", fontsize=7)
+    draw(axes, (np.arange(width) + 0.5) * along, (np.arange(height) + 0.5) * across, values)
     row = next(row for row in found.table() if row["name"] == sensors.names[number])
     what = "illuminance" if found.photometric else "irradiance"
     uniformity = "dark" if np.isnan(row["U0"]) else f"U0 {row['U0']:.2f}"

@@ -5,6 +5,7 @@ import io
 import numpy as np
 
 from ..errors import printable, shown
+from ..solution.percent import margin
 
 WIDE = 1000  # columns; names are never cut off
 MESH = "± holds what lines leave unknown, not the size of patches: finer ones (--cells, --patch-size) show what that is"
@@ -60,11 +61,11 @@ def report(found) -> str:
             Text(printable(row["name"])),
             f"{row['sensors']:,}",
             f"{row['min']:.4g}",
-            f"{row['mean']:.4g} ± {row['mean ±']:.1g}",
+            f"{row['mean']:.4g} ± {margin(row['mean ±'])}",
             f"{row['max']:.4g}",
             _uniformity(row, "U0"),
             _uniformity(row, "U1"),
-            f"{row['sensor ±']:.1g}",
+            margin(row["sensor ±"]),
         )
     text = io.StringIO()
     Console(file=text, width=WIDE, highlight=False, color_system=None).print(table)

@@ -88,6 +88,6 @@ class Subject:
             at = bands.index(band)
             return Quantity(values[:, at : at + 1], name if len(bands) == 1 else f"{name}, {band}", unit, (band,), own)
         if single and len(bands) > 1:
-            mean = "luminance of three bands" if len(bands) == 3 else "mean of the bands"
+            mean = "bands weighted as the eye does" if len(bands) == 3 else "mean of the bands"
             return Quantity(tone.luminance(values)[:, None], f"{name}, {mean}", unit, ("all",), own)
         return Quantity(values, name, unit, bands, own)

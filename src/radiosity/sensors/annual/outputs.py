@@ -8,6 +8,7 @@ import numpy as np
 
 from ...errors import OutputError, printable
 from ...image.output import check_writable
+from ...solution.percent import margin
 from ...solution.whole import whole_file
 from ..outputs import DIGITS
 from .figures import BINS, ENOUGH, OF_HOURS, SUNNY
@@ -62,7 +63,7 @@ def report(found) -> str:
         shares = "   ".join(f"{key} {row[key]:.1%} ± {row[key + ' ±']:.1%}" for key in ("DA", "cDA", "sDA", "ASE"))
         lines += [
             f"{printable(row['name'])}, {row['sensors']:,} sensors: {shares}",
-            f"  UDI {udi}; mean {row['mean']:.4g} ± {row['mean ±']:.1g} lx",
+            f"  UDI {udi}; mean {row['mean']:.4g} ± {margin(row['mean ±'])} lx",
         ]
     return "\n".join([*lines, *NOTES])
 
