@@ -55,6 +55,10 @@ WRONG = {
         ["render", "nowhere.npz", "-o", "a.png", "--range", "0,1", "--color-map", "gray"],
         "--range and --color-map: for false colours only; add --false-color",
     ),
+    "a scene where a solution is read": (
+        ["render", "room", "-o", "a.png"],
+        "room: no such file; solve a scene with -o room.npz first",
+    ),
     "no such file": (["solve", "nowhere.obj"], "nowhere.obj: no such file"),
     "no such format": (["solve", __file__], "unknown format '.py'"),
     "a reflectance bound above one": (["solve", __file__, "--max-reflectance", "1.5"], "max_reflectance is 1.5"),

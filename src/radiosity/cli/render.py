@@ -42,8 +42,8 @@ class Picture:
     """What a picture shows, and how.
 
     Attributes:
-        width: Of the picture, in pixels.
-        height: Of the picture, in pixels.
+        width: Of the picture, in pixels. Default: the camera's, 800 of one that is fitted, 1024 of a panorama.
+        height: Of the picture, in pixels. Default: follows from the width.
         exposure: Stops brighter than the automatic scale; +1 is twice.
         smooth: Interpolate within surfaces, or show each patch as it is.
         quantity: radiosity, irradiance, standard_error, irradiance_standard_error, relative_error, radiance, or

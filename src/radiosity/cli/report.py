@@ -10,6 +10,7 @@ from ..errors import printable
 from .options import Count, Outputs, Seed
 from .streams import tell
 
+Text = Annotated[str, Parameter(show_default=False)]
 Names = Annotated[tuple[str, ...], Parameter(consume_multiple=(1, None), negative=(), show_default=False)]
 Numbers = Annotated[tuple[int, ...], Parameter(consume_multiple=(1, None), negative=(), show_default=False)]
 Paths = Annotated[tuple[Path, ...], Parameter(consume_multiple=(1, None), negative=(), show_default=False)]
@@ -29,11 +30,11 @@ class FirstPage:
     """
 
     title: str | None = None
-    project: str = ""
-    client: str = ""
-    author: str = ""
-    date: str = ""
-    remarks: str = ""
+    project: Text = ""
+    client: Text = ""
+    author: Text = ""
+    date: Text = ""
+    remarks: Text = ""
 
 
 @dataclass(frozen=True)
@@ -42,14 +43,14 @@ class Contents:
 
     Attributes:
         camera: Numbers of the scene's cameras, from 0, for the views. Default: the first four, or one fitted to the scene.
-        width: Of the views, in pixels.
+        width: Of the views, in pixels. Default: 900.
         final_gather: Lines for each pixel of the views, such as 64, that make shadows sharp. Default: no such lines.
         seed: Of the final gather and the sensors.
         plan: Names of level surfaces to draw from above, or patterns such as desk*. Default: the three that receive most light.
         measure: Tables of sensors that `radiosity measure` wrote (.csv). Default: the sensors that the scene asks for.
         sensors: Measure the sensors that the scene asks for.
         check: Look for gaps and mistakes in the scene.
-        rows: Rows of the tables of surfaces and light sources, at most.
+        rows: Rows of the tables of surfaces and light sources, at most. Default: 60.
     """
 
     camera: Numbers = ()

@@ -46,7 +46,8 @@ def read(path: Path, kind: str, formats: tuple[int, ...], restore: Callable[[dic
             raise SceneError(f"{path}: written in format {meta['format']}; this version reads {', '.join(map(str, formats))}")
         return restore(arrays, meta)
     except FileNotFoundError:
-        raise SceneError(f"{path}: no such file; {FIRST[kind].format(name=path.name)}") from None
+        name = path.with_suffix(".npz").name if path.name else "NAME.npz"
+        raise SceneError(f"{path}: no such file; {FIRST[kind].format(name=name)}") from None
     except OSError as error:
         raise SceneError(f"{path}: cannot be read ({error.strerror or error})") from None
     except MemoryError:
