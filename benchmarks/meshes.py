@@ -1,9 +1,11 @@
 """Discretisation errors of meshes that follow the light, and of even ones of the same number of patches: ``make bench-meshes``.
 
-Points are drawn evenly over all sides of faces. The light at each is gathered (`radiosity.measure`), from a solution on a mesh of
-its own. The error is the RMS of (reflectance x irradiance of the patch that holds the point) less (that of the point), relative
-to the RMS of the latter. The noise of both is known from their replicates, and is taken out. Backs that let lines pass absorb
-them here, since a gather needs that what a point sees also sees the point.
+The light at points is gathered (`radiosity.measure`), from a solution on a mesh of its own. The error is the RMS over all sides
+of faces, by area, of (reflectance x irradiance of the patch that holds a point) less (that of the point), relative to the RMS of
+the latter. The noise of both is known from their replicates, and is taken out. Half of the points are drawn by area, half by area
+times the square of reflected light, and each counts by the inverse of its density: the inside of a lamp is small, but so
+bright that few points on it, or none, would decide the result. "elsewhere" are the points with at most ten times the mean light.
+Backs that let lines pass absorb them here, since a gather needs that what a point sees also sees the point.
 
 python benchmarks/meshes.py [--scenes cornell-box room FILE.mgf] [--patches 5000 20000] [--points 1500]
 """
@@ -11,7 +13,7 @@ python benchmarks/meshes.py [--scenes cornell-box room FILE.mgf] [--patches 5000
 import argparse
 import os
 import warnings
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,7 +25,8 @@ LINES = 1000  # of a patch, and at least this many in all:
 LEAST = 8_000_000
 READ = 20_000  # patches of the solution that points read, beyond one for each side of a face
 EACH = 5000  # lines of a point
-ROW = "  {:>8} {:>9} {:>9} {:>7} {:>9}"
+BRIGHT = 10  # times the mean light: points with more are not "elsewhere"
+ROW = "  {:>9} {:>8} {:>9} {:>9} {:>7} {:>9}"
 
 
 def used() -> float:
@@ -32,15 +35,27 @@ def used() -> float:
     return times.user + times.system
 
 
-def places(scene: rd.Scene, count: int, random) -> tuple[np.ndarray, np.ndarray]:
-    """Return points on sides of faces, and the normals of these sides, (count, 3) each."""
-    sides = rd.subdivide(scene, cells=1)
-    side = random.choice(len(sides), count, p=sides.area / sides.area.sum())
-    u, v = random.random((2, count))
-    over = ~scene.is_quad[sides.face[side]] & (u + v > 1)
-    u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
-    origin, first, second = (edge[sides.face[side]] for edge in scene.frames)
-    return origin + u[:, None] * first + v[:, None] * second, sides.normal[side]
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Points on sides of faces, (count, 3) each, and how much each counts, (count,)."""
+
+    points: np.ndarray
+    normals: np.ndarray
+    weights: np.ndarray
+
+    @staticmethod
+    def of(solution: rd.Solution, count: int, random) -> "Places":
+        """Draw points on the patches of a solution, one cell a face: half by area, half also by the square of reflected light."""
+        patches, scene = solution.patches, solution.patches.scene
+        even = patches.area / patches.area.sum()
+        bright = even * ((patches.reflectance * solution.irradiance) ** 2).sum(axis=1)
+        density = (even + bright / bright.sum()) / 2
+        at = random.choice(len(patches), count, p=density)
+        u, v = random.random((2, count))
+        over = ~scene.is_quad[patches.face[at]] & (u + v > 1)
+        u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
+        origin, first, second = (edge[patches.face[at]] for edge in scene.frames)
+        return Places(origin + u[:, None] * first + v[:, None] * second, patches.normal[at], even[at] / density[at])
 
 
 def patch_at(patches: rd.Patches, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
@@ -56,15 +71,19 @@ def solved(patches: rd.Patches) -> rd.Solution:
     return rd.solve(patches, rays=max(LINES * len(patches), LEAST), seed=1)
 
 
-def error(solution: rd.Solution, points: np.ndarray, normals: np.ndarray, truth: rd.Measurement) -> float:
-    """Return the RMS error, relative."""
-    at = patch_at(solution.patches, points, normals)
+def errors(solution: rd.Solution, places: Places, truth: rd.Measurement) -> tuple[float, float]:
+    """Return the RMS error, relative, of all points and of those elsewhere."""
+    at = patch_at(solution.patches, places.points, places.normals)
     known = (at >= 0) & np.isfinite(truth.standard_error).all(axis=1)
     at, light, noise = at[known], truth.illuminance[known], truth.standard_error[known]
-    rho = solution.patches.reflectance[at]
+    rho, weights = solution.patches.reflectance[at], places.weights[known]
     square = (rho * (solution.irradiance[at] - light)) ** 2
     square -= rho**2 * (solution.irradiance_standard_error[at] ** 2 + noise**2)
-    return float(np.sqrt(max(square.sum(), 0.0) / ((rho * light) ** 2).sum()))
+    total = (rho * light).sum(axis=1)
+    dim = total <= BRIGHT * np.average(total, weights=weights)
+    missed, there = weights * square.sum(axis=1), weights * ((rho * light) ** 2).sum(axis=1)
+    every, elsewhere = (float(np.sqrt(max(missed[some].sum(), 0.0) / there[some].sum())) for some in (dim | True, dim))
+    return every, elsewhere
 
 
 def compare(name: str, counts: list[int], points: int) -> None:
@@ -72,20 +91,20 @@ def compare(name: str, counts: list[int], points: int) -> None:
     scene = rd.load_scene(name, allow_outside=True)
     scene = replace(scene, back=np.where(scene.back == rd.Back.PASSES, rd.Back.ABSORBS, scene.back).astype(np.uint8))
     least = len(rd.subdivide(scene, cells=1))
-    where, normals = places(scene, points, np.random.default_rng(1))
     read = solved(rd.adapt(scene, least + READ, seed=7))
-    truth = rd.measure(read, rd.Sensors.of(where, normals), rays=EACH * points, seed=2)
+    places = Places.of(read, points, np.random.default_rng(1))
+    truth = rd.measure(read, rd.Sensors.of(places.points, places.normals), rays=EACH * points, seed=2)
     print(f"{name}: {scene.n_faces} faces, {least} sides", flush=True)
-    print(ROW.format("patches", "even", "follows", "ratio", "CPU s"))
+    print(ROW.format("points", "patches", "even", "follows", "ratio", "CPU s"))
     for count in counts or [2 * least]:
         even = rd.subdivide(scene, about=count)
         begun = used()
         follows = rd.adapt(scene, len(even))
         seconds = used() - begun
-        errors = [error(solved(patches), where, normals, truth) for patches in (even, follows)]
-        ratio = errors[0] / max(errors[1], 1e-9)
-        shares = [f"{value:.2%}" for value in errors]
-        print(ROW.format(len(even), *shares, f"{ratio:.1f}", f"{seconds:.1f}"), flush=True)
+        found = [errors(solved(patches), places, truth) for patches in (even, follows)]
+        for what, one, two in zip(("all", "elsewhere"), *found, strict=True):
+            ratio = one / max(two, 1e-9)
+            print(ROW.format(what, len(even), f"{one:.2%}", f"{two:.2%}", f"{ratio:.1f}", f"{seconds:.1f}"), flush=True)
 
 
 if __name__ == "__main__":

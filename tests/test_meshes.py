@@ -15,6 +15,7 @@ from radiosity.patches.model import Patches
 from radiosity.patches.variation import Variation
 from radiosity.scene.paint import Paint
 from radiosity.scene.shapes import box
+from radiosity.solution.lattice import Lattice
 
 TURN = 0.4  # radians, of the block on the floor
 
@@ -132,6 +133,15 @@ def test_faces_are_cut_across_the_gradient():
     assert columns[4] == columns[3] == rows[4] == 1
 
 
+def test_a_strip_is_cut_along_its_length():
+    """Beside a tube light varies across a strip of 3 x 0.1 m alone: cuts that gain nothing need not come first."""
+    strip = rd.Scene.from_arrays([[0, 0, 0], [3, 0, 0], [3, 0.1, 0], [0, 0.1, 0]], [[0, 1, 2, 3]], 0.5, 1.0)
+    halves = Halves.of(strip, 0.0)
+    across = halves.fine.centroid[:, 1]
+    columns, rows = halves.chosen(halves.variation(np.stack([across[:, None]] * 4)), 10)
+    assert (columns[0], rows[0]) == (1, 2)
+
+
 def test_noise_is_not_taken_for_light(random):
     """Noise alone, 100 times over four squares: its mean square is left out, to within 4 standard errors."""
     halves = halves_of(two_sided=True)
@@ -169,6 +179,7 @@ def test_a_mesh_follows_scene_number_and_seed(adapted):
     assert rd.adapt(scene, 120, seed=3).scene.hash == adapted.scene.hash
 
 
+@pytest.mark.slow
 def test_patches_are_small_near_a_lamp():
     """A floor of 10 x 10 m, half a metre below a point light: its light is known. What patches miss of it, by points of each,
     falls by at least 3 against equal squares of the same number."""
@@ -202,7 +213,63 @@ def test_runs_on_such_meshes_go_on_from_files(adapted, tmp_path):
     assert np.array_equal(more.arrivals, whole.arrivals)
 
 
-@pytest.mark.parametrize("method", ["global-multipath-first-shot", "stochastic-jacobi", "gather", "full-matrix"])
+def test_a_mesh_with_other_light_is_no_cut_of_the_scene():
+    """A run on it does not stand for one of the scene, and a comparison tells that the light differs."""
+    scene = block_on_floor()
+    mesh = Patches(cells_as_faces(rd.subdivide(scene, cells=2)), *[np.ones(48, np.int32)] * 2)
+    lines = rd.trace_lines(mesh, quanta=2000, replicates=2)
+    assert lines.solve().patches.scene.is_cut_of(scene)
+    dimmed = lines.solve(emission={"ceiling": 0.5})
+    assert not dimmed.patches.scene.is_cut_of(scene)
+    part = rd.solve(dimmed.patches, "random-walk", quanta=1024, replicates=2)
+    with pytest.raises(rd.MethodError, match="cannot go on from a solution of 48 patches"):
+        rd.solve(scene, "random-walk", quanta=2048, replicates=2, resume=part)
+    whole = rd.trace_lines(rd.subdivide(scene, cells=1), quanta=2000, replicates=2).solve()
+    for pair in ((dimmed, whole), (whole, dimmed)):
+        notes = rd.compare(*pair).notes
+        assert any("differ in the emission of 'ceiling'" in note for note in notes)
+
+
+def test_parts_on_one_mesh_are_merged_and_other_meshes_refused(adapted, tmp_path):
+    run = {"method": "random-walk", "quanta": 1024}
+    for first in (0, 2):
+        rd.solve(adapted, **run, replicates=2, first_replicate=first).save(tmp_path / f"{first}.npz")
+    parts = [rd.load_solution(tmp_path / f"{first}.npz") for first in (0, 2)]
+    assert np.array_equal(rd.merge(parts).arrivals, rd.solve(adapted, **run, replicates=4).arrivals)
+    whole = block_on_floor()
+    other = Patches(cells_as_faces(rd.subdivide(whole, cells=2)), *[np.ones(48, np.int32)] * 2)
+    with pytest.raises(rd.MethodError, match="the meshes of one scene"):
+        rd.merge([parts[0], rd.solve(other, **run, replicates=2, first_replicate=2)])
+
+
+def test_line_sets_on_such_meshes_go_on_and_solve(adapted):
+    """Lines are counted on the mesh, also where the scene is given with lines to go on from; they solve as a run does."""
+    part = rd.trace_lines(adapted, quanta=2048, replicates=2)
+    more = rd.trace_lines(block_on_floor(), quanta=65_536, replicates=2, resume=part)
+    assert more.patches.scene.hash == adapted.scene.hash
+    found, run = more.solve(), rd.solve(adapted, "random-walk", rays=400_000)
+    mean = [one.patches.area @ one.irradiance / one.patches.area.sum() for one in (found, run)]
+    assert mean[0] == pytest.approx(mean[1], rel=0.02)
+
+
+def test_smoothing_does_not_cross_contact_lines():
+    """Where patches under a block and beside it are congruent, they are no neighbours."""
+    corners = np.concatenate([np.concatenate(box((0, 0, 0), (4, 4, 3), inward=True)), np.concatenate(box((1, 1, 0), (2, 2, 1)))])
+    scene = rd.Scene.from_arrays(corners, np.arange(48).reshape(12, 4), 0.5, 1.0, surface=range(12))
+    patches = rd.subdivide(cut_at_contacts(scene, 1000, 100), size=0.25)
+    after, middle = Lattice.of(patches).after[:2], patches.centroid
+    covered = (np.abs(middle - (1.5, 1.5, 0)) < (0.5, 0.5, 1e-9)).all(axis=1) & (patches.normal[:, 2] > 0.5)
+    assert covered.sum() == 16
+    for way in after:
+        here = np.flatnonzero(way >= 0)
+        assert (covered[here] == covered[way[here]]).all()
+        assert covered[here].sum() == 12
+
+
+SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("global-multipath-first-shot", "stochastic-jacobi", "gather")]
+
+
+@pytest.mark.parametrize("method", ["full-matrix", *SLOW])
 def test_methods_take_such_meshes(adapted, method):
     budget = {} if method == "full-matrix" else {"rays": 100_000}
     solution = rd.solve(adapted, method, **budget)
@@ -228,7 +295,8 @@ def test_what_makes_no_sense_is_refused():
         rd.solve(cut_scene, "hierarchical")
 
 
-def test_the_command_line_cuts_and_solves(tmp_path, monkeypatch, capsys):
+@pytest.mark.slow
+def test_the_command_line_cuts_solves_and_goes_on(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert command(["solve", "room", "--patches", "60", "--rays", "20k", "-o", "a.npz"]) == 0
     patches = rd.load_solution("a.npz").patches
@@ -236,8 +304,24 @@ def test_the_command_line_cuts_and_solves(tmp_path, monkeypatch, capsys):
     assert patches.scene.is_cut_of(rd.load_scene("room"))
     assert command(["solve", "room", "--resume", "a.npz", "--rays", "40k", "-o", "b.npz"]) == 0
     assert len(rd.load_solution("b.npz").patches) == len(patches)
+
+
+def test_the_command_line_counts_lines_on_such_meshes(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert command(["lines", "room", "--patches", "50", "--rays", "20k", "--replicates", "2", "-o", "c.npz"]) == 0
+    patches = rd.load_lines("c.npz").patches
+    assert 40 < len(patches) <= 50
+    assert patches.scene.is_cut_of(rd.load_scene("room"))
+    assert command(["lines", "room", "--resume", "c.npz", "--rays", "30k", "--replicates", "2", "-o", "d.npz"]) == 0
+    assert rd.load_lines("d.npz").patches.scene.hash == patches.scene.hash
     capsys.readouterr()
-    assert command(["solve", "room", "--patches", "200", "--cells", "2"]) == 2
-    assert "leave out --patch-size" in capsys.readouterr().err
+
+
+def test_the_command_line_refuses_what_does_not_go_together(capsys):
+    for name in ("solve", "lines"):
+        assert command([name, "room", "--patches", "200", "--cells", "2", "-o", "e.npz"]) == 2
+        assert "leave out --patch-size" in capsys.readouterr().err
+    assert command(["solve", "room", "--patches", "200", "--powers-of-two"]) == 2
+    assert "leave out --powers-of-two" in capsys.readouterr().err
     assert command(["solve", "room", "--adaptive", "--method", "hierarchical"]) == 2
     assert "refines its patches by itself" in capsys.readouterr().err

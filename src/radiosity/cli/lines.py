@@ -10,7 +10,7 @@ from ..errors import MethodError, OutputError, printable
 from . import checkpoints, interrupts
 from .options import Count, Flag, Seconds
 from .solve import DEFAULT_RAYS
-from .solve_options import PATCHES, RUN, Machine, SceneOptions, Size, Unset
+from .solve_options import PATCHES, RUN, Machine, Mesh, SceneOptions, Unset
 from .streams import say, tell
 
 BUDGET, LINES = Group("How long to trace: one of these", sort_key=1), Group("The lines", sort_key=2)
@@ -73,7 +73,7 @@ class LineRunning(Machine):
 class Plain:
     """Each group of options where none of them is given."""
 
-    budget, choices, size, run = LineBudget(), LineChoices(), Size(), LineRunning()
+    budget, choices, size, run = LineBudget(), LineChoices(), Mesh(), LineRunning()
 
 
 def lines(
@@ -83,7 +83,7 @@ def lines(
     output: Annotated[Path, Parameter(name=["--output", "-o"])],
     budget: Annotated[LineBudget, Parameter(name="*", group=BUDGET)] = Plain.budget,
     choices: Annotated[LineChoices, Parameter(name="*", group=LINES)] = Plain.choices,
-    size: Annotated[Size, Parameter(name="*", group=PATCHES)] = Plain.size,
+    size: Annotated[Mesh, Parameter(name="*", group=PATCHES)] = Plain.size,
     run: Annotated[LineRunning, Parameter(name="*", group=RUN)] = Plain.run,
     reading: SceneOptions = Unset.reading,
 ) -> int:
@@ -119,7 +119,7 @@ def lines(
                 name: getattr(run, name) for name in ("seed", "device", "replicates", "first_replicate", "memory")
             }
             found = rd.trace_lines(
-                _patches(loaded, size, before),
+                _patches(loaded, size, before, run, progress),
                 **given,
                 sources=_sources(choices.sources),
                 lines=choices.lines,
@@ -155,12 +155,16 @@ def _sources(given: tuple[str, ...]) -> dict[str, str] | None:
     return found or None
 
 
-def _patches(scene, size: Size, before):
+def _patches(scene, size: Mesh, before, run: LineRunning, progress):
     """Return the scene cut as asked, or else as in the lines to continue, or else as it is."""
     import radiosity as rd
 
-    if size.patch_size is not None or size.cells is not None:
+    if size.sized:
         return rd.subdivide(scene, size=size.patch_size, cells=size.cells)
+    if size.follows:
+        return rd.adapt(scene, size.patches, seed=run.seed, device=run.device, memory=run.memory, progress=progress)
+    if before is not None and before.patches.scene.is_cut_of(scene):
+        return before.patches
     if before is not None and before.patches.scene.geometry_hash == scene.geometry_hash:
         return rd.Patches(scene, before.patches.columns, before.patches.rows)
     return scene

@@ -69,38 +69,56 @@ class Size:
 
 
 @dataclass(frozen=True)
-class Cut(Size):
-    """How faces are cut into patches.
+class Mesh(Size):
+    """How faces are cut into patches, evenly or where light varies.
 
     Attributes:
         patches: At most so many patches, such as 50k, which follow the light: faces are cut where other faces touch them, and
             where light varies, as pilot runs see it (docs/meshes.md).
         adaptive: The same, with as many patches as by default.
+    """
+
+    patches: Count = None
+    adaptive: Flag = False
+
+    @property
+    def follows(self) -> bool:
+        """Patches follow the light."""
+        return self.patches is not None or self.adaptive
+
+    @property
+    def sized(self) -> bool:
+        """Patches have one size.
+
+        Raises:
+            MethodError: they are to follow the light as well.
+        """
+        sized = self.patch_size is not None or self.cells is not None
+        if sized and self.follows:
+            raise MethodError("--patches and --adaptive cut where light varies: leave out --patch-size and --cells")
+        return sized
+
+
+@dataclass(frozen=True)
+class Cut(Mesh):
+    """How faces are cut into patches.
+
+    Attributes:
         powers_of_two: Cut faces into 1, 2, 4, 8 ... cells along each edge. Hierarchical radiosity always does; with this option
             other methods have the same patches, to compare with it.
         refine_check: Solve on patches cut into four, too, and report sampling and discretisation errors apart. With a .csv
             output also as NAME.refine.csv.
     """
 
-    patches: Count = None
-    adaptive: Flag = False
     powers_of_two: Flag = False
     refine_check: Flag = False
 
     @property
     def given(self) -> bool:
         """Patches are cut as these options say, and not as they come."""
-        even = self.patch_size is not None or self.cells is not None or self.powers_of_two
-        if even and self.follows:
-            raise MethodError(
-                "--patches and --adaptive cut where light varies: leave out --patch-size, --cells and --powers-of-two"
-            )
-        return even or self.follows
-
-    @property
-    def follows(self) -> bool:
-        """Patches follow the light."""
-        return self.patches is not None or self.adaptive
+        if self.powers_of_two and self.follows:
+            raise MethodError("--patches and --adaptive cut where light varies: leave out --powers-of-two")
+        return self.sized or self.powers_of_two or self.follows
 
 
 @dataclass(frozen=True)

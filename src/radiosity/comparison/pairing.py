@@ -51,9 +51,9 @@ def check_comparable(a: Solution, b: Solution) -> None:
 def places(a: Solution, b: Solution) -> Places | None:
     """The patches or points that both solutions have; None where their faces differ."""
     one, two = a.patches, b.patches
-    if one.scene.is_cut_of(two.scene):
+    if one.scene.is_cut_of(two.scene, any_light=True):
         return Places(one, np.arange(len(one)), _within(one, two), False)
-    if two.scene.is_cut_of(one.scene):
+    if two.scene.is_cut_of(one.scene, any_light=True):
         return Places(two, _within(two, one), np.arange(len(two)), False)
     if one.scene.geometry_hash != two.scene.geometry_hash:
         return None
@@ -129,8 +129,12 @@ def row_areas(solution: Solution) -> np.ndarray:
 
 def other_light(a: Scene, b: Scene) -> list[str]:
     """Notes about equal faces that emit or reflect differently: that is a difference that no error explains."""
-    if a.is_cut_of(b) or b.is_cut_of(a):  # the record of a cut holds for equal light alone
+    if a.is_cut_of(b) or b.is_cut_of(a):
         return []
+    if a.cut is not None and a.is_cut_of(b, any_light=True):
+        b = b.take(a.cut.face)
+    elif b.cut is not None and b.is_cut_of(a, any_light=True):
+        a = a.take(b.cut.face)
     found = []
     for what, names in (("reflectance", ("reflectance", "back_reflectance")), ("emission", ("emission", "back_emission"))):
         pairs = [(getattr(a, name), getattr(b, name)) for name in names]

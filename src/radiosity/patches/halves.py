@@ -8,7 +8,7 @@ from ..scene.model import Back, Scene
 from .model import Patches
 from .variation import Variation
 
-LONGEST = 8.0  # of a patch, over its width
+LONGEST = 128.0  # of a patch, over its width: along a lamp, light varies across a strip alone
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,6 +17,8 @@ from .whole_number import whole
 
 FACTS = tuple(key for key in SAME if key not in ("replicates", "first_replicate", "all_replicates"))
 
+APART = "the meshes of one scene, which follow the light (solve all on the same patches, or adapt with the same number and seed)"
+
 
 def merge(solutions: Iterable[Solution], *, memory: str | float | None = None) -> Solution:
     """Put solutions together that have other replicates of one seed, such as from other processes or machines.
@@ -67,6 +69,8 @@ def _merged(given: list[Solution]) -> Solution:
         if solution.quanta != given[0].quanta:
             different.append(f"quanta ({solution.quanta} {here}, {given[0].quanta} {there})")
         if different:
+            if _cut_apart(solution, given[0]):
+                different.insert(0, APART)
             raise MethodError(f"cannot merge solutions that differ: {'; '.join(different)}. Solve all with the same, and quanta=")
     order = sorted(range(len(given)), key=lambda at: parts[at].first)
     for one, other in pairwise(order):
@@ -84,6 +88,12 @@ def _merged(given: list[Solution]) -> Solution:
             raise MethodError(f"cannot merge solutions of another program or scene: {'; '.join(different)}; solve them anew")
     merged = run.merged(quanta, [(solution.state, part) for solution, part in zip(given, parts, strict=True)])
     return replace(merged, seconds=sum(solution.seconds for solution in given))
+
+
+def _cut_apart(one: Solution, other: Solution) -> bool:
+    """Return whether two meshes follow the light of one scene, and are not the same."""
+    scene, of = one.patches.scene, other.patches.scene
+    return scene.cut is not None and of.cut is not None and scene.cut.whole == of.cut.whole and scene.hash != of.hash
 
 
 def _part(at: int, solution: Solution) -> Part:

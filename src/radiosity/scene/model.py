@@ -292,9 +292,22 @@ class Scene:
             digest.update(b"index" + _digest(self.refractive_index).digest())
         return digest
 
-    def is_cut_of(self, scene: "Scene") -> bool:
-        """Return whether the faces are parts of the faces of that scene."""
-        return self.cut is not None and self.cut.whole == scene.hash
+    def is_cut_of(self, scene: "Scene", any_light: bool = False) -> bool:
+        """Return whether the faces are parts of the faces of that scene, with the same light and colours.
+
+        Args:
+            any_light: they may have got another light, or other colours, since they were cut.
+        """
+        if self.cut is None or self.cut.whole != scene.hash:
+            return False
+        if any_light:
+            return True
+        paints = {
+            name: getattr(self, name)
+            for name in ("reflectance_paint", "emission_paint")
+            if getattr(self, name) is not None and getattr(scene, name) is not None
+        }
+        return replace(scene.take(self.cut.face), vertices=self.vertices, faces=self.faces, **paints).hash == self.hash
 
     def take(self, keep: np.ndarray) -> "Scene":
         """The scene of a choice of faces (indices or mask)."""

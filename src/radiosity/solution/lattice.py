@@ -109,7 +109,8 @@ def _neighbours(place: np.ndarray, third: np.ndarray) -> np.ndarray:
 def _kinds(patches: Patches) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the kind of each face, the axes of its cells, and the third axis of triangles.
 
-    Faces of one kind have one surface, look the same way, and their cells have the same edges, in any order.
+    Faces of one kind have one surface, look the same way, and their cells have the same edges, in any order. No contact line
+    holds them apart.
 
     Returns:
         (n_faces,) int64; (n_faces, 3, 3), the scalar products with these are steps along two edges and the normal; (n_faces, 2)
@@ -129,7 +130,8 @@ def _kinds(patches: Patches) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     _, power = np.frexp(size * 1.37)  # no round number, either
     facing = np.einsum("ij,ij->i", upright, scene.normal) > 0
     alike = np.rint(np.hstack([one, two]) / np.ldexp(ALIKE, power))
-    kind = numbered(np.column_stack([scene.surface, scene.is_quad, facing, power, alike]))
+    region = np.zeros(scene.n_faces, np.int64) if scene.cut is None else scene.cut.region
+    kind = numbered(np.column_stack([scene.surface, scene.is_quad, facing, power, alike, region]))
     area = np.linalg.norm(upright, axis=1, keepdims=True)
     normal = upright / np.where(area > 0, area, 1)
     axes = np.stack([np.cross(two, normal), np.cross(normal, one), normal * area / size], axis=1)

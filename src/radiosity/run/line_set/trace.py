@@ -93,6 +93,8 @@ def trace_lines(
     if resume is not None and len(resume.parts) > 1:
         raise MethodError("cannot go on from a sum of line sets; go on with each of them, and add them again")
     with limited(memory), turn():
+        if resume is not None and isinstance(scene, Scene) and resume.patches.scene.is_cut_of(scene):
+            scene = resume.patches
         patches = patches_of(scene, method, "trace_lines")
         if resume is not None and len(resume.patches) != len(patches):
             raise MethodError(
