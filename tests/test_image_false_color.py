@@ -1,5 +1,7 @@
 """False colours and their legend."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from image_samples import plain_hits, quad_scene, solution
@@ -7,6 +9,7 @@ from image_samples import plain_hits, quad_scene, solution
 import radiosity as rd
 from radiosity.image import false_color, render
 from radiosity.image.false_color import automatic_limits
+from radiosity.image.quantity import choose
 
 matplotlib = pytest.importorskip("matplotlib")
 
@@ -105,3 +108,11 @@ def test_false_colours_are_no_exr(tmp_path):
     with pytest.raises(rd.OutputError, match=r"write false colours to a \.png"):
         picture(path=tmp_path / "a.exr")
     assert not list(tmp_path.iterdir())
+
+
+def test_the_legend_of_a_scene_in_lumens_says_illuminance():
+    scene = replace(rd.load_scene("room"), photometric=True)
+    found = rd.solve(rd.subdivide(scene, cells=1), "random-walk", rays=5_000, replicates=2)
+    assert (choose(found, "irradiance").title, choose(found, "irradiance").unit) == ("illuminance", "lx")
+    plain = rd.solve(rd.subdivide(replace(scene, photometric=False), cells=1), "random-walk", rays=5_000, replicates=2)
+    assert choose(plain, "irradiance").title == "irradiance"

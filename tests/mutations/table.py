@@ -2431,8 +2431,8 @@ MISTAKES = (
     ),
     Mistake(
         "sensors/target.py",
-        "return float((width[bright] / mean[bright]).max()) if bright.any() else 0.0",
-        "return float((width[bright] / mean[bright]).mean()) if bright.any() else 0.0",
+        "return float((width[bright] / mean[bright]).max()) if bright.any() else np.inf",
+        "return float((width[bright] / mean[bright]).mean()) if bright.any() else np.inf",
         ("test_sensors.py",),
         "the error of the worst sensor is the mean of all",
     ),
@@ -2575,6 +2575,20 @@ MISTAKES = (
         "UNSHOWN.sub(TURNING, str(value))",
         ("test_report_page.py",),
         "names of surfaces become markup of a report",
+    ),
+    Mistake(
+        "report_page/quality.py",
+        'order = np.argsort(share, kind="stable")',
+        'order = np.argsort(-share, kind="stable")[: len(share) // 4]',
+        ("test_report_page.py",),
+        "a report states the error of its worst spots as that of a typical one",
+    ),
+    Mistake(
+        "sensors/isolines.py",
+        "(ticks > known.min())",
+        "(ticks >= known.min())",
+        ("test_report_page.py",),
+        "plans have lines along the noise of dark places",
     ),
     Mistake(
         "report_page/levels.py",

@@ -48,7 +48,7 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         solution: to show.
         name: a key of `NAMES`.
         band: a band by name or number; default: all of them.
-        single: reduce all bands to one number for each patch, the luminance of three bands or the mean of others.
+        single: reduce all bands to one number for each patch: three weighted as the eye does, or the mean of others.
 
     Raises:
         OutputError: there is no such quantity or band.
@@ -57,6 +57,8 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         raise OutputError(f"quantity '{name}' does not exist; known are {', '.join(NAMES)}")
     names = [str(b) for b in solution.bands]
     rows, title = _columns(band, names), NAMES[name]
+    if solution.patches.scene.photometric:
+        title = title.replace("irradiance", "illuminance")
     names, several = names[rows], len(names) > 1
     own = (solution.patches.emission[:, rows] > 0).any(axis=1)
     if name == "luminance" and not solution.patches.scene.photometric:
