@@ -71,7 +71,9 @@ class TestContract:
 
 def test_a_continuous_walk_that_forgets_where_it_landed_is_rejected(exact, monkeypatch):
     begin = PathSegments.__init__
-    monkeypatch.setattr(PathSegments, "__init__", lambda self, engine, *, continuous: begin(self, engine, continuous=False))
+    monkeypatch.setattr(
+        PathSegments, "__init__", lambda self, engine, **more: begin(self, engine, **more | {"continuous": False})
+    )
     found = differences(rd.Method(equation="continuous"), exact)
     assert found["continuous"] > 2
     assert found["discrete"] < 1

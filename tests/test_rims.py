@@ -142,6 +142,7 @@ def test_pictures_of_rims_show_the_corners_values(kind, front):
     patches = rd.subdivide(scene(kind, two_sided=True), cells=3)
     look = Lookup(patches, np.zeros((len(patches), 1)))
     vars(look)["at_vertices"] = (look.mesh.vertices @ [1.0, -2.0, 0.5] + 7.0)[:, None]
+    vars(look.planes)["plane"] = np.full(len(patches), -1)  # values at vertices, not fits to planes of triangles
     for face in (0, 1):
         u, v = rims(bool(patches.scene.is_quad[face]), 3).astype(float).T
         hits = SimpleNamespace(face=np.full(len(u), face), u=u, v=v, front=np.full(len(u), front))
