@@ -19,6 +19,7 @@ from radiosity.cli import main
 from radiosity.device.backend import choose
 from radiosity.patches.scatter import Scatter
 from radiosity.scene.lights.axes import sky_axes, towards
+from radiosity.scene.lights.model import Lights
 from radiosity.scene.lights.perez import Weather
 from radiosity.scene.lights.sky_patches import SkyPatches
 from radiosity.scene.lights.weather_year import read_year
@@ -217,6 +218,37 @@ def test_hours_of_a_room_are_those_of_single_runs(year):
     assert (np.abs(found.values["mean"] - wanted) <= sum(errors) + 0.015 * wanted).all()
     assert (errors[0] < 0.12 * wanted).all()
     assert (errors[0] > 0).all()
+
+
+@pytest.mark.slow
+def test_coefficients_are_those_of_radiance(tmp_path):
+    """Four cloudy hours of a room with a window, by the daylight coefficients of `rfluxmtx` and the same 145 sky patches.
+
+    Two runs of Radiance with other numbers of rays differ by about 1 %, which stands for its error.
+    """
+    pytest.importorskip("pyradiance")
+    from validation.radiance_file import text
+    from validation.rtrace import program
+
+    cloudy = {(1, 15, 11): (0, 80), (3, 21, 13): (0, 200), (6, 21, 9): (0, 150), (9, 10, 17): (0, 60)}
+    weather, sky, sensors = read_year(epw(tmp_path / "a.epw", cloudy)), SkyPatches.of(145), rd.Sensors.of(POINTS)
+    patches = rd.subdivide(office(), size=0.3)
+    with pytest.warns(rd.RadiosityWarning, match="the scene's own light is left out"):
+        found = rd.annual(patches, tmp_path / "a.epw", sensors, rays=3_000_000, occupied=weather.diffuse > 0)
+    (tmp_path / "room.rad").write_text(text(replace(office(), lights=Lights())))
+    far = "#@rfluxmtx h={0} u=Y\nvoid glow {1} 0 0 4 1 1 1 0\n{1} source {1}s 0 0 4 0 0 {2} 180\n"
+    (tmp_path / "far.rad").write_text(far.format("u", "ground", -1) + far.format("r1", "sky", 1))
+    rays = "".join(" ".join(map(str, (*point, 0, 0, 1))) + "\n" for point in POINTS).encode()
+    runs = []
+    for number in (60_000, 100_000):
+        options = ["-I+", "-y", str(len(POINTS)), "-ab", "25", "-ad", str(number), "-lw", "1e-7", "-h", "-"]
+        told = program("rfluxmtx", *options, str(tmp_path / "far.rad"), str(tmp_path / "room.rad"), given=rays)
+        by_patch = np.array(told.split(), np.float64).reshape(len(POINTS), -1, 3)[:, :, 0]
+        radiance = YearOfSkies.of(weather, sky, sky_axes(), 0.2).radiance  # the ground is last here, and first there
+        runs.append((by_patch @ np.roll(radiance, 1, axis=1).T).mean(axis=1))
+    wanted = np.mean(runs, axis=0)
+    errors = half_width(found.replicates["mean"], 1 - ALPHA / len(sensors))
+    assert (np.abs(found.values["mean"] - wanted) <= errors + 0.02 * wanted).all()
 
 
 def test_sensors_that_no_light_was_found_for_are_told(year):

@@ -55,7 +55,8 @@ def program(name: str, *arguments: str, given: bytes = b"") -> bytes:
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError("No module named 'pyradiance'", name="pyradiance")
     home = Path(spec.origin).parent
-    environment = {**os.environ, "RAYPATH": str(home / "lib")}
+    path = os.pathsep.join([str(home / "bin"), os.environ.get("PATH", "")])  # some of the programs start others
+    environment = {**os.environ, "RAYPATH": str(home / "lib"), "PATH": path}
     command = [str(home / "bin" / name), *arguments]
     done = subprocess.run(command, input=given, capture_output=True, env=environment, timeout=SECONDS, check=False)
     if done.returncode:
