@@ -302,3 +302,14 @@ def test_what_cannot_be_written_is_said_before_any_work(solution, tmp_path, monk
     with pytest.raises(rd.MethodError, match="width"):
         rd.write_report(solution, tmp_path / "r.html", width=0)
     assert main(["report", str(tmp_path / "no.npz"), "-o", str(tmp_path / "r.html")]) == 2
+
+
+def test_plans_leave_out_what_boxes_stand_on():
+    """The floor under a box is no place with the least light; it is none at all."""
+    solution = rd.solve(rd.adapt(rd.load_scene("cornell-box"), 300), "random-walk", rays=60_000)
+    (plan,) = plans(solution, ("floor",))
+    left, right, bottom, top = plan.extent
+    shown = np.isfinite(plan.values).mean() * (right - left) * (top - bottom)
+    boxes = 0.013768 + 0.013865 + 0.0138405 + 0.013786  # m², of their tops, as large as what they stand on
+    assert shown == pytest.approx(plan.area - boxes, rel=0.02)
+    assert np.nanmin(plan.values) > 0

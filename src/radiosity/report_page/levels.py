@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import MethodError
 from ..image.lookup import Lookup
+from ..scene import Back, Scene
 from ..scene.named import surfaces_called
 from ..scene.up import up_axis, up_vector
 from ..solution.model import Solution
@@ -25,7 +26,8 @@ class Plan:
     Attributes:
         name: of the surface.
         height: m.
-        values: (rows, columns), one number for all bands; NaN beside the surface. Row 0 is the lowest of the second axis.
+        values: (rows, columns), one number for all bands; NaN beside the surface, and under what stands on it. Row 0 is the
+            lowest of the second axis.
         extent: left, right, bottom and top, m.
         axes: names of the axes to the right and up.
         area: m², of the surface at this height.
@@ -85,5 +87,13 @@ def _plan(solution: Solution, surface: int, level: float, own: np.ndarray, area:
     values = single(scene, solution.irradiance)[:, None]
     seen, patch = Lookup(patches, values)(hits)
     on = (patch >= 0) & (patches.surface[patch] == surface) & (np.asarray(hits.distance) < 3 * NEAR * scene.reach + 2e-3)
+    on &= ~((seen[:, 0] <= 0) & _covered(scene, points, up))
     shown = np.where(on, np.maximum(seen[:, 0], 0), np.nan).reshape(rows, columns)
     return Plan(scene.names[surface], level, shown, (left, end, bottom, top), ("x", "y" if kind == "z" else "-z"), area)
+
+
+def _covered(scene: Scene, points: np.ndarray, up: np.ndarray) -> np.ndarray:
+    """Return which points have a back that absorbs above them, (m,) bool: those inside of boxes are among them."""
+    hits = first_hits(scene, points, np.broadcast_to(up, points.shape))
+    face = np.asarray(hits.face, np.int64)
+    return (face >= 0) & ~np.asarray(hits.front, bool) & (scene.back[face] == Back.ABSORBS)
