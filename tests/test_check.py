@@ -96,7 +96,7 @@ def test_an_open_scene_says_where_it_is_open():
     text = message(check(rd.load_scene("cornell-box")), "open edges")
     assert "belong to one face only" in text
     leak = next(f.message for f in check(rd.load_scene("cornell-box")).findings if "leave the scene" in f.message)
-    assert "through 'z low' 100 %" in leak
+    assert "out at the scene's lowest z 100 %" in leak
 
 
 def test_tracing_is_repeatable(cube):

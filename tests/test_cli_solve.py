@@ -306,7 +306,7 @@ def test_check_prints_what_there_is(capsys):
     assert "faces     21: 10 triangles, 11 parallelograms" in out
     assert "emitters  1, 0.729 / 0.5146 / 0.1715 W in all" in out
     assert re.search(r"^left wall +2 +0\.3069 +0\.63 / 0\.065 / 0\.05 +- +- +one", out, re.MULTILINE)
-    assert re.search(r"^warning leaks: .* through 'z low' 100 %", out, re.MULTILINE)
+    assert re.search(r"^warning leaks: .* out at the scene's lowest z 100 %", out, re.MULTILINE)
     rows = re.findall(r"^(.{11}?) +\d+ +([\d.]+) .* (?:one|two) *$", out, re.MULTILINE)
     assert rows[0][0].strip() == "light"  # what emits, then by area
     assert [float(area) for _, area in rows[1:]] == sorted((float(area) for _, area in rows[1:]), reverse=True)

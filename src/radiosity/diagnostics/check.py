@@ -11,7 +11,7 @@ from . import contact_findings, dark_sides, leaks, luminaire_findings
 from .report import NOTE, SERIOUS, WARNING, Finding, Report, surface_rows
 
 LITTLE = 0.01  # of the lines: in many correct scenes, backs of lamps absorb that much
-BOX_SIDES = ("x low", "x high", "y low", "y high", "z low", "z high")
+BOX_SIDES = ("lowest x", "highest x", "lowest y", "highest y", "lowest z", "highest z")
 
 
 def check_file(
@@ -125,7 +125,8 @@ def _lines(scene: Scene, power: np.ndarray, walks: int, seed: int, device: str):
         yield Finding(NOTE if outside else WARNING, "leaks", text)
     if fates.lost:
         counts = np.bincount(scene.surface[fates.hit[fates.fate == leaks.LOST]], minlength=len(scene.names))
-        where, advice = _ranked(scene.names, counts), "if they should reflect, turn those faces round or make them two-sided"
+        where = _ranked(_quoted(scene.names), counts)
+        advice = "if they should reflect, turn those faces round or make them two-sided"
         severity = WARNING if fates.lost > LITTLE else NOTE
         text = f"{_percent(fates.lost)} of {lines} lines hit absorbing backs (of {where}): {advice}"
         yield Finding(severity, "leaks", text)
@@ -136,9 +137,13 @@ def _escapes(scene: Scene, fates: leaks.Fates) -> str:
     gone = fates.fate == leaks.ESCAPED
     starts = np.bincount(scene.surface[fates.face[gone]], minlength=len(scene.names))
     ends = np.bincount(fates.exit[gone], minlength=6)
-    return f"from {_ranked(scene.names, starts)}; through {_ranked(BOX_SIDES, ends)}"
+    return f"from {_ranked(_quoted(scene.names), starts)}; out at the scene's {_ranked(BOX_SIDES, ends)}"
+
+
+def _quoted(names) -> list[str]:
+    return [f"'{name}'" for name in names]
 
 
 def _ranked(names, counts: np.ndarray, most: int = 3) -> str:
     order = [i for i in np.argsort(-counts, kind="stable") if counts[i]][:most]
-    return ", ".join(f"'{names[i]}' {100 * counts[i] / counts.sum():.0f} %" for i in order)
+    return ", ".join(f"{names[i]} {100 * counts[i] / counts.sum():.0f} %" for i in order)
