@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ..errors import OutputError
-from ..image.output import check_writable
+from ..image.output import each_writable
 
 SUFFIXES = (".csv", ".npz", ".idf")
 
@@ -18,12 +18,8 @@ def check(paths, zone: str | None) -> None:
     Raises:
         OutputError: an unknown format, a folder that cannot be written to, one file named twice, or no zone.
     """
-    seen: set[Path] = set()
-    for path in paths:
-        if check_writable(path, SUFFIXES).resolve() in seen:
-            raise OutputError(f"{path} is named twice; give each output its own name")
-        seen.add(Path(path).resolve())
-        if Path(path).suffix.lower() == ".idf" and zone is None:
+    for path in each_writable(paths, SUFFIXES):
+        if path.suffix.lower() == ".idf" and zone is None:
             raise OutputError(f"{path}: EnergyPlus needs the name of the zone; give --zone NAME")
 
 

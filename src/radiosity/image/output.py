@@ -38,6 +38,21 @@ def check_writable(path, suffixes) -> Path:
     return path
 
 
+def each_writable(paths, suffixes) -> list[Path]:
+    """Find out whether files can be written that are made together, and return their paths.
+
+    Raises:
+        OutputError: as of `check_writable`, or one file is named twice.
+    """
+    seen: dict[Path, Path] = {}
+    for path in paths:
+        place = check_writable(path, suffixes).resolve()
+        if place in seen:
+            raise OutputError(f"{path} is named twice; give each output its own name")
+        seen[place] = Path(path)
+    return list(seen.values())
+
+
 def require(module: str, purpose: str, extra: str = "all") -> None:
     """Refuse an output whose optional library is missing.
 

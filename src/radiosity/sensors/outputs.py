@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError, printable
-from ..image.output import check_writable, require
+from ..image.output import each_writable, require
 from ..solution.replacing import replacing
 from ..solution.whole import whole_file
 from .isolines import draw
@@ -23,12 +23,8 @@ def check(paths) -> None:
     Raises:
         OutputError: an unknown format, a folder that cannot be written to, or one file named twice.
     """
-    seen: set[Path] = set()
-    for path in paths:
-        if check_writable(path, SUFFIXES).resolve() in seen:
-            raise OutputError(f"{path} is named twice; give each output its own name")
-        seen.add(Path(path).resolve())
-        if Path(path).suffix.lower() != ".csv":
+    for path in each_writable(paths, SUFFIXES):
+        if path.suffix.lower() != ".csv":
             require("matplotlib", f"{path}: isolines")
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import OutputError, printable
-from ...image.output import check_writable
+from ...errors import printable
+from ...image.output import each_writable
 from ...solution.percent import margin
 from ...solution.whole import whole_file
 from ..outputs import DIGITS
@@ -40,11 +40,7 @@ def check(paths) -> None:
     Raises:
         OutputError: an unknown format, a folder that cannot be written to, or one file named twice.
     """
-    seen: set[Path] = set()
-    for path in paths:
-        if check_writable(path, SUFFIXES).resolve() in seen:
-            raise OutputError(f"{path} is named twice; give each output its own name")
-        seen.add(Path(path).resolve())
+    each_writable(paths, SUFFIXES)
 
 
 def report(found) -> str:
