@@ -74,7 +74,7 @@ def said(report: Report) -> list[tuple[str, str, list[str], list[float]]]:
     found = []
     for finding in report.findings:
         text = re.sub(r"\([^()]* m\)", "", finding.message)
-        text = re.sub(r"through [^()]*\)", "", text)
+        text = re.sub(r"out at the scene's [^()]*\)", "", text)
         numbers = [float(x) for x in re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w.])", text)]
         found.append((finding.severity, finding.kind, re.findall(r"[a-z]{2,}|'[^']*'", text), numbers))
     return found
