@@ -13,7 +13,7 @@ from .measure import cut_of
 from .options import Count, Flag, Outputs, Point, Share
 from .places import PointOptions, Points, sensors_of
 from .solve import NOT_REACHED
-from .solve_options import RUN, Machine, SceneOptions, Size, Unset
+from .solve_options import RUN, Replicated, SceneOptions, Size, Unset
 from .streams import tell
 
 
@@ -55,21 +55,10 @@ class Tracing(Size):
     error: Share = None
 
 
-@dataclass(frozen=True)
-class Running(Machine):
-    """What concerns the run.
-
-    Attributes:
-        replicates: Number of independent randomised runs, from which errors are found.
-    """
-
-    replicates: Count = 8
-
-
 YearOptions = Annotated[Year, Parameter(name="*", group=Group("The year", sort_key=0))]
 TracingOptions = Annotated[Tracing, Parameter(name="*", group=Group("Lines and patches", sort_key=2))]
-RunningOptions = Annotated[Running, Parameter(name="*", group=RUN)]
-NOWHERE, USUAL, PLAIN = Points(), Tracing(), Running()
+RunningOptions = Annotated[Replicated, Parameter(name="*", group=RUN)]
+NOWHERE, USUAL, PLAIN = Points(), Tracing(), Replicated()
 
 
 def annual(

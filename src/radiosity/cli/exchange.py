@@ -10,7 +10,7 @@ from ..errors import MethodError, OutputError, SceneError, printable
 from . import outputs
 from .options import Count, Length, Outputs, Share
 from .solve import NOT_REACHED
-from .solve_options import RUN, Machine, SceneOptions, Unset
+from .solve_options import RUN, Replicated, SceneOptions, Unset
 from .streams import tell
 
 Names = Annotated[tuple[str, ...], Parameter(consume_multiple=(1, None), negative=(), show_default=False)]
@@ -60,21 +60,10 @@ class Tracing:
     cells: Count = None
 
 
-@dataclass(frozen=True)
-class Running(Machine):
-    """What concerns the run.
-
-    Attributes:
-        replicates: Number of independent randomised runs, from which errors are found.
-    """
-
-    replicates: Count = 8
-
-
 ConditionOptions = Annotated[Conditions, Parameter(name="*", group=Group("The conditions", sort_key=1))]
 TracingOptions = Annotated[Tracing, Parameter(name="*", group=Group("Lines and patches", sort_key=2))]
-RunningOptions = Annotated[Running, Parameter(name="*", group=RUN)]
-NO_CONDITIONS, USUAL, PLAIN = Conditions(), Tracing(), Running()
+RunningOptions = Annotated[Replicated, Parameter(name="*", group=RUN)]
+NO_CONDITIONS, USUAL, PLAIN = Conditions(), Tracing(), Replicated()
 
 
 def exchange(

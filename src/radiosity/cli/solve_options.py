@@ -138,6 +138,17 @@ class Machine:
 
 
 @dataclass(frozen=True)
+class Replicated(Machine):
+    """What runs have whose errors come from replicates.
+
+    Attributes:
+        replicates: Number of independent randomised runs, from which errors are found.
+    """
+
+    replicates: Count = 8
+
+
+@dataclass(frozen=True)
 class Running(Machine):
     """What concerns the run.
 

@@ -28,14 +28,7 @@ def transmittances(given, n: int, source: str) -> np.ndarray | None:
     Raises:
         SceneError: another shape.
     """
-    if given is None:
-        return None
-    value = arguments.array(given, np.float64, "transmittance", source)
-    if value.shape not in ((), (n,)):
-        raise SceneError(
-            f"{source}: transmittance has shape {value.shape}; expected one number or ({n},): one for each face and all bands"
-        )
-    return panes_or_none(np.broadcast_to(value, (n,)).copy())
+    return _of_faces(given, n, "transmittance", source)
 
 
 def indices(given, n: int, source: str) -> np.ndarray | None:
@@ -44,11 +37,17 @@ def indices(given, n: int, source: str) -> np.ndarray | None:
     Raises:
         SceneError: another shape.
     """
+    return _of_faces(given, n, "refractive_index", source)
+
+
+def _of_faces(given, n: int, name: str, source: str) -> np.ndarray | None:
     if given is None:
         return None
-    value = arguments.array(given, np.float64, "refractive_index", source)
+    value = arguments.array(given, np.float64, name, source)
     if value.shape not in ((), (n,)):
-        raise SceneError(f"{source}: refractive_index has shape {value.shape}; expected one number or ({n},)")
+        raise SceneError(
+            f"{source}: {name} has shape {value.shape}; expected one number or ({n},): one for each face and all bands"
+        )
     return panes_or_none(np.broadcast_to(value, (n,)).copy())
 
 
