@@ -9,18 +9,19 @@ other, go to `exchange`. Errors are below 3e-7, or below 1e-9 of the smaller are
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import drjit as dr
 import numpy as np
 
 from ...device.backend import Device, upload
-from ...device.recorded import loop
 from ...device.turn import turn
 from ...patches.model import Patches
 from .clipping import FLAT, ROUNDING
 from .exchange import exchange
+from .integrals import by_rules, from_points
+from .read_patch import ReadPatch
 from .rules import rule
+from .vectors import dot, minus, square
 
 LANES = 1 << 22  # pairs that are looked through at a time
 WORDS = 16  # of a patch: origin, two edges, normal, plane, radius, 1 where it is a triangle, and a word to fill up
@@ -123,8 +124,8 @@ class PairKernel:
         i, j = (self._read(x) for x in (one, other))
         lowest, highest = [], []
         for a, b in ((i, j), (j, i)):
-            tips = [_dot(_minus(tip, b.middle), b.normal) for tip in a.tips]
-            ways = [_square(_minus(tip, b.middle)) for tip in a.tips]
+            tips = [dot(minus(tip, b.middle), b.normal) for tip in a.tips]
+            ways = [square(minus(tip, b.middle)) for tip in a.tips]
             longest = dr.sqrt(dr.maximum(dr.maximum(ways[0], ways[1]), dr.maximum(ways[2], ways[3])))
             least = dr.opaque(Float64, self.rounding) + FLAT * longest
             low = dr.minimum(dr.minimum(tips[0], tips[1]), dr.minimum(tips[2], tips[3]))
@@ -132,7 +133,7 @@ class PairKernel:
             lowest.append(low < -least)
             highest.append(high > least)
         faces = highest[0] & highest[1] & active
-        ratio = dr.sqrt(_square(_minus(i.middle, j.middle))) / (i.radius + j.radius)
+        ratio = dr.sqrt(square(minus(i.middle, j.middle))) / (i.radius + j.radius)
         order = UInt32(NEAR)
         for points, least in reversed(ORDERS.items()):
             order = dr.select(ratio > least, UInt32(points), order)
@@ -150,7 +151,7 @@ class PairKernel:
         table = self._table(order)
         for at in range(0, len(one), LANES):
             i, j = (self._read(upload(types.UInt32, _twice(x[at : at + LANES]))) for x in (one, other))
-            value = _integral(i, j, order, table, types)
+            value = by_rules(i, j, order, table, types)
             result[at : at + LANES] = np.array(value)[: len(one) - at]
         return result
 
@@ -168,143 +169,10 @@ class PairKernel:
         """Return the points of a rule for parallelograms, then for triangles, Float64."""
         return upload(self.device.types.Float64, np.concatenate([rule(order, triangle=flat) for flat in (False, True)]))
 
-    def _read(self, patch) -> "Read":
+    def _read(self, patch) -> ReadPatch:
         Float64 = self.device.types.Float64
         w = [dr.gather(Float64, self.records, patch * WORDS + k) for k in range(15)]
-        return Read(w[0:3], w[3:6], w[6:9], w[9:12], w[12], w[13], w[14] > 0.5)
-
-
-@dataclass(frozen=True, eq=False)
-class Read:
-    """A patch of each pair, as read by a kernel: vectors are lists of three numbers."""
-
-    origin: list
-    first: list
-    second: list
-    normal: list
-    plane: Any
-    radius: Any
-    triangle: Any
-
-    @cached_property
-    def tips(self) -> list[list]:
-        """The four corners; a triangle repeats one."""
-        second, fourth = _plus(self.origin, self.first), _plus(self.origin, self.second)
-        third = [dr.select(self.triangle, y, x + z) for x, y, z in zip(second, fourth, self.second, strict=True)]
-        return [self.origin, second, third, fourth]
-
-    @cached_property
-    def middle(self) -> list:
-        a, b, c, d = self.tips
-        return [(w + x + y + z) * 0.25 for w, x, y, z in zip(a, b, c, d, strict=True)]
-
-    def point(self, s, t) -> list:
-        return [o + s * a + t * b for o, a, b in zip(self.origin, self.first, self.second, strict=True)]
-
-    def places(self, order: int, types) -> list[tuple]:
-        """Return shares along both edges and weights of the points of a rule."""
-        quad, flat = rule(order, triangle=False), rule(order, triangle=True)
-        Float64 = types.Float64
-        return [
-            tuple(dr.select(self.triangle, Float64(b), Float64(a)) for a, b in zip(*both, strict=True))
-            for both in zip(quad.tolist(), flat.tolist(), strict=True)
-        ]
-
-    def place(self, table, index, count, types) -> list:
-        """Return shares along both edges and weight of a point of a rule that has ``count``."""
-        at = 3 * (index + dr.select(self.triangle, types.UInt32(count), types.UInt32(0)))
-        return [dr.gather(types.Float64, table, at + k) for k in range(3)]
-
-    @property
-    def area(self):
-        x, y = self.first, self.second
-        cross = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
-        return dr.sqrt(_square(cross)) * dr.select(self.triangle, 0.5, 1.0)
-
-
-def _integral(one: Read, other: Read, order: int, table, types):
-    """Return A_i F_ij by rules over both areas: up to weights, the sum of up down / r⁴ over all pairs of points.
-
-    Args:
-        table: the rule's points for parallelograms, then for triangles.
-    """
-    Float64, UInt32 = types.Float64, types.UInt32
-    ends = []
-    for s, t, weight in other.places(order, types):
-        end = other.point(s, t)
-        ends.append((end, weight * (_dot(end, one.normal) - one.plane)))
-
-    def body(index, total):
-        s, t, weight = one.place(table, index, order * order, types)
-        start, sum_here = one.point(s, t), Float64(0)
-        for end, up in ends:
-            square = _square(_minus(end, start))
-            sum_here += up / (square * square)
-        return index + 1, total + weight * sum_here * (_dot(start, other.normal) - other.plane)
-
-    width = dr.width(one.plane)
-    state = dr.zeros(UInt32, width), dr.zeros(Float64, width)
-    _, total = loop(state, lambda index, total: index < order * order, body)
-    return total * one.area * other.area / np.pi
-
-
-def from_points(one: Read, other: Read, table, count, rounding: float, types):
-    """Return A_i F_ij by a rule over ``one`` and Lambert's formula for the part of ``other`` in front of its plane.
-
-    See `points.from_points`; that part is the same for all points.
-
-    Args:
-        table: the rule's points for parallelograms, then for triangles; ``count`` of each.
-    """
-    Float64, UInt32 = types.Float64, types.UInt32
-    heights = [_dot(tip, one.normal) - one.plane for tip in other.tips]
-    heights = [dr.select(dr.abs(h) <= 4 * rounding, 0.0, h) for h in heights]
-    edges, sets, rises, closes = [], [Float64(0)] * 3, [Float64(0)] * 3, types.Bool(False)
-    for k in range(4):
-        tip, following, h, rise = other.tips[k], other.tips[(k + 1) % 4], heights[k], heights[(k + 1) % 4]
-        above, next_above = h > 0, rise > 0
-        crosses = above ^ next_above
-        share = dr.select(crosses, h / dr.select(crosses, h - rise, 1.0), 0.0)
-        cut = [x + share * (y - x) for x, y in zip(tip, following, strict=True)]
-        start = [dr.select(above, x, y) for x, y in zip(tip, cut, strict=True)]
-        end = [dr.select(next_above, x, y) for x, y in zip(following, cut, strict=True)]
-        edges.append((start, end, above | next_above))
-        sets = [x + dr.select(crosses & above, y, 0.0) for x, y in zip(sets, cut, strict=True)]
-        rises = [x + dr.select(crosses & next_above, y, 0.0) for x, y in zip(rises, cut, strict=True)]
-        closes |= crosses
-    edges.append((sets, rises, closes))
-
-    def body(index, total):
-        s, t, weight = one.place(table, index, count, types)
-        point = one.point(s, t)
-        for start, end, seen in edges:
-            a, b = _minus(start, point), _minus(end, point)
-            cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-            sine = dr.sqrt(_square(cross))
-            seen = seen & (sine > 0)
-            angle = dr.atan2(sine, _dot(a, b))
-            total = total + dr.select(seen, weight * angle / dr.select(seen, sine, 1.0) * _dot(cross, one.normal), 0.0)
-        return index + 1, total
-
-    width = dr.width(one.plane)
-    _, total = loop((dr.zeros(UInt32, width), dr.zeros(Float64, width)), lambda index, total: index < count, body)
-    return dr.maximum(total / -(2 * np.pi), 0) * one.area
-
-
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _square(a):
-    return _dot(a, a)
-
-
-def _minus(a, b) -> list:
-    return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def _plus(a, b) -> list:
-    return [x + y for x, y in zip(a, b, strict=True)]
+        return ReadPatch(w[0:3], w[3:6], w[6:9], w[9:12], w[12], w[13], w[14] > 0.5)
 
 
 def _twice(values: np.ndarray) -> np.ndarray:
