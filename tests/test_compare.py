@@ -9,9 +9,13 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli import main
+from radiosity.comparison import clipping
 from radiosity.comparison.outputs import picture
-from radiosity.comparison.pairing import places
+from radiosity.comparison.refinement import refined
 from radiosity.comparison.significance import chi_square, welch
+from radiosity.patches.cells_as_faces import cells_as_faces
+from radiosity.patches.model import Patches
+from radiosity.scene.shapes import box
 
 ROOM = rd.load_scene("room")
 BRIGHTER = replace(ROOM, emission=1.05 * ROOM.emission, back_emission=1.05 * ROOM.back_emission)
@@ -90,33 +94,87 @@ def test_chi_square_counts_correlated_means_as_few():
 TRIANGLE = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.5, 1.0, two_sided=True)
 
 
+def meshes(scene, *cells):
+    """Meshes of a scene that are cut twice, so that each is a cut scene; a number alone is cut once."""
+    return [
+        rd.subdivide(cells_as_faces(rd.subdivide(scene, cells=one[0])), cells=one[1])
+        if isinstance(one, tuple)
+        else rd.subdivide(scene, cells=one)
+        for one in cells
+    ]
+
+
+def check_lies_within(pieces, patches, at):
+    corners, points = patches.corners[at], pieces.corners
+    ends = np.roll(corners, -1, axis=1)
+    for point in np.moveaxis(points, 1, 0):  # to the left of each edge
+        assert (np.einsum("nkj,nj->nk", np.cross(ends - corners, point[:, None] - corners), patches.normal[at]) >= -1e-9).all()
+    assert (patches.surface[at] == pieces.surface).all()
+    assert (patches.is_back[at] == pieces.is_back).all()
+    assert np.bincount(at, pieces.area, len(patches)) == pytest.approx(patches.area)  # each patch is made up of its pieces
+
+
 @pytest.mark.parametrize("scene", [ROOM, TRIANGLE], ids=["room", "triangle"])
-def test_points_lie_in_the_patches_of_both_cuts(scene):
-    a, b = (solved(scene, cells, 20_000) for cells in (2, 3))
-    place = places(a, b)
-    assert not place.equal
-    assert len(place.patches) == len(b.patches)
-    for one, patch in ((a, place.first), (b, place.second)):
-        corners, points = one.patches.corners[patch], place.patches.centroid
-        ends = np.roll(corners, -1, axis=1)
-        inside = np.einsum("nkj,nj->nk", np.cross(ends - corners, points[:, None] - corners), one.patches.normal[patch])
-        assert (inside >= -1e-9).all()  # to the left of each edge
-        assert (one.patches.surface[patch] == place.patches.surface).all()
-        assert (one.patches.is_back[patch] == place.patches.is_back).all()
+@pytest.mark.parametrize("cells", [(2, 3), (2, (2, 2)), ((2, 2), 3), ((2, 2), (3, 1))], ids=str)
+def test_pieces_lie_within_the_patches_of_both_meshes(scene, cells):
+    one, two = meshes(scene, *cells)
+    place = refined(one, two)
+    check_lies_within(place.patches, one, place.first)
+    check_lies_within(place.patches, two, place.second)
+    if scene is ROOM and cells == (2, 3):
+        assert len(place.patches) == 16 * len(rd.subdivide(ROOM, cells=1))
 
 
-def test_a_mesh_that_follows_the_light_is_compared_with_a_plain_one(one):
-    cut = rd.solve(rd.subdivide(ROOM, patches=150), rays=20_000, seed=4)
-    for pair in ((cut, one), (one, cut)):
-        place = places(*pair)
-        assert place.patches is cut.patches
-        which = place.second if pair[0] is cut else place.first
-        corners, points = one.patches.corners[which], place.patches.centroid
-        assert (points >= corners.min(axis=1) - 1e-9).all()
-        assert (points <= corners.max(axis=1) + 1e-9).all()
-        assert one.patches.normal[which] @ [0, 0, 1] == pytest.approx(place.patches.normal @ [0, 0, 1])
-        assert (one.patches.surface[which] == place.patches.surface).all()
-        assert rd.compare(*pair, within=0.5).agrees
+def test_two_cut_meshes_are_compared_where_their_patches_overlap(random):
+    """The RMS is the integral over what each pair of patches has in common: of boxes along the axes that is a product."""
+    faces = np.arange(24).reshape(6, 4)
+    whole = rd.Scene.from_arrays(np.concatenate(box((0, 0, 0), (4, 3, 2), inward=True)), faces, 0.5, [1, 0, 0, 0, 0, 0])
+    cuts = [Patches(whole, *random.integers(1, 4, (2, 6), np.int32)) for _ in range(2)]
+    a, b = (
+        rd.solve(rd.subdivide(cells_as_faces(cut), cells=1), "random-walk", rays=20_000, seed=seed)
+        for seed, cut in enumerate(cuts)
+    )
+    found = rd.compare(a, b)
+    ends = [(one.patches.corners.min(axis=1), one.patches.corners.max(axis=1)) for one in (a, b)]
+    shared = np.minimum(ends[0][1][:, None], ends[1][1]) - np.maximum(ends[0][0][:, None], ends[1][0])
+    facing = (a.patches.normal @ b.patches.normal.T > 0.5) & (shared > -1e-9).all(axis=2)
+    overlap = np.where(facing, np.sort(np.clip(shared, 0, None), axis=2)[:, :, 1:].prod(axis=2), 0)
+    assert overlap.sum() == pytest.approx(a.patches.area.sum())
+    counted = ~a.sides.left_out[:, None] & ~b.sides.left_out
+    square = (a.irradiance - b.irradiance.T) ** 2
+    assert found.rms == pytest.approx(np.sqrt((overlap * square)[counted].sum() / overlap[counted].sum()))
+    noise = np.hypot(a.irradiance_standard_error, b.irradiance_standard_error.T) ** 2
+    light = (overlap * b.irradiance.T**2)[counted].sum()
+    assert found.expected == pytest.approx(np.sqrt((overlap * noise)[counted].sum() / light))
+    assert "overlaps" in found.report()
+    assert not any("differ in" in note for note in found.notes)
+
+
+def test_other_light_on_another_mesh_is_told_and_other_faces_are_not_taken_for_these():
+    """Meshes of a scene with other light are of other scenes by their hashes, and of the same faces by their places."""
+    bright, plain = (rd.solve(meshes(scene, (2, 1))[0], "random-walk", rays=20_000, seed=2) for scene in (BRIGHTER, ROOM))
+    other = rd.solve(meshes(ROOM, (1, 3))[0], "random-walk", rays=20_000, seed=3)
+    found = rd.compare(bright, other)
+    assert found.by_patch is not None
+    assert any("emission of 'light'" in note for note in found.notes)
+    assert rd.compare(plain, other).by_patch is not None
+    moved = replace(other.patches.scene, vertices=other.patches.scene.vertices * [1, 1, 1.01])
+    assert refined(plain.patches, rd.subdivide(moved, cells=1)) is None
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.3, 0.8, 1.2])
+def test_polygons_are_cut_by_each_other(shift):
+    """A square, moved along a diagonal over a triangle with legs of 2: areas of what they share by hand."""
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) + shift
+    triangle = np.array([[0.0, 0], [2, 0], [0, 2], [0, 2]])
+    common = clipping.intersections(square[None], triangle[None])
+    corner, end = 1 - shift, min(2 * shift, 2.0)  # the square's low corner is left of the line x + y = 2 by 2 corner
+    expected = {True: 0.0, False: 1 - max(end, 0) ** 2 / 2 if shift <= 0.5 else (2 * corner) ** 2 / 2}[corner <= 0]
+    assert clipping.areas(common)[0] == pytest.approx(expected, abs=1e-12)
+    pieces, owner = clipping.parts(common)
+    assert clipping.areas(pieces).sum() == pytest.approx(expected, abs=1e-12)
+    assert (owner == 0).all()
+    assert len(pieces) == {0.0: 1, 0.3: 3, 0.8: 1, 1.2: 0}[shift]
 
 
 def test_other_patches_and_other_faces_are_compared_by_surface(one):

@@ -26,7 +26,8 @@ def compare(
 ) -> Comparison:
     """Compare two solutions: by surface and side, and by patch where their faces are the same.
 
-    Where faces are the same and cut otherwise, values are compared at the middles of the patches that both cuts have in common.
+    Where faces are the same and cut otherwise, values are compared wherever a patch of one overlaps a patch of the other; each
+    overlap counts by its area.
 
     Args:
         a, b: the solutions. Relative differences are relative to the second.
@@ -58,7 +59,7 @@ def compare(
     first, second, notes = paired_rows(a, b)
     notes += other_light(a.patches.scene, b.patches.scene) if place is not None else ["the faces differ: surfaces are compared"]
     if place is not None and not place.equal:
-        notes.append("the patches differ: differences at points hold the discretisation of both, which errors do not")
+        notes.append("the patches differ: differences where they overlap hold the discretisation of both, which errors do not")
     if not reference and a.provenance["seed"] == b.provenance["seed"]:
         notes.append("both runs have the same seed: where they share lines, their difference is smaller than the errors say")
     rows = rows_of(a, b, (first, second), quantity, replicates, LEAST)

@@ -92,7 +92,7 @@ def facts(found) -> dict:
         "relative rms": found.relative,
         "relative rms of errors alone": found.expected,
         "largest relative difference of a surface": found.largest,
-        "compared": "surfaces" if by is None else "patches" if by.equal else "points",
+        "compared": "surfaces" if by is None else "patches" if by.equal else "overlaps",
         "patches": 0 if by is None else int(by.counted.sum()),
         "tested patches": 0 if by is None else int(by.tested.sum()),
         "chi square": found.rows.chi,

@@ -1,33 +1,15 @@
-"""What can be compared of two solutions: rows of their tables, and patches, or points where the patches differ."""
-
-from dataclasses import dataclass
+"""What can be compared of two solutions: rows of their tables, and patches, or overlaps of patches where these differ."""
 
 import numpy as np
 
 from ..errors import SceneError, shown
-from ..patches import cells
-from ..patches.model import Patches
 from ..scene.model import Scene
 from ..solution.model import Solution
+from .refinement import Places, refined
+from .whole_faces import WholeFaces
 
 SHOWN = 6  # names in a note
 SAME_AREA = 1e-3  # relative
-
-
-@dataclass(frozen=True, eq=False)
-class Places:
-    """Patches of which each lies within one patch of both solutions.
-
-    Attributes:
-        patches: they are cut as finely as the finer of both, face by face.
-        first, second: (k,) int, the patch of each solution that the middle of each of these patches is on.
-        equal: the patches of both solutions are these.
-    """
-
-    patches: Patches
-    first: np.ndarray
-    second: np.ndarray
-    equal: bool
 
 
 def check_comparable(a: Solution, b: Solution) -> None:
@@ -49,50 +31,12 @@ def check_comparable(a: Solution, b: Solution) -> None:
 
 
 def places(a: Solution, b: Solution) -> Places | None:
-    """The patches or points that both solutions have; None where their faces differ."""
+    """The patches that both solutions have, or what their patches have in common; None where their faces differ."""
     one, two = a.patches, b.patches
-    if one.scene.is_cut_of(two.scene, any_light=True):
-        return Places(one, np.arange(len(one)), _within(one, two), False)
-    if two.scene.is_cut_of(one.scene, any_light=True):
-        return Places(two, _within(two, one), np.arange(len(two)), False)
-    if one.scene.geometry_hash != two.scene.geometry_hash:
-        return None
-    if one.cut_hash == two.cut_hash:
+    if one.scene.geometry_hash == two.scene.geometry_hash and one.cut_hash == two.cut_hash:
         every = np.arange(len(one))
         return Places(one, every, every, True)
-    common = Patches(one.scene, np.maximum(one.columns, two.columns), np.maximum(one.rows, two.rows))
-    u, v = _middles(common)
-    return Places(common, _number(one, common, u, v), _number(two, common, u, v), False)
-
-
-def _within(parts: Patches, whole: Patches) -> np.ndarray:
-    """The patch of a whole scene that the middle of each patch of a cut one is on (`Scene.cut`), (n_patches,) int."""
-    cut = parts.scene.cut
-    assert cut is not None
-    face = cut.face[parts.face]
-    origin, first, second = (frame[face] for frame in whole.scene.frames)
-    from_origin = parts.centroid - origin
-    products = [np.einsum("ij,ij->i", one, other) for one, other in ((first, first), (first, second), (second, second))]
-    along = [np.einsum("ij,ij->i", from_origin, edge) for edge in (first, second)]
-    determinant = products[0] * products[2] - products[1] ** 2
-    u = (products[2] * along[0] - products[1] * along[1]) / determinant
-    v = (products[0] * along[1] - products[1] * along[0]) / determinant
-    u, v = np.clip(u, 0, 1), np.clip(v, 0, 1)
-    cell = cells.number(u, v, whole.columns[face], whole.rows[face], whole.scene.is_quad[face])
-    return whole.first[face] + np.where(parts.is_back, whole.cells_per_face[face], 0) + cell
-
-
-def _middles(patches: Patches) -> tuple[np.ndarray, np.ndarray]:
-    """Face coordinates of the middle of each patch, (n_patches,) each."""
-    column, row, inverted = patches.place
-    middle = np.where(patches.scene.is_quad[patches.face], 0.5, np.where(inverted, 2 / 3, 1 / 3))
-    return (column + middle) / patches.columns[patches.face], (row + middle) / patches.rows[patches.face]
-
-
-def _number(patches: Patches, common: Patches, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    face = common.face
-    cell = cells.number(u, v, patches.columns[face], patches.rows[face], patches.scene.is_quad[face])
-    return patches.first[face] + np.where(common.is_back, patches.cells_per_face[face], 0) + cell
+    return refined(one, two)
 
 
 def paired_rows(a: Solution, b: Solution) -> tuple[np.ndarray, np.ndarray, list[str]]:
@@ -131,10 +75,9 @@ def other_light(a: Scene, b: Scene) -> list[str]:
     """Notes about equal faces that emit or reflect differently: that is a difference that no error explains."""
     if a.is_cut_of(b) or b.is_cut_of(a):
         return []
-    if a.cut is not None and a.is_cut_of(b, any_light=True):
-        b = b.take(a.cut.face)
-    elif b.cut is not None and b.is_cut_of(a, any_light=True):
-        a = a.take(b.cut.face)
+    alike = _otherwise_alike(a, b)
+    if a.cut is not None or b.cut is not None:
+        a, b = (one.take(WholeFaces.among(one).largest) for one in (a, b))
     found = []
     for what, names in (("reflectance", ("reflectance", "back_reflectance")), ("emission", ("emission", "back_emission"))):
         pairs = [(getattr(a, name), getattr(b, name)) for name in names]
@@ -147,9 +90,16 @@ def other_light(a: Scene, b: Scene) -> list[str]:
     if unlike.any():
         surfaces = [a.names[i] for i in np.unique(a.surface[unlike])]
         found.append(f"the scenes differ in the diffuse transmittance of {shown(surfaces, SHOWN)}")
-    if not found and a.hash != b.hash:
+    if not found and not alike:
         found.append("the scenes differ in their lights or textures")
     return found
+
+
+def _otherwise_alike(a: Scene, b: Scene) -> bool:
+    """Return whether scenes with the same faces, of which none is a cut of the other, can have the same lights and textures."""
+    if a.cut is None or b.cut is None:
+        return a.cut is b.cut and a.hash == b.hash
+    return a.cut.whole == b.cut.whole and a.lights.digest() == b.lights.digest()
 
 
 def _keys(solution: Solution) -> dict[tuple[str, str], int]:

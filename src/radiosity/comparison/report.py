@@ -45,7 +45,7 @@ def _verdict(found) -> str:
 
 def _patches(found) -> list[str]:
     by = found.by_patch
-    what = "surfaces and sides" if by is None else "patches" if by.equal else "points"
+    what = "surfaces and sides" if by is None else "patches" if by.equal else "overlaps"
     count = len(found.rows.area) if by is None else int(by.counted.sum())
     told = f"RMS difference {number(found.rms, '.3g')} {found.unit}, {percent(found.relative)} of the second"
     lines = [f"{count:,} {what}: {told}; errors alone would give {percent(found.expected)}"]
@@ -85,7 +85,7 @@ def _table(found, rows: list[dict]) -> list[str]:
 
 
 def _bars(found, histogram: list[dict]) -> list[str]:
-    what = "surfaces and sides" if found.by_patch is None else "patches" if found.by_patch.equal else "points"
+    what = "surfaces and sides" if found.by_patch is None else "patches" if found.by_patch.equal else "overlaps"
     most = max(row["count"] for row in histogram)
     lines = [f"scores of {what}: found, and (expected from the errors alone)"]
     for row in histogram:

@@ -16,10 +16,10 @@ BINS = np.array([-np.inf, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, np.in
 
 @dataclass(frozen=True, eq=False)
 class PatchDifferences:
-    """Values of both solutions on patches, or at the middles of the patches that both cuts have in common.
+    """Values of both solutions on patches, or on the overlaps of their patches.
 
     Attributes:
-        patches: the patches, or those that both cuts have in common.
+        patches: the patches, or the overlaps (triangles and parallelograms).
         values: (2, k, n_bands).
         errors: (2, k, n_bands) standard errors; NaN where unknown, 0 of a reference.
         counted: (k,) bool, on sides that light reached in both solutions.
