@@ -2577,6 +2577,27 @@ MISTAKES = (
         "backs that became surfaces of their own shine to the front",
     ),
     Mistake(
+        "conversion/sheets.py",
+        "scene.vertices[corner] - gap * scene.normal",
+        "scene.vertices[corner] + gap * scene.normal",
+        ("test_convert_programs.py",),
+        "the two sides of a lamp in files for Radiance and Mitsuba hide each other",
+    ),
+    Mistake(
+        "conversion/radiance_materials.py",
+        "clear / np.where(passed > 0, passed, 1)",
+        "clear / np.where(kept > 0, kept, 1)",
+        ("test_convert_programs.py",),
+        "panes in files for Radiance let other shares through straight on",
+    ),
+    Mistake(
+        "conversion/mitsuba_bsdf.py",
+        "_diffuse(side / solid) for side in sides",
+        "_diffuse(side) for side in sides",
+        ("test_convert_programs.py",),
+        "panes in files for Mitsuba reflect less than they should",
+    ),
+    Mistake(
         "conversion/gltf_materials.py",
         "share = passed * (1 - most) / (mean + passed)",
         "share = passed / (mean + passed)",

@@ -11,6 +11,7 @@ from ..errors import printable
 from ..scene.formats.obj.tables import NO_NAME
 from ..scene.model import Scene
 from ..solution.whole import whole_file
+from .names import unique_names
 from .pieces import Piece, pieces, tell_of_rest
 from .plain import plain
 from .told import Told
@@ -25,7 +26,7 @@ def write(scene: Scene, path: Path, told: Told) -> None:
         OutputError: one of them cannot be written.
     """
     tell_of_rest(scene, told, HOLDS)
-    parts = pieces(plain(scene, of_surfaces=True), told, pairs=False)
+    parts = pieces(plain(scene, of_surfaces=True), told, backs="alike")
     names, library, lines = object_names(parts, told), library_of(path), []
     for piece, name in zip(parts, names, strict=True):
         lines += [f"newmtl {name}", f"Kd {_numbers(piece.reflectance)}", f"Ke {_numbers(piece.emission / np.pi)}", "illum 1"]
@@ -57,21 +58,12 @@ def write_geometry(scene: Scene, path: Path, parts: list[Piece], names: list[str
 
 def object_names(parts: list[Piece], told: Told) -> list[str]:
     """Return a name for each piece that an OBJ file can hold; each is another one."""
-    result: list[str] = []
-    taken = {piece.name for piece in parts}
-    for piece in parts:
-        name = " ".join(printable(piece.name).split())
-        if name.lower() in NO_NAME or name.startswith("#") or " #" in name or name.endswith("\\"):
-            name = f"surface {piece.surface}"
-        if piece.number:
-            told.add("surfaces of several materials become one for each, called NAME.2 and so on", [piece.name])
-            name = f"{name}.{piece.number + 1}"
-        elif name != piece.name:
-            told.add("names that the format cannot hold are changed", [f"{piece.name} -> {name}"])
-        while name in result or (name in taken and name != piece.name):
-            name += "'"
-        result.append(name)
-    return result
+    return unique_names(parts, told, _of_objects)
+
+
+def _of_objects(name: str) -> str:
+    name = " ".join(printable(name).split())
+    return "" if name.lower() in NO_NAME or name.startswith("#") or " #" in name or name.endswith("\\") else name
 
 
 def _numbers(values: np.ndarray) -> str:

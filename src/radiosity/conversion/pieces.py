@@ -1,6 +1,7 @@
 """Pieces of surfaces: faces of one surface with one material, which scene files hold."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -23,6 +24,7 @@ class Piece:
         corners: (k, 4) int, their vertices as `Scene.faces` has them, turned round for backs.
         reflectance, emission: (n_bands,).
         back: what the back does.
+        back_reflectance, back_emission: (n_bands,), where the back radiates.
         transmittance: of a pane.
         refractive_index: of clear glass, whose transmittance is the mean over diffuse light; 0 for none.
         diffuse: (n_bands,) diffuse transmittance.
@@ -36,36 +38,41 @@ class Piece:
     reflectance: np.ndarray
     emission: np.ndarray
     back: Back
+    back_reflectance: np.ndarray
+    back_emission: np.ndarray
     transmittance: float
     refractive_index: float
     diffuse: np.ndarray
 
 
-def pieces(scene: Scene, told: Told, *, pairs: bool = True) -> list[Piece]:
+Backs = Literal["apart", "alike", "kept"]  # what becomes of backs with values of their own
+
+
+def pieces(scene: Scene, told: Told, *, backs: Backs = "apart") -> list[Piece]:
     """Return the pieces of a scene, surface by surface.
 
-    Where backs radiate with values of their own, fronts and backs become two pieces, one-sided, at the same place: lines meet the
-    side that they come to.
-
     Args:
-        pairs: the format has one-sided faces. Otherwise backs get the values of their fronts.
+        backs: what becomes of backs that radiate with values of their own. "apart", where a format has one-sided faces: fronts
+            and backs become two pieces, one-sided, at the same place, since lines meet the side that they come to. "alike": backs
+            get the values of their fronts. "kept": pieces have both values.
     """
-    own = (scene.back == Back.RADIATES) & (
-        (scene.back_reflectance != scene.reflectance) | (scene.back_emission != scene.emission)
-    ).any(axis=1)
-    through = _through(scene)
-    alike = own & (scene.panes | scene.diffusers | (not pairs))  # a pane is one face: light goes through it once
+    radiates = scene.back == Back.RADIATES
+    own = radiates & ((scene.back_reflectance != scene.reflectance) | (scene.back_emission != scene.emission)).any(axis=1)
+    if backs == "kept":
+        behind = np.column_stack([scene.back_reflectance, scene.back_emission]) * radiates[:, None]
+        return _grouped(scene, np.arange(scene.n_faces), scene.reflectance, scene.emission, scene.back, behind, "")
+    alike = own & (scene.panes | scene.diffusers | (backs == "alike"))  # a pane is one face: light goes through it once
     told.add("backs that reflect or emit otherwise get the values of their fronts", called(scene, alike))
     own &= ~alike
     back = np.where(own, Back.ABSORBS, scene.back)
-    found = _grouped(scene, np.arange(scene.n_faces), scene.reflectance, scene.emission, back, through, "")
+    found = _grouped(scene, np.arange(scene.n_faces), scene.reflectance, scene.emission, back, None, "")
     rows = np.flatnonzero(own)
     if len(rows):
         told.add(
             f"backs that reflect or emit otherwise than their fronts become surfaces of their own, called NAME{BEHIND}",
             called(scene, own),
         )
-        found += _grouped(scene, rows, scene.back_reflectance, scene.back_emission, back, through, BEHIND)
+        found += _grouped(scene, rows, scene.back_reflectance, scene.back_emission, back, None, BEHIND)
     return sorted(found, key=lambda piece: piece.surface)
 
 
@@ -78,8 +85,16 @@ def _through(scene: Scene) -> np.ndarray:
     return found
 
 
-def _grouped(scene: Scene, rows: np.ndarray, reflectance, emission, back, through, tail: str) -> list[Piece]:
-    keys = np.column_stack([scene.surface, reflectance, emission, back, through])[rows]
+def _grouped(scene: Scene, rows: np.ndarray, reflectance, emission, back, behind, tail: str) -> list[Piece]:
+    """Return the pieces of some faces.
+
+    Args:
+        behind: (n_faces, 2 n_bands) reflectance and emission of backs; None: those of the fronts.
+        tail: behind the names of backs that become pieces.
+    """
+    fronts, through = np.column_stack([reflectance, emission]), _through(scene)
+    behind = fronts if behind is None else behind
+    keys = np.column_stack([scene.surface, fronts, back, behind, through])[rows]
     _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     index = index.reshape(-1)
     count: dict[int, int] = {}
@@ -92,22 +107,11 @@ def _grouped(scene: Scene, rows: np.ndarray, reflectance, emission, back, throug
         name = scene.names[surface] + tail
         while tail and name in scene.names:
             name += tail
-        result.append(
-            Piece(
-                name,
-                number,
-                surface,
-                own,
-                corners,
-                reflectance[face],
-                emission[face],
-                Back(int(back[face])),
-                float(through[face, 0]),
-                float(through[face, 1]),
-                through[face, 2:],
-            )
-        )
-    return result
+        front, rear = np.split(fronts[face], 2), np.split(behind[face], 2)
+        kind, clear, refraction = Back(int(back[face])), float(through[face, 0]), float(through[face, 1])
+        values = front[0], front[1], kind, rear[0], rear[1], clear, refraction, through[face, 2:]
+        result.append(Piece(name, number, surface, own, corners, *values))
+    return sorted(result, key=lambda piece: piece.surface)
 
 
 def turned(faces: np.ndarray) -> np.ndarray:
@@ -138,16 +142,15 @@ def tell_of_rest(scene: Scene, told: Told, holds: frozenset[str]) -> None:
             "patch sizes", "reflectance", "sensors", "textures" and "units" what it holds.
     """
     every, lights = np.ones(scene.n_faces, bool), scene.lights
-    radiates = scene.back == Back.RADIATES
-    lit = (scene.emission > 0).any(axis=1) | (radiates & (scene.back_emission > 0).any(axis=1))
+    radiates, lit = scene.back == Back.RADIATES, glowing(scene)
     paints = [paint.painted for paint in (scene.reflectance_paint, scene.emission_paint) if paint is not None]
     openings = [] if lights.openings is None else [f"opening {i}" for i in range(len(lights.openings))]
     single = (scene.emission > 0).any(axis=1) & (~radiates | (scene.back_emission != scene.emission).any(axis=1))
     rest = (
         ("names", "surfaces become one, without their names", scene.names if len(scene.names) > 1 else ()),
         ("reflectance", "reflectances are left out", called(scene, every)),
-        ("emission", "emission is left out", called(scene, lit)),
-        ("units", "emission in lm/m² reads back as W/m²", called(scene, lit & scene.photometric)),
+        ("emission", "emission is left out", lit),
+        ("units", "emission in lm/m² reads back as W/m²", lit if scene.photometric else ()),
         ("backs", "one-sided surfaces read back as two-sided", called(scene, ~radiates)),
         (
             "backs",
@@ -172,6 +175,12 @@ def tell_of_rest(scene: Scene, told: Told, holds: frozenset[str]) -> None:
     for what, text, names in rest:
         if what not in holds:
             told.add(text, names)
+
+
+def glowing(scene: Scene) -> list[str]:
+    """Return the names of the surfaces that emit."""
+    behind = (scene.back == Back.RADIATES)[:, None] & (scene.back_emission > 0)
+    return called(scene, ((scene.emission > 0) | behind).any(axis=1))
 
 
 def called(scene: Scene, mask: np.ndarray) -> list[str]:

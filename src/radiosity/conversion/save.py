@@ -22,6 +22,9 @@ SUFFIXES = {
     ".obj": "obj",
     ".ply": "ply",
     ".stl": "stl",
+    ".rad": "radiance",
+    ".mgf": "mgf",
+    ".xml": "mitsuba",
 }
 KNOWN_BANDS = (("grey",), ("red", "green", "blue"))
 
@@ -31,12 +34,15 @@ def files_of(path) -> tuple[Path, ...]:
     path = Path(path)
     if path.suffix.lower() == ".toml":
         return path, geometry_of(path, ".obj"), geometry_of(path, ".glb")
+    if path.suffix.lower() == ".xml":
+        return path, geometry_of(path, ".serialized")
     return (path, library_of(path)) if path.suffix.lower() == ".obj" else (path,)
 
 
 def save_scene(scene: Scene, path) -> None:
-    """Write a scene as .toml (with its geometry beside it), .glb, .gltf, .obj (with an .mtl beside it), .ply or .stl.
+    """Write a scene to a file, whose suffix says the format.
 
+    Known are .toml and .xml (with the geometry beside them), .glb, .gltf, .obj (with an .mtl beside it), .ply, .stl, .rad, .mgf.
     A warning for each kind of thing that the format cannot hold names what it is. A .toml holds most.
 
     Args:
@@ -55,7 +61,7 @@ def save_scene(scene: Scene, path) -> None:
     """
     path = Path(path)
     for file in files_of(path):
-        check_writable(file, (*SUFFIXES, ".mtl"))
+        check_writable(file, (*SUFFIXES, ".mtl", ".serialized"))
     if scene.n_bands not in (1, 3):
         raise OutputError(
             f"{path}: the scene has {scene.n_bands} bands ({', '.join(scene.bands)}), and scene files hold one, or red, green "

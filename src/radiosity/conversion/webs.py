@@ -1,4 +1,4 @@
-"""Lamps whose web of intensities a format can name: those that shine alike in all directions, and spots of glTF."""
+"""Lamps whose web of intensities a format can name: those that shine alike in all directions and spots of glTF and of Mitsuba."""
 
 import numpy as np
 
@@ -32,3 +32,17 @@ def cone(lamp: Luminaire) -> tuple[float, float] | None:
     outer = float(np.radians(web.gamma[-1]))
     shape = np.clip((cosine - low) / max(np.cos(inner) - low, 1e-12), 0, 1) ** 2
     return (inner, outer) if inner < outer and np.abs(shape - root**2).max() < FITS else None
+
+
+def linear_cone(lamp: Luminaire) -> tuple[float, float] | None:
+    """Return the angles, degrees, up to which a spot is even, and at which it ends, if it weakens in proportion between them."""
+    web = lamp.web
+    if len(web.planes) > 1 or web.gamma[0] != 0 or not 0 < web.gamma[-1] < 180 or (lamp.soft and lamp.size.any()):
+        return None
+    share = web.intensity[0] / web.intensity[0].max()
+    even = np.flatnonzero(share > 1 - 1e-9)
+    beam, end = float(web.gamma[even[-1]]), float(web.gamma[-1])
+    if beam == end:
+        return (beam, end) if len(even) == len(share) else None
+    line = np.clip((end - web.gamma) / (end - beam), 0, 1)
+    return (beam, end) if np.abs(share - line).max() < FITS else None

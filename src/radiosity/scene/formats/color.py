@@ -33,3 +33,9 @@ def unit_rgb(x: float, y: float) -> np.ndarray:
     rgb = np.ones(3) if is_neutral(x, y) else _from_xyz() @ (x / y, 1.0, (1 - x - y) / y)
     least = rgb.min()
     return np.maximum(1 + (rgb - 1) / (1 - least), 0.0) if least < 0 else rgb
+
+
+def chromaticity(rgb: np.ndarray) -> tuple[float, float]:
+    """Return the chromaticity (x, y) of a colour, (3,), that is not black."""
+    xyz = np.linalg.solve(_from_xyz(), rgb)
+    return float(xyz[0] / xyz.sum()), float(xyz[1] / xyz.sum())

@@ -107,12 +107,13 @@ class Reader:
         self.sources.add(primitive, chain_of(self._modifiers.find(primitive.modifier)), self.told)
 
     def _shape(self, primitive: Primitive) -> None:
-        thing = NUMBERED.sub("", primitive.name) or primitive.name
         modifier = self._modifiers.find(primitive.modifier)
         if modifier not in self._materials:
             material = chain_of(modifier).material
             self._materials[modifier] = primitive.modifier if material is None else material.name
         made_of = self._materials[modifier]
+        # a surface that is called like its material has no number, even where its name ends in one
+        thing = made_of if primitive.name == made_of else NUMBERED.sub("", primitive.name) or primitive.name
         place = thing if thing == made_of else f"{thing}/{made_of}", modifier
         if primitive.kind == "polygon":
             corners = corners_of(primitive)

@@ -99,10 +99,12 @@ class Finisher:
         return replace(pane, diffuse_transmittance=_through(kept * share * (1 - straight)), diffuse=numbers[3] == 0)
 
     def _directional(self, one: Primitive, numbers, chain: Chain) -> Material:
-        """BRTDfunc: diffuse reflectances of both sides and a diffuse transmittance."""
+        """BRTDfunc: diffuse reflectances of both sides and a diffuse transmittance; what goes straight on if it is constant."""
         front, back, through = numbers[:3], numbers[3:6], numbers[6:9]
-        pane = Material(_color(front), back_reflectance=_color(back), diffuse_transmittance=_through(through))
-        return replace(pane, diffuse=False)
+        constant = _constants(one.words[:9])
+        pane = self._pane(one, np.zeros(3) if constant is None else constant[3:6], front)
+        pane = replace(pane, back_reflectance=_color(back), diffuse_transmittance=_through(through))
+        return replace(pane, diffuse=constant is not None and not constant[[0, 1, 2, 6, 7, 8]].any())
 
     def _pane(self, one: Primitive, through: np.ndarray, reflected: np.ndarray) -> Material:
         if np.ptp(through) > 1e-6 * through.max(initial=0):
@@ -133,6 +135,15 @@ class Finisher:
         if other is None:
             return replace(light, back=Back.OPEN) if any(light.emission) else None
         return replace(other, emission=light.emission, back_emission=(0.0,), refractive_index=0.0)
+
+
+def _constants(words: tuple[str, ...]) -> np.ndarray | None:
+    """The nine functions of a BRTDfunc, where all of them are numbers; else None."""
+    try:
+        values = np.array([float(word) for word in words])
+    except ValueError:
+        return None
+    return values if len(values) == 9 and np.isfinite(values).all() else None
 
 
 def _through(values: np.ndarray) -> tuple[float, ...] | None:

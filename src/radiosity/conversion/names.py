@@ -1,0 +1,49 @@
+"""Names of pieces that a format can hold: each is another one, and what changes is told."""
+
+import unicodedata
+from collections.abc import Callable
+
+from ..errors import printable
+from .pieces import Piece
+from .told import Told
+
+LONGEST = 100  # bytes of a word: Radiance's programs take 127
+RESERVED = ("void", "inherit", "alias", "=")
+
+
+def unique_names(parts: list[Piece], told: Told, clean: Callable[[str], str], *, mark: str = ".") -> list[str]:
+    """Return a name for each piece.
+
+    Args:
+        clean: returns the name that stands for one in the format; "" where there is none.
+        mark: stands before the number of a piece.
+    """
+    result: list[str] = []
+    held: set[str] = set()
+    taken = {piece.name for piece in parts}
+    for piece in parts:
+        name = clean(piece.name) or clean(f"surface {piece.surface}")
+        if piece.number:
+            told.add(f"surfaces of several materials become one for each, called NAME{mark}2 and so on", [piece.name])
+            name = f"{name}{mark}{piece.number + 1}"
+        while name in held or (name in taken and name != piece.name):
+            name += "'"
+        if name != piece.name and not piece.number:
+            told.add("names that the format cannot hold are changed", [f"{piece.name} -> {name}"])
+        held.add(name)
+        result.append(name)
+    return result
+
+
+def word(name: str) -> str:
+    """Return a name as a word, as Radiance has them: without blanks, and not too long."""
+    name = "_".join(printable(name).split())
+    whole = len(name.encode()) <= LONGEST and name not in RESERVED
+    return name if whole and not name.startswith(("#", "!", '"', "'", "|")) else ""
+
+
+def plain_word(name: str) -> str:
+    """Return a name as MGF's programs take them: a letter, and then letters, digits and signs of ASCII."""
+    plain = "".join(c for c in unicodedata.normalize("NFKD", word(name)) if not unicodedata.combining(c))
+    plain = "".join(c if c.isascii() else "_" for c in plain)
+    return plain if plain.lstrip("_")[:1].isalpha() or not plain else f"s{plain}"
