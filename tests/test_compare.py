@@ -12,6 +12,7 @@ from radiosity.cli import main
 from radiosity.comparison import clipping
 from radiosity.comparison.outputs import picture
 from radiosity.comparison.refinement import refined
+from radiosity.comparison.report import bin_name
 from radiosity.comparison.significance import chi_square, welch
 from radiosity.patches.cells_as_faces import cells_as_faces
 from radiosity.patches.model import Patches
@@ -44,6 +45,17 @@ def test_a_solution_agrees_with_itself_and_with_other_seeds(one):
     assert other.agrees
     assert 0.5 < other.relative / other.expected < 1.5  # errors explain the differences, no more and no less
     assert sum(row["count"] for row in other.histogram()) == other.by_patch.tested.sum()
+
+
+def test_equal_values_have_a_bin_of_their_own(one):
+    """Scores below and above zero fall in bins of the same sizes."""
+    rows = rd.compare(one, one).histogram()
+    assert [(row["from"], row["to"]) for row in rows if row["count"]] == [(0.0, 0.0)]
+    ahead, behind = (rd.compare(*pair).histogram() for pair in ((one, solved(seed=2)), (solved(seed=2), one)))
+    assert [row["count"] for row in ahead] == [row["count"] for row in reversed(behind)]
+    assert [row["expected"] for row in ahead] == [row["expected"] for row in reversed(behind)]
+    assert [bin_name(row) for row in rows[3:8]] == ["-2 to -1", "-1 to 0", "equal", "0 to +1", "+1 to +2"]
+    assert (bin_name(rows[0]), bin_name(rows[-1])) == ("below -4", "above +4")
 
 
 def test_five_percent_more_light_is_found_everywhere(one, brighter):

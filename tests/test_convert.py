@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import radiosity as rd
 from radiosity.cli import main
+from radiosity.cli.app import ARGUMENTS, app
 from radiosity.conversion import webs
 from radiosity.scene.paint import Paint
 from radiosity.scene.sampler import Sampler
@@ -291,6 +292,17 @@ def test_the_command_converts_scenes_and_solutions(tmp_path, capsys):
         assert says in capsys.readouterr().err
     assert main(["convert", "room", str(tmp_path / "x.csv")]) == 2
     assert "no results" in capsys.readouterr().err
+
+
+def test_help_names_what_is_to_be_given(capsys):
+    for command in ARGUMENTS:
+        assert main([command.__name__, "--help"]) == 0
+        usage = capsys.readouterr().out.splitlines()[0]
+        assert usage == f"Usage: radiosity {command.__name__} {ARGUMENTS[command]}"
+    for name in app:
+        if not name.startswith("-"):
+            main([name, "--help"])
+            assert "ARGS" not in capsys.readouterr().out, name
 
 
 def test_libraries_have_no_blanks_in_their_names(tmp_path):

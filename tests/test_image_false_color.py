@@ -9,6 +9,7 @@ from image_samples import plain_hits, quad_scene, solution
 import radiosity as rd
 from radiosity.image import false_color, render
 from radiosity.image.false_color import automatic_limits
+from radiosity.image.picture import take
 from radiosity.image.quantity import choose
 
 matplotlib = pytest.importorskip("matplotlib")
@@ -43,9 +44,9 @@ def test_the_legend_has_an_arrow_where_values_lie_beyond(monkeypatch, limits, ar
     """Of the values 1, 2 and 4; the unknown one is beyond nothing."""
     legend, found = false_color._legend, []
 
-    def watched(norm, shades, label, extend, height):
+    def watched(norm, shades, label, extend, *size):
         found.append(extend)
-        return legend(norm, shades, label, extend, height)
+        return legend(norm, shades, label, extend, *size)
 
     monkeypatch.setattr(false_color, "_legend", watched)
     picture(range=limits)
@@ -75,6 +76,32 @@ def test_automatic_limits():
     assert automatic_limits(np.append(values, 1e-9), True)[0] == pytest.approx(99 / 1e4, rel=0.01)
     assert automatic_limits(np.full(3, 5.0), True) == (0.5, 5.0)
     assert automatic_limits(np.zeros(3), False) == (0, 1)
+    assert automatic_limits(values, False, top=95) == (0, pytest.approx(95.05))
+
+
+def test_small_bright_patches_set_no_range():
+    """A hundred small patches beside a lamp are a thousandth of the area; those of the light elsewhere are five."""
+    values, area = np.append(np.full(100, 500.0), np.arange(1, 6.0)), np.append(np.full(100, 1e-5), np.full(5, 0.2))
+    assert automatic_limits(values, False)[1] == 500
+    assert automatic_limits(values, False, area) == (0, 5)
+
+
+def test_the_legend_tells_where_an_automatic_range_ends(monkeypatch):
+    labels, legend = [], false_color.Palette.legend
+    monkeypatch.setattr(false_color.Palette, "legend", lambda *given: labels.append(given[1]) or legend(*given))
+    taken = take(RESULT, choose(RESULT, single=True), ABOVE, samples=1, hits=plain_hits)
+    for options in ({"top": 60}, {"top": 60, "limits": (0, 3)}, {"top": 100}):
+        false_color.colour(taken, title="radiosity", unit="W/m²", **options)
+    assert labels == [
+        f"radiosity (grey: unknown) [W/m²]{told}" for told in ("; arrow: brighter than 60 % of the view without lamps", "", "")
+    ]
+
+
+def test_letters_of_a_legend_grow():
+    """Dark pixels of the letters, beside a bar that is as high as before."""
+    small, large = (false_color.Palette(0, 1).legend("light [lx]", np.ones(1), 600, size) for size in (1.0, 2.0))
+    assert len(small) == len(large) == 600
+    assert (large < 100).all(axis=2).sum() > 2 * (small < 100).all(axis=2).sum()
 
 
 @pytest.mark.parametrize("log", [False, True])

@@ -9,9 +9,11 @@ import pytest
 import radiosity as rd
 from radiosity.cli import main
 from radiosity.report_page import pdf
+from radiosity.report_page.drawing import new_figure
 from radiosity.report_page.levels import plans
 from radiosity.report_page.markup import element, text
 from radiosity.report_page.page import _sensors, _summary
+from radiosity.report_page.plans import highest, isolines
 from radiosity.report_page.quality import certainty, spot_error, to_know
 from radiosity.report_page.sensor_sets import of_table
 from radiosity.report_page.sensors import sensor_tables
@@ -150,6 +152,20 @@ def test_isolines_leave_out_the_lowest_value():
     even = Figure().subplots()
     draw(even, x, x, np.ones((8, 8)))
     assert not even.collections
+
+
+def test_few_bright_places_set_no_range_of_a_plan():
+    values = np.add.outer(np.arange(20.0), np.arange(20.0))
+    values[0, 0] = np.nan
+    assert highest(values) == 38
+    values[5, 5] = 1e5
+    assert highest(values) == pytest.approx(np.nanpercentile(values, 99))
+    drawing = new_figure(3, 3)
+    axes = drawing.subplots()
+    isolines(axes, drawing, values, (0, 1, 0, 1), "light [lx]")
+    assert axes.images[0].get_clim()[1] == highest(values)
+    assert drawing.axes[1].get_ylabel() == "light [lx]; arrow: brighter than 99 % of the area"
+    assert len(axes.collections[0].levels) > 4, "isolines are where most of the light is"
 
 
 def test_plans_of_scenes_with_y_up_are_seen_from_above():

@@ -10,6 +10,9 @@ import pytest
 import radiosity as rd
 from radiosity.image import display_mesh, tone
 from radiosity.image.plane_fit import at_vertices
+from radiosity.image.quantity import Quantity
+from radiosity.scene import Back
+from radiosity.solution import intervals
 from radiosity.viewer import about, numbers, tone_mapping
 from radiosity.viewer.content import Content
 from radiosity.viewer.frame import Frame, options
@@ -18,7 +21,7 @@ from radiosity.viewer.mesh import Shapes, Triangles
 from radiosity.viewer.picking import Cut, pick
 from radiosity.viewer.refinement import DIFFERENCE, refined
 from radiosity.viewer.server import allowed, require
-from radiosity.viewer.shades import Shades
+from radiosity.viewer.shades import Colours, Shades
 from radiosity.viewer.subject import Subject
 
 
@@ -143,6 +146,32 @@ def test_numbers_of_a_patch(solution):
     assert f"{solution.radiosity[7, 0]:.4g} W/m² ({low:.4g} to {high:.4g})" in text
     assert "south wall" in text
     assert "not solved yet" in numbers.told(Subject(solution.patches), 7, [1, 2, 3])
+
+
+@pytest.mark.parametrize("diffuse", [False, True])
+def test_a_click_finds_the_interval_of_its_patch_alone(monkeypatch, diffuse):
+    """The same bits as among all patches, also where light comes through from the other side."""
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]]
+    pane = {"diffuse_transmittance": np.array([0.4, 0.0]), "back": np.array([Back.RADIATES, Back.ABSORBS])} if diffuse else {}
+    emission = np.array([0.0, 5.0])
+    scene = rd.Scene.from_arrays(corners, np.arange(8).reshape(2, 4), reflectance=0.3, emission=emission, **pane)
+    solution = rd.solve(rd.subdivide(scene, cells=6), "random-walk", quanta=250, replicates=2)
+    wanted = {name: solution.interval(0.95, name) for name in ("radiosity", "irradiance")}
+    assert solution.few.any()
+    counted, bounds = [], intervals.count_bounds
+    monkeypatch.setattr(intervals, "count_bounds", lambda count, *rest: counted.append(count.size) or bounds(count, *rest))
+    subject = Subject.of(solution)
+    for patch in range(0, len(solution.patches), 5):
+        for name, ends in subject.interval(patch).items():
+            np.testing.assert_array_equal(ends, [end[patch] for end in wanted[name]])
+    assert set(counted) == {1}
+
+
+def test_small_bright_patches_set_no_range_of_the_page():
+    quantity = Quantity(np.append(np.full(50, 500.0), 2.0)[:, None], "light", "lx", ("all",), np.zeros(51, bool))
+    colours = Colours.of(Shades(false=True), quantity, np.append(np.full(50, 1e-5), 1.0))
+    assert colours.palette is not None
+    assert colours.palette.high == 2
 
 
 def test_names_of_a_file_are_no_markup():

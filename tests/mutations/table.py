@@ -1161,6 +1161,20 @@ MISTAKES = (
         "walls are compared with floors",
     ),
     Mistake(
+        "viewer/shades.py",
+        "shades.log, area)",
+        "shades.log)",
+        ("test_viewer.py",),
+        "small bright patches beside lamps set the range of the page's false colours",
+    ),
+    Mistake(
+        "comparison/result.py",
+        "np.count_nonzero(known == 0)",
+        "0",
+        ("test_compare.py",),
+        "equal values are in no bin of the histogram",
+    ),
+    Mistake(
         "image/false_color.py",
         '(True, False): "max", (False, True): "min"',
         '(True, False): "min", (False, True): "max"',
@@ -1984,7 +1998,7 @@ MISTAKES = (
     ),
     Mistake(
         "solution/intervals.py",
-        "few = solution.few[:, None] | (mean == 0)",
+        "few = solution.few[rows, None] | (mean == 0)",
         "few = solution.few[:, None]",
         ("test_few_lines.py",),
         "a band that many lines brought nothing in is a certain zero",
@@ -2033,8 +2047,8 @@ MISTAKES = (
     ),
     Mistake(
         "image/false_color.py",
-        "automatic_limits(picture.counted[:, 0], log)",
-        "automatic_limits(values, log)",
+        "counted = picture.counted[:, 0]",
+        "counted = values.reshape(-1)",
         ("test_image_false_color.py",),
         "lamps set the range of the legend",
     ),

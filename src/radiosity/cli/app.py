@@ -30,6 +30,12 @@ from .streams import say, silence
 from .view import view
 
 FAILED, WRONG_INPUT = 1, 2
+ARGUMENTS = {  # of arguments that may be left out or given several times, which the library would call ARGS
+    methods: "[NAME]",
+    relight: "[OPTIONS] LINES [MORE...]",
+    convert: "[OPTIONS] SOURCE TARGETS...",
+    experiment: "[OPTIONS] [WHICH...]",
+}
 
 
 def _version() -> str:
@@ -68,7 +74,8 @@ for place, command in enumerate(
         doctor,
     )
 ):
-    app.command(command, sort_key=place)
+    usage = f"Usage: radiosity {command.__name__} {ARGUMENTS[command]}" if command in ARGUMENTS else None
+    app.command(command, sort_key=place, usage=usage)
 
 
 def run(arguments: list[str]) -> int:

@@ -14,6 +14,7 @@ from ..patches.model import Patches
 from ..solution.csv_rows import write_rows
 from ..solution.replacing import replacing
 from ..solution.whole import whole_file
+from .report import bin_name
 
 SUFFIXES = (".json", ".csv", ".png", ".svg", ".pdf")
 COLOR_MAP = "RdBu_r"  # red where the first is larger, blue where the second is
@@ -208,7 +209,7 @@ def _histogram(found, path: Path) -> None:
     axes, x = figure.subplots(), np.arange(len(rows))
     axes.bar(x, [row["count"] for row in rows], 0.9, color="#4477aa", label="found")
     axes.plot(x, [row["expected"] for row in rows], "ko", markersize=4, label="expected from the errors alone")
-    axes.set_xticks(np.arange(1, len(rows)) - 0.5, [f"{row['from']:+g}" for row in rows[1:]])
+    axes.set_xticks(x, [bin_name(row) for row in rows], rotation=30, fontsize=8)
     axes.set_xlabel("normal score of the difference")
     axes.set_ylabel("number")
     axes.set_title(f"{printable(found.names[0])} - {printable(found.names[1])}", fontsize=9, parse_math=False)

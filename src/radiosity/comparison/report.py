@@ -89,12 +89,18 @@ def _bars(found, histogram: list[dict]) -> list[str]:
     most = max(row["count"] for row in histogram)
     lines = [f"scores of {what}: found, and (expected from the errors alone)"]
     for row in histogram:
-        if np.isinf(row["from"]):
-            label = f"below {row['to']:+g}"
-        elif np.isinf(row["to"]):
-            label = f"above {row['from']:+g}"
-        else:
-            label = f"{row['from']:+g} to {row['to']:+g}"
         bar = "#" * round(WIDTH * row["count"] / most)
-        lines.append(f"{label:>10} {row['count']:>8,} ({row['expected']:>9,.1f}) {bar}".rstrip())
+        lines.append(f"{bin_name(row):>10} {row['count']:>8,} ({row['expected']:>9,.1f}) {bar}".rstrip())
     return lines
+
+
+def bin_name(row: dict) -> str:
+    """Return the name of a bin of the histogram."""
+    low, high = row["from"], row["to"]
+    if low == high:
+        return "equal"
+    if np.isinf(low):
+        return f"below {high:+g}"
+    if np.isinf(high):
+        return f"above {low:+g}"
+    return " to ".join("0" if end == 0 else f"{end:+g}" for end in (low, high))

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from .rows import Rows
 from .significance import Test, any_of
 
 OF = ("patches", "surfaces")
-BINS = np.array([-np.inf, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, np.inf])  # of normal scores
+BINS = np.array([0.0, 1.0, 2.0, 3.0, 4.0, np.inf])  # of the sizes of normal scores
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,16 +149,22 @@ class Comparison:
         return result
 
     def histogram(self) -> list[dict]:
-        """Numbers of scores in each bin (of patches, or of surfaces and sides), beside those that errors alone would give."""
+        """Numbers of scores in each bin (of patches, or of surfaces and sides), beside those that errors alone would give.
+
+        Scores below and above zero have the same bins. Zero has its own, "from" 0 "to" 0: there both values are equal, which no
+        error makes likely.
+        """
         from scipy.stats import norm
 
         test = self.rows.test if self.by_patch is None else self.by_patch.test
         known = test.score[np.isfinite(test.score)]
-        counts = np.histogram(known, BINS)[0]
-        shares = np.diff(norm.cdf(BINS))
+        below, above = (np.histogram(sizes[sizes > 0], BINS)[0] for sizes in (-known, known))
+        expected = np.diff(norm.cdf(BINS)) * known.size
+        ends = [*zip(-BINS[:0:-1], -BINS[-2::-1] + 0.0, strict=True), (0.0, 0.0), *pairwise(BINS)]
+        counts = [*below[::-1], np.count_nonzero(known == 0), *above]
         return [
-            {"from": float(low), "to": float(high), "count": int(count), "expected": float(share * known.size)}
-            for low, high, count, share in zip(BINS[:-1], BINS[1:], counts, shares, strict=True)
+            {"from": float(low), "to": float(high), "count": int(count), "expected": float(usual)}
+            for (low, high), count, usual in zip(ends, counts, [*expected[::-1], 0.0, *expected], strict=True)
         ]
 
     def report(self) -> str:

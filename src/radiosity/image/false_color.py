@@ -15,28 +15,36 @@ DECADES = 4  # of an automatic logarithmic range, at most
 LOWEST_LEGEND = 240  # pixels
 
 
-def colour(picture: Picture, *, title: str, unit: str, limits=None, log=False, color_map="viridis") -> np.ndarray:
+def colour(
+    picture: Picture, *, title: str, unit: str, limits=None, log=False, color_map="viridis", top=TOP, letters=1.0
+) -> np.ndarray:
     """Return the picture at its full resolution and its legend to the right, (height, width, 3) uint8.
 
     Args:
         picture: a picture with one value a pixel.
         title, unit: of the value, for the legend.
-        limits: (low, high) in ``unit``; default: 0 (or the lowest value, if logarithmic) to the 99th percentile of what
-            does not emit by itself, or 1 where nothing is lit.
+        limits: (low, high) in ``unit``; default: 0 (or the lowest value, if logarithmic) to a percentile of what does not emit
+            by itself, or 1 where nothing is lit. The legend tells that some is brighter.
         log: logarithmic scale.
         color_map: one of matplotlib's.
+        top: the percentile.
+        letters: size of the legend's letters, 1 as usual.
 
     Raises:
         OutputError: the limits are not a range, or the colour map is unknown.
     """
     values = picture.values[..., 0]
-    low, high = _checked(limits, log) if limits is not None else automatic_limits(picture.counted[:, 0], log)
+    counted = picture.counted[:, 0]
+    low, high = _checked(limits, log) if limits is not None else automatic_limits(counted, log, top=top)
     palette = Palette(low, high, log, color_map)
     display, seen = palette(values), picture.cover > 0
     display = tone.eight_bits(display * picture.cover[..., None])
     if (seen & ~np.isfinite(values)).any():
         title += " (grey: unknown)"
-    return beside(display, palette.legend(f"{title} [{unit}]", values[seen], max(len(display), LOWEST_LEGEND)))
+    label = f"{title} [{unit}]"
+    if limits is None and (counted > high).any():
+        label += f"; arrow: brighter than {top:g} % of the view without lamps"
+    return beside(display, palette.legend(label, values[seen], max(len(display), LOWEST_LEGEND), letters))
 
 
 @dataclass(frozen=True)
@@ -67,12 +75,16 @@ class Palette:
         display[~np.isfinite(values)] = UNKNOWN
         return display
 
-    def legend(self, label: str, values: np.ndarray, height: int) -> np.ndarray:
-        """Return a picture of the scale, (height, width, 3) uint8; arrows say that some of the values lie beyond its ends."""
+    def legend(self, label: str, values: np.ndarray, height: int, letters: float = 1.0) -> np.ndarray:
+        """Return a picture of the scale, (height, width, 3) uint8; arrows say that some of the values lie beyond its ends.
+
+        ``letters`` is the size of letters, 1 as usual.
+        """
         known = values[np.isfinite(values)]
         beyond = known.size and known.max() > self.high * (1 + 1e-9), known.size and known.min() < self.low * (1 - 1e-9)
         names = {(True, True): "both", (True, False): "max", (False, True): "min"}
-        return _legend(self._norm, self._shades, label, names.get((bool(beyond[0]), bool(beyond[1])), "neither"), height)
+        extend = names.get((bool(beyond[0]), bool(beyond[1])), "neither")
+        return _legend(self._norm, self._shades, label, extend, height, letters)
 
     @property
     def _norm(self):
@@ -87,14 +99,27 @@ class Palette:
         return matplotlib.colormaps[self.color_map]
 
 
-def automatic_limits(values: np.ndarray, log: bool) -> tuple[float, float]:
-    """Return the automatic range for values (m,), NaN allowed."""
-    values = values[np.isfinite(values) & (values > 0)]
+def automatic_limits(values: np.ndarray, log: bool, area: np.ndarray | None = None, top: float = TOP) -> tuple[float, float]:
+    """Return the automatic range for values (m,), NaN allowed.
+
+    Args:
+        area: (m,) that each value stands for. Default: all the same.
+        top: percentile of the values at which the range ends.
+    """
+    known = np.isfinite(values) & (values > 0)
+    values = values[known]
     if not len(values):
         return (0.1, 1.0) if log else (0.0, 1.0)
-    high = float(np.percentile(values, TOP))
+    high = float(np.percentile(values, top) if area is None else _percentile(values, area[known], top))
     low = max(float(values.min()), high / 10**DECADES) if log else 0.0
     return (low, high) if low < high else (high / 10, high)
+
+
+def _percentile(values: np.ndarray, area: np.ndarray, share: float) -> float:
+    """Return the least value below or at which ``share`` percent of the area lie."""
+    order = np.argsort(values, kind="stable")
+    below = np.cumsum(area[order])
+    return float(values[order][min(np.searchsorted(below, share / 100 * below[-1]), len(values) - 1)])
 
 
 def _checked(limits, log: bool) -> tuple[float, float]:
@@ -109,14 +134,14 @@ def _checked(limits, log: bool) -> tuple[float, float]:
     return low, high
 
 
-def _legend(norm, shades, label: str, extend: str, height: int) -> np.ndarray:
+def _legend(norm, shades, label: str, extend: str, height: int, letters: float) -> np.ndarray:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
     from matplotlib.figure import Figure
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    dpi = 100 * max(1.0, height / 600)
+    dpi = 100 * max(1.0, height / 600) * letters
     label = "\n".join(textwrap.wrap(label, max(16, int(height / dpi * 12))))
     width = int((1.05 + 0.16 * label.count("\n")) * dpi)
     figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi, facecolor="white")

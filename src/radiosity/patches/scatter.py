@@ -44,12 +44,21 @@ class Scatter:
         sent = values * self.reflectance[:, group]
         return sent if self.through is None else sent + values[..., self.other] * self.through[:, group]
 
-    def error_of(self, errors: np.ndarray) -> np.ndarray:
+    def error_of(
+        self, errors: np.ndarray, beyond: np.ndarray | None = None, rows: np.ndarray | slice = slice(None)
+    ) -> np.ndarray:
         """Return errors of what is sent on from errors of what is received, (n_patches, k).
 
         Errors of both sides are of the same lines: their sum is never too small.
+
+        Args:
+            errors: of all patches, or of some.
+            beyond: those of the other side of each. Default: ``errors`` are of all patches, and hold them.
+            rows: which patches.
         """
-        error = np.where(self.reflectance == 0, 0.0, self.reflectance * errors)
+        reflectance = self.reflectance[rows]
+        error = np.where(reflectance == 0, 0.0, reflectance * errors)
         if self.through is None:
             return error
-        return error + np.where(self.through == 0, 0.0, self.through * errors[self.other])
+        through = self.through[rows]
+        return error + np.where(through == 0, 0.0, through * (errors[self.other] if beyond is None else beyond))

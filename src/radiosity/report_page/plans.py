@@ -10,6 +10,8 @@ from .markup import Markup, element, figure, section
 from .words import Words, number
 
 WIDTH, HIGHEST = 7.0, 8.5  # inches
+DARK = 1e-6  # share of the highest value below which a value is shown as 0
+TOP, FAR = 99.0, 1.5  # percentile at which colours end where the brightest place is so many times brighter
 
 
 def plan_views(solution: Solution, wanted: tuple[str, ...]) -> Markup | None:
@@ -35,18 +37,34 @@ def _drawn(plan: Plan, words: Words) -> Markup:
     isolines(axes, drawing, plan.values, plan.extent, f"{words.falling} [{words.falling_unit}]")
     axes.set_xlabel(f"{plan.axes[0]} [m]")
     axes.set_ylabel(f"{plan.axes[1]} [m]")
-    low, mean, high = (number(float(f(plan.values))) for f in (np.nanmin, np.nanmean, np.nanmax))
-    told = f"mean {mean} {words.falling_unit}, from {low} to {high}"
+    low, mean, high = (float(f(plan.values)) for f in (np.nanmin, np.nanmean, np.nanmax))
+    low = low if low > DARK * high else 0.0
+    told = f"mean {number(mean)} {words.falling_unit}, from {number(low)} to {number(high)}"
     alt = f"Plan of {plan.name} in false colours with isolines of {words.falling}: {told}"
     return figure(drawn(drawing, alt), f"{plan.name}, at a height of {plan.height:g} m, {number(plan.area)} m²: {told}")
 
 
 def isolines(axes, drawing, values: np.ndarray, extent, label: str) -> None:
-    """Draw values, (rows, columns), as colours with isolines and a colour bar; NaN stays white."""
-    shades = axes.imshow(values, origin="lower", extent=extent, cmap="viridis", interpolation="nearest", aspect="equal")
+    """Draw values, (rows, columns), as colours with isolines and a colour bar; NaN stays white.
+
+    Where a few places are far brighter than all others, the colours end before these, and the bar tells so.
+    """
+    high = highest(values)
+    beyond = bool((values > high).any())
+    shades = axes.imshow(
+        values, origin="lower", extent=extent, cmap="viridis", interpolation="nearest", aspect="equal", vmax=high
+    )
     left, right, bottom, top = extent
     rows, columns = values.shape
     x = left + (np.arange(columns) + 0.5) * (right - left) / columns
     y = bottom + (np.arange(rows) + 0.5) * (top - bottom) / rows
-    draw(axes, x, y, values)
-    drawing.colorbar(shades, ax=axes, label=label)
+    draw(axes, x, y, np.minimum(values, high))
+    label += f"; arrow: brighter than {TOP:g} % of the area" if beyond else ""
+    drawing.colorbar(shades, ax=axes, label=label, extend="max" if beyond else "neither")
+
+
+def highest(values: np.ndarray) -> float:
+    """Return where colours end: the largest value, or a percentile where that one is far above it."""
+    known = values[np.isfinite(values)]
+    top = float(np.percentile(known, TOP))
+    return top if 0 < FAR * top < known.max() else float(known.max())

@@ -13,7 +13,8 @@ p { margin: .5rem 0; }
 dl { display: grid; grid-template-columns: minmax(9rem, max-content) 1fr; gap: .25rem 1.2rem; margin: .6rem 0; }
 dt { color: var(--soft); } dd { margin: 0; overflow-wrap: anywhere; }
 .key { display: grid; grid-template-columns: repeat(auto-fit, minmax(11rem, 1fr)); gap: .8rem; margin: 1rem 0; padding: 0; }
-.key div { border: 1px solid var(--line); border-radius: .4rem; padding: .7rem .9rem; break-inside: avoid; }
+.key div { border: 1px solid var(--line); border-radius: .4rem; padding: .7rem .9rem; break-inside: avoid;
+  min-width: 0; overflow-wrap: anywhere; }
 .key strong { display: block; font-size: 1.35rem; line-height: 1.25; } .key span { color: var(--soft); font-size: .88rem; }
 figure { margin: 1rem 0 1.4rem; break-inside: avoid; } figure img { max-width: 100%; height: auto; display: block; }
 figcaption, caption { color: var(--soft); font-size: .92rem; text-align: left; padding: .35rem 0; }
@@ -22,7 +23,7 @@ table { border-collapse: collapse; width: 100%; margin: .8rem 0 1.4rem; font-siz
 th, td { padding: .28rem .6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 th { font-weight: normal; }
 thead th { font-weight: 600; border-bottom: 2px solid var(--ink); vertical-align: bottom; }
-tbody th { overflow-wrap: anywhere; min-width: 9rem; } .short { break-inside: avoid; }
+tbody th { overflow-wrap: anywhere; min-width: 12rem; } .short { break-inside: avoid; }
 tbody tr:nth-child(even) { background: var(--band); }
 .number { text-align: right; white-space: nowrap; } thead .number { white-space: normal; }
 tr { break-inside: avoid; } thead { display: table-header-group; }

@@ -7,6 +7,8 @@ for the Poisson distribution", Biometrika 28, 1936). Where hit counts vary more 
 lines: all patches share one sequence, so at few lines a patch hits come in clusters.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..errors import MethodError
@@ -98,8 +100,10 @@ def count_bounds(count: np.ndarray, level: float, cluster: np.ndarray | float = 
     from scipy.special import gammaincinv
 
     groups = np.asarray(count / cluster, np.float64)
-    low = np.where(groups > 0, gammaincinv(np.maximum(groups, 1e-9), 1 - level), 0.0)
-    return cluster * low, cluster * gammaincinv(groups + 1, level)
+    each, place = np.unique(groups, return_inverse=True)  # a limit takes microseconds, and few counts differ
+    place = place.reshape(groups.shape)
+    low = np.where(each > 0, gammaincinv(np.maximum(each, 1e-9), 1 - level), 0.0)
+    return cluster * low[place], cluster * gammaincinv(each + 1, level)[place]
 
 
 def irradiance_bounds(
@@ -159,24 +163,63 @@ def least_error(
     return error
 
 
-def of_patches(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """The intervals of `Solution.interval`."""
+@dataclass(frozen=True, eq=False)
+class Whole:
+    """What intervals of patches take from their whole solution.
+
+    Attributes:
+        usual: (n_bands,) W or lm, the power that a line brings to any patch, see `usual_power`.
+        line: (n_bands,) W or lm, the same, and at least that of a line from the lights.
+        together: (n_bands,) lines that come together, see `cluster`.
+    """
+
+    usual: np.ndarray
+    line: np.ndarray
+    together: np.ndarray
+
+    @staticmethod
+    def of(solution) -> "Whole":
+        """Find it: one pass over all patches."""
+        patches, mean, arrivals = solution.patches.solid, solution.irradiance, solution.arrivals
+        line = power_of_a_line(patches.emission, patches.area, solution.quanta * solution.replicates)
+        usual = usual_power(mean, arrivals, patches.area)
+        together = cluster(mean, solution.irradiance_standard_error, arrivals, patches.area)
+        return Whole(usual, np.maximum(usual, line), together)
+
+
+def of_patches(
+    solution, level: float, quantity: str, rows: np.ndarray | slice = slice(None), whole: Whole | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """The intervals of `Solution.interval`, of all patches or of some of them.
+
+    Args:
+        rows: numbers of the patches.
+        whole: of the solution, where it is known already.
+    """
     check(quantity)
-    mean, error, area = solution.irradiance, solution.irradiance_standard_error, solution.patches.solid.area
+    ends = _received(solution, level, rows, whole)
+    if quantity == "irradiance":
+        return ends
+    emission, scatter = solution.patches.emission[rows], solution.patches.scatter
+    beyond = ends if scatter.other is None else _received(solution, level, scatter.other[rows], whole)
+    low, high = (emission + scatter.error_of(*both, rows) for both in zip(ends, beyond, strict=True))
+    return low, high
+
+
+def _received(solution, level: float, rows: np.ndarray | slice, whole: Whole | None) -> tuple[np.ndarray, np.ndarray]:
+    """The intervals of the irradiance of some patches."""
+    mean, error, area = (x[rows] for x in (solution.irradiance, solution.irradiance_standard_error, solution.patches.solid.area))
     # form factors that agree tell nothing about their error
     shown = np.where(error > 0, error, np.nan) if solution.by_baseline else error
     half = student(level, solution.replicates) * shown
     low, high = np.maximum(mean - half, 0), mean + half
-    few = solution.few[:, None] | (mean == 0)
+    few = solution.few[rows, None] | (mean == 0)
     if few.any() and not solution.by_baseline:
-        usual = np.where(mean == 0, power_of_none(solution), usual_power(mean, solution.arrivals, area))
-        together = cluster(mean, error, solution.arrivals, area)
-        bounds = irradiance_bounds(mean, solution.arrivals, area, 0.5 + level / 2, together, usual)
+        whole = Whole.of(solution) if whole is None else whole
+        usual = np.where(mean == 0, _power_of_none(error, area, whole.line), whole.usual)
+        bounds = irradiance_bounds(mean, solution.arrivals[rows], area, 0.5 + level / 2, whole.together, usual)
         low, high = widened(low, high, few, *bounds, mean if solution.signed else None)
-    if quantity == "irradiance":
-        return low, high
-    emission, scatter = solution.patches.emission, solution.patches.scatter
-    return tuple(emission + scatter.error_of(end) for end in (low, high))
+    return low, high
 
 
 def power_of_none(solution) -> np.ndarray:
@@ -185,10 +228,12 @@ def power_of_none(solution) -> np.ndarray:
     Their standard error is made of it. Files of older versions have a zero there: then it is the power of a usual line, or of
     a line from the lights. Entries of other patches mean nothing.
     """
-    patches, mean = solution.patches.solid, solution.irradiance
-    one = solution.irradiance_standard_error * patches.area[:, None]
-    line = power_of_a_line(patches.emission, patches.area, solution.quanta * solution.replicates)
-    return np.where(one > 0, one, usual_power(mean, solution.arrivals, patches.area, line))
+    return _power_of_none(solution.irradiance_standard_error, solution.patches.solid.area, Whole.of(solution).line)
+
+
+def _power_of_none(error: np.ndarray, area: np.ndarray, line: np.ndarray) -> np.ndarray:
+    one = error * area[:, None]
+    return np.where(one > 0, one, line)
 
 
 def widened(low, high, few, least, most, signed=None) -> tuple[np.ndarray, np.ndarray]:

@@ -33,8 +33,9 @@ def told(subject: Subject, patch: int, point) -> str:
         (_of("emission", band, scene.bands), f"{_number(v)} {scene.unit}") for band, v in _bands(scene, patches.emission[patch])
     ]
     if solution is not None:
+        intervals = subject.interval(patch)
         for title, unit in (("radiosity", solution.unit), ("irradiance", solution.irradiance_unit)):
-            low, high = (end[patch] for end in subject.intervals[title])
+            low, high = intervals[title]
             for i, (band, value) in enumerate(_bands(scene, getattr(solution, title)[patch])):
                 known = np.isfinite([low[i], high[i]]).all()
                 between = f" ({_number(low[i])} to {_number(high[i])})" if known else " (error unknown)"

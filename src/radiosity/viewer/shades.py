@@ -56,7 +56,7 @@ class Colours:
         dark = ~quantity.own_light if not quantity.own_light.all() else np.ones(len(area), bool)
         values, area = quantity.values[dark], area[dark]
         if shades.false:
-            low, high = shades.limits or automatic_limits(values[:, 0], shades.log)
+            low, high = shades.limits or automatic_limits(values[:, 0], shades.log, area)
             return Colours(quantity, Palette(low, high, shades.log, shades.color_map), 1.0)
         share = 1.0 if quantity.unit == "1" else None  # reflectances are shown as they are: 1 is white
         scale = tone.chosen_scale(Look(exposure=shades.exposure, scale=share), lambda: tone.automatic_scale(values, area))

@@ -13,8 +13,9 @@ from ..image.quantity import Quantity
 from ..patches import Patches
 from ..scene import Scene
 from ..solution import Solution
-from ..solution.intervals import QUANTITIES
+from ..solution.intervals import QUANTITIES, Whole, of_patches
 
+LEVEL = 0.95  # of intervals
 ARRIVALS, LINES = "arrivals", "lines that hit the patch"
 OF_SCENES = {"reflectance": "reflectance", "emission": "emission"}
 
@@ -45,10 +46,16 @@ class Subject:
             return Subject(what)
         raise MethodError(f"view takes a Solution, a Scene or Patches, not {type(what).__name__}; load a file with load_solution")
 
+    def interval(self, patch: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """Return the ends of 95 % intervals of a patch's radiosity and irradiance, (n_bands,) each; none before it is solved."""
+        if self.solution is None:
+            return {}
+        ends = {name: of_patches(self.solution, LEVEL, name, np.array([patch]), self._whole) for name in QUANTITIES}
+        return {name: (low[0], high[0]) for name, (low, high) in ends.items()}
+
     @cached_property
-    def intervals(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """The ends of 95 % intervals of radiosity and irradiance, (n_patches, n_bands) each; empty before it is solved."""
-        return {} if self.solution is None else {name: self.solution.interval(0.95, name) for name in QUANTITIES}
+    def _whole(self) -> Whole | None:
+        return None if self.solution is None else Whole.of(self.solution)
 
     @property
     def names(self) -> dict[str, str]:
