@@ -4,6 +4,9 @@ import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+
+_KEPT: ContextVar[list[str] | None] = ContextVar("kept", default=None)
 
 
 class RadiosityError(Exception):
@@ -79,6 +82,42 @@ class RadiosityWarning(UserWarning):
         >>> print(told[0].message)
         arrays: 1 face without area left out ...
     """
+
+    def __init__(self, *args):
+        super().__init__(*args)
+        if (kept := _KEPT.get()) is not None:
+            kept.append(str(self))
+
+
+@contextmanager
+def keeping() -> Iterator[None]:
+    """Keep the texts of all warnings of a block for `kept_warnings`, whether or not the user's filters show them.
+
+    Within another such block that one keeps them.
+    """
+    kept = _KEPT.get()
+    token = _KEPT.set([] if kept is None else kept)
+    try:
+        yield
+    finally:
+        _KEPT.reset(token)
+
+
+def kept_warnings() -> tuple[str, ...]:
+    """Return the different texts of the warnings that the `keeping` block around this call has had so far."""
+    return tuple(dict.fromkeys(_KEPT.get() or ()))
+
+
+@contextmanager
+def untold() -> Iterator[None]:
+    """Neither show nor keep the warnings of a block: what runs later tells them again."""
+    token = _KEPT.set(None)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RadiosityWarning)
+            yield
+    finally:
+        _KEPT.reset(token)
 
 
 @contextmanager

@@ -2591,6 +2591,13 @@ MISTAKES = (
         "backs that became surfaces of their own shine to the front",
     ),
     Mistake(
+        "solution/loading.py",
+        "tuple(meta.get(WARNINGS, ()))",
+        "()",
+        ("test_kept_warnings.py",),
+        "warnings of a run are lost when its solution is loaded",
+    ),
+    Mistake(
         "conversion/sheets.py",
         "scene.vertices[corner] - gap * scene.normal",
         "scene.vertices[corner] + gap * scene.normal",

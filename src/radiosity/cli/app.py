@@ -7,7 +7,7 @@ from io import TextIOWrapper
 
 from cyclopts import App, CoercionError, CycloptsError
 
-from ..errors import INSTALL, DeviceError, RadiosityError, RadiosityWarning
+from ..errors import INSTALL, DeviceError, RadiosityError, RadiosityWarning, keeping
 from . import interrupts
 from .annual import annual
 from .check import check
@@ -126,7 +126,7 @@ def run(arguments: list[str]) -> int:
 
 @contextmanager
 def tidy_warnings(debug: bool):
-    """Show our warnings as one line each, once; show those of other packages only with ``--debug``."""
+    """Show our warnings as one line each, once, and keep them for solutions; those of other packages only with ``--debug``."""
     seen = set()
 
     def show(message, category, filename, lineno, file=None, line=None):
@@ -137,7 +137,7 @@ def tidy_warnings(debug: bool):
         elif debug:
             sys.stderr.write(warnings.formatwarning(message, category, filename, lineno, line))
 
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), keeping():
         warnings.simplefilter("always", RadiosityWarning)
         warnings.showwarning = show
         yield

@@ -110,7 +110,7 @@ def to_know(solution: Solution, checked: Report | None, told: list[str]) -> Mark
     Args:
         told: what was told while the report was made.
     """
-    notes = [*_of_solution(solution), *dict.fromkeys(told)]
+    notes = [*_of_solution(solution), *solution.warnings, *told]
     if checked is not None:
         notes += [finding.message for finding in checked.findings if finding.severity in (SERIOUS, WARNING)]
     good = "Nothing unusual was found." if checked is not None else "The calculation tells of nothing unusual."

@@ -5,14 +5,13 @@ differ by more than noise. The patches are cut that gain most for each patch tha
 asked for. The run itself starts anew on that mesh, so that its bits are a function of seed and inputs.
 """
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
 
 from ..device.memory import limited
 from ..device.turn import turn
-from ..errors import MethodError, RadiosityWarning, SceneError
+from ..errors import MethodError, SceneError, untold
 from ..method import Method, resolve
 from ..patches import Patches, subdivide
 from ..patches.cells_as_faces import cells_as_faces, turned
@@ -119,8 +118,7 @@ def _pilot(
     With one randomisation for all patches, cells beside each other have nearly the same noise, which their difference is free of.
     """
     n = len(patches)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RadiosityWarning)  # the run on the mesh tells them
+    with untold():  # the run on the mesh tells them
         run = prepared(
             patches,
             resolve("auto") if method is None else method,

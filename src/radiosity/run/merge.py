@@ -87,7 +87,8 @@ def _merged(given: list[Solution]) -> Solution:
         if different:
             raise MethodError(f"cannot merge solutions of another program or scene: {'; '.join(different)}; solve them anew")
     merged = run.merged(quanta, [(solution.state, part) for solution, part in zip(given, parts, strict=True)])
-    return replace(merged, seconds=sum(solution.seconds for solution in given))
+    told = dict.fromkeys(text for solution in given for text in solution.warnings)
+    return replace(merged, seconds=sum(solution.seconds for solution in given), warnings=tuple(told))
 
 
 def _cut_apart(one: Solution, other: Solution) -> bool:

@@ -7,7 +7,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import ClassVar, Generic
 
 from ..algorithms.state import AbstractState
-from ..errors import DeviceError
+from ..errors import DeviceError, kept_warnings
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..solution.model import Solution
@@ -62,6 +62,10 @@ class AbstractRecord(ABC, Generic[R]):
     def unfinished(self, before: R | None, status: str, state: AbstractState, seconds: float) -> R:
         """Return the result of a run that ended within its first stage; ``before`` is what it went on from."""
 
+    def told(self, result: R) -> R:
+        """Return the result with the warnings of its run, where results hold them."""
+        return result
+
     @property
     def _run(self) -> dict:
         """The facts of a run, whatever its results are."""
@@ -111,7 +115,11 @@ class Record(AbstractRecord[Solution]):
             state.arrays(),
             snapshot.surface_power,
             snapshot.side_power,
+            kept_warnings(),
         )
+
+    def told(self, result: Solution) -> Solution:
+        return replace(result, warnings=kept_warnings())
 
     def unfinished(self, before: Solution | None, status: str, state: AbstractState, seconds: float) -> Solution:
         if before is not None and before.quanta > 0:

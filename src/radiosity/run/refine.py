@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..device.memory import limited
 from ..device.turn import turn
-from ..errors import MethodError
+from ..errors import MethodError, keeping
 from ..method import Auto, Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..patches.nesting import halved, parents
@@ -58,7 +58,7 @@ def refine_check(
     parent = parents(fine, coarse)
     more = {k: 4 * v for k, v in options.items() if k in ("rays", "quanta") and v is not None}
     seed = options.get("seed", 0)
-    with limited(memory), turn():
+    with limited(memory), turn(), keeping():
         first = prepared(coarse, chosen, **options)
         one = _finished(first)
         second = prepared(fine, first.method, **(options | more | {"seed": seed + APART}))

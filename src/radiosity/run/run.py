@@ -12,7 +12,7 @@ from ..algorithms.state import AbstractState
 from ..algorithms.table import make
 from ..device.backend import choose, give_back_memory
 from ..device.turn import aside, turn
-from ..errors import MethodError, result_kept
+from ..errors import MethodError, keeping, result_kept
 from ..method import Baseline, Method
 from ..patches import Patches
 from ..problem.model import Problem
@@ -103,8 +103,8 @@ class Run(Generic[R]):
 
     def solve(self) -> R:
         """Run stage after stage until the budget is used up, or until Ctrl-C."""
-        with turn(), self.stop.listening():
-            return self._stages()
+        with turn(), self.stop.listening(), keeping():
+            return self.record.told(self._stages())
 
     def _stages(self) -> R:
         algorithm, target = self._algorithm(self.problem, self.part), 0
@@ -321,4 +321,4 @@ class Run(Generic[R]):
             warn_of_few_ends(self.method, snapshot.lines / self.replicates / len(self.patches))
             if isinstance(self.method, Baseline):
                 warn_of_missing(self.method, snapshot.books, snapshot.state)
-        return solution
+        return self.record.told(solution)

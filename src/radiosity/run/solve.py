@@ -13,7 +13,7 @@ from ..device.turn import turn
 from ..diagnostics.contact_findings import tell
 from ..diagnostics.lamps_at_faces import warn_of_spots
 from ..diagnostics.narrow import warn_of_light
-from ..errors import MethodError, shown
+from ..errors import MethodError, keeping, shown
 from ..hooks import HOOKS
 from ..method import Auto, Baseline, Method, resolve
 from ..patches import Patches, subdivide
@@ -116,7 +116,7 @@ def solve(
         ((72, 1), 'complete')
     """
     chosen = resolve(method, **choices)
-    with limited(memory), turn():
+    with limited(memory), turn(), keeping():
         if adaptive is not False:
             scene = _adapted(scene, chosen, adaptive, seed, device, progress, resume)
         run = prepared(

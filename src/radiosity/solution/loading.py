@@ -4,7 +4,17 @@ from pathlib import Path
 from typing import Any
 
 from .model import Solution
-from .npz import FORMAT, FORMAT_OF_LIGHTS, FORMAT_OF_OWN, FORMATS_OF_PANES, POWER_ARRAYS, SCALARS, SOLUTION, SOLUTION_ARRAYS
+from .npz import (
+    FORMAT,
+    FORMAT_OF_LIGHTS,
+    FORMAT_OF_OWN,
+    FORMATS_OF_PANES,
+    POWER_ARRAYS,
+    SCALARS,
+    SOLUTION,
+    SOLUTION_ARRAYS,
+    WARNINGS,
+)
 from .reading import read
 from .stored_patches import restored
 from .validate import validate
@@ -29,6 +39,7 @@ def _restore(arrays: dict[str, Any], meta: dict[str, Any]) -> Solution:
     state = {name[len("state_") :]: value for name, value in arrays.items() if name.startswith("state_")}
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
+    scalars[WARNINGS] = tuple(meta.get(WARNINGS, ()))
     scalars |= {"state": state, **{name: arrays.get(name) for name in POWER_ARRAYS}}
     solution = Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars)
     validate(solution)

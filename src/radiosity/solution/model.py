@@ -41,6 +41,7 @@ class Solution:
             they reflect, in each replicate. None in files of older versions.
         side_power: (2, replicates, 2 n_surfaces, n_bands) float64, the same powers for front and back of each surface in turn.
             None where no back radiates, and in files of older versions.
+        warnings: what the run warned of; on the command line also what reading the scene did. Empty in files of older versions.
 
     Example:
         >>> solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), rays=10_000)
@@ -63,6 +64,7 @@ class Solution:
     state: dict = field(default_factory=dict)
     surface_power: np.ndarray | None = None
     side_power: np.ndarray | None = None
+    warnings: tuple[str, ...] = ()
 
     @cached_property
     def radiosity(self) -> np.ndarray:

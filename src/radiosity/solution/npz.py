@@ -31,4 +31,5 @@ CUT_ARRAYS = ("face", "region")  # of scenes whose faces are parts of other face
 PAINT_ARRAYS = ("image", "uv", "color")
 SOLUTION_ARRAYS = ("irradiance", "irradiance_standard_error", "arrivals")
 POWER_ARRAYS = ("surface_power", "side_power")  # arrays that may be missing
+WARNINGS = "warnings"  # a list of texts, which may be missing
 SCALARS = ("rays", "seconds", "quanta", "replicates", "books", "status", "provenance")

@@ -13,7 +13,7 @@ WIDEST = 32  # most letters of a surface's name
 
 
 def report(solution) -> str:
-    """Lines, time, error, energy balance and the surfaces with the largest radiant power."""
+    """Lines, time, error, energy balance, warnings and the surfaces with the largest radiant power."""
     scene, unit = solution.patches.scene, solution.patches.scene.power_unit
     rate = solution.rays / solution.seconds / 1e6 if solution.seconds > 0 else math.nan
     error = _error(solution)
@@ -41,7 +41,8 @@ def report(solution) -> str:
             f"absorbed {number(book['absorbed'], '.6g')} + escaped {number(book['escaped'])} + lost on backs "
             f"{number(book['lost'])} ({closed})"
         )
-    return "\n".join([*lines, "", *_surfaces(solution)])
+    warned = [f"warning   {printable(text)}" for text in solution.warnings]
+    return "\n".join([*lines, *warned, "", *_surfaces(solution)])
 
 
 def _chosen(solution) -> list[str]:

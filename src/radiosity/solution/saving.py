@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .npz import FORMAT, FORMAT_OF_LIGHTS, FORMAT_OF_OWN, OWN_ARRAYS, POWER_ARRAYS, SCALARS, SOLUTION_ARRAYS
+from .npz import FORMAT, FORMAT_OF_LIGHTS, FORMAT_OF_OWN, OWN_ARRAYS, POWER_ARRAYS, SCALARS, SOLUTION_ARRAYS, WARNINGS
 from .stored_patches import stored
 from .whole import whole_file
 
@@ -27,7 +27,7 @@ def save(solution, path: Path, *, derived: bool = True) -> None:
     if derived:
         arrays |= {"radiosity": solution.radiosity, "standard_error": solution.standard_error}
     arrays |= {f"state_{name}": value for name, value in solution.state.items()}
-    meta = {name: getattr(solution, name) for name in SCALARS}
+    meta = {name: getattr(solution, name) for name in (*SCALARS, WARNINGS)}
     own = any(f"patches_{name}" in arrays for name in OWN_ARRAYS)
     lit = bool(solution.patches.scene.lights)
     meta |= {"format": FORMAT_OF_LIGHTS if lit else FORMAT_OF_OWN if own else FORMAT, **facts}

@@ -141,6 +141,7 @@ def _scalars(solution: Solution, bands: int) -> None:
         _that(type(value) is int and least <= value < 2**63, f"{name} that is no whole number from {least}")
     _number("seconds", solution.seconds, least=0)
     _that(isinstance(solution.status, str), "a status that is no text")
+    _that(all(isinstance(one, str) for one in solution.warnings), "warnings that are no texts")
     known = isinstance(solution.provenance, dict) and {"method", "seed"} <= set(solution.provenance)
     _that(known, "no word of method and seed")
     _that(len(solution.books) == bands, f"{len(solution.books)} books for {bands} bands")
