@@ -242,7 +242,12 @@ def test_a_missing_library_is_named(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("method", "order", "rays", "stages"), [("gather", "gather", 1.1e6, 2), ("random-walk", "staged", 2e4, 5)]
+    ("method", "order", "rays", "stages"),
+    [
+        ("gather", "gather", 3e5, 5),
+        ("random-walk", "staged", 2e4, 9),
+        ("stochastic-jacobi", "regular", 1e5, 5),
+    ],
 )
 def test_who_watches_a_run_changes_nothing(method, order, rays, stages):
     """Three bands, by a method whose lines are known beforehand, and by counts: the same bits, whatever the stages."""

@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Generic
 
@@ -27,6 +28,7 @@ from .budget import FULL, Budget, Progressed, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .choice import Choice
 from .error_target import DARK, Target, nothing_before_lights
+from .looks import looks
 from .part import Part, check_stages
 from .pilot import few_quanta
 from .progress import Listener, Stop, Teller
@@ -130,19 +132,21 @@ class Run(Generic[R]):
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
         self.teller.begin(0 if self.resume is None else algorithm.tally.swept_lines(self.problem, algorithm.capture()))
-        status, pending, steps = "complete", None, [target]
+        status, pending, steps = "complete", None, [*self._looks(algorithm, target), target]
         while target:
             started = time.perf_counter()
             try:
                 for step in steps:
                     algorithm.advance(step, self._swept)
+                    if step != target and self.watch is not None and self.teller.stage == 0:
+                        self._watched(self.watch, self._results(algorithm))
             except Interrupted as reason:
                 status, pending = str(reason), algorithm.capture()
                 break
             large = self.replicates * len(self.patches) > LARGE
             if large:
                 give_back_memory()
-            snapshot = self.snapshot = Snapshot(self.problem, algorithm.tally, algorithm.capture(), self.replicates, self.also)
+            snapshot = self.snapshot = self._results(algorithm, self.also)
             known = self.replicates > 1 and self._error_matters
             error = self.target.error(snapshot) if known else math.nan
             margin = self._margin(snapshot)
@@ -209,6 +213,34 @@ class Run(Generic[R]):
             share = self.problem.source.share
             check_stages(self.method, quanta, self.rung, [(part, part.rung(self.method.order, share)) for _, part in parts])
         return self._solution(Snapshot(self.problem, algorithm.tally, state, self.replicates), "complete", None)
+
+    def _results(self, algorithm: AbstractAlgorithm, also: Callable[[Snapshot], Any] | None = None) -> Snapshot:
+        """Return the results of what an algorithm has traced."""
+        return Snapshot(self.problem, algorithm.tally, algorithm.capture(), self.replicates, also)
+
+    def _looks(self, algorithm: AbstractAlgorithm, first: int) -> list[int]:
+        """Return N of the looks within the first stage, for who watches the run.
+
+        Where results depend on their stages, looks are traced beside the run before it begins, and none are left.
+        """
+        if self.watch is None or self.resume is not None:
+            return []
+        beside = not algorithm.stage_independent
+        found = looks(first, self.ladder, self.rung, beside=beside)
+        if not beside:
+            return found
+        if self.replicates * len(self.patches) <= LARGE:
+            own = self._algorithm(self.problem, self.part)
+            with suppress(Interrupted):  # the run itself sees that it is to stop
+                for quanta in found:
+                    own.advance(quanta, self._looked)
+                    self._watched(self.watch, self._results(own))
+        return []
+
+    def _looked(self, count: int) -> None:
+        self.teller.tell("first looks")
+        if self.stop.asked:
+            raise Interrupted("interrupted")
 
     def _watched(self, watch: Callable[[R], None], snapshot: Snapshot) -> None:
         """Give the result of a stage to who watches the run; nothing of it comes back."""

@@ -84,8 +84,8 @@ def solve(
             since the first stage depends on the number of replicates.
         device: "auto", "cpu" or "cuda".
         progress: called with a `Progress` after each wavefront.
-        watch: called after each complete stage with the solution so far, whose status is "running". The result stays the same to
-            the last bit.
+        watch: called after each complete stage with the solution so far, whose status is "running"; in short runs also before the
+            first stage is complete, so that some five solutions are shown. The result stays the same to the last bit.
         resume: a solution of the same scene, method, seed and replicates to go on from, also an interrupted one; the
             budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
             their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
