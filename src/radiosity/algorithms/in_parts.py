@@ -125,6 +125,10 @@ class InParts(AbstractAlgorithm[AbstractState]):
     def quanta_for(self, lines: float) -> int | None:
         return self.whole.quanta_for(lines)
 
+    def swept_so_far(self) -> int:
+        states = [share.state for share in self._shares if share.state is not None]
+        return sum(self.tally.swept_lines(self.problem, state) for state in states)
+
     def part(self, share: Share) -> AbstractAlgorithm:
         """Return a new algorithm of a share's replicates."""
         return part_of(self.whole, self.problem, share.first, share.count)

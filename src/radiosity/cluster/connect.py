@@ -92,5 +92,7 @@ def _remote(address: str) -> Iterator[Any]:
 
 
 def _why(error: BaseException) -> str:
-    inner = error.__cause__ or error.__context__
-    return " ".join(str(error if inner is None else inner).split())[:200] or type(error).__name__
+    """Return the first cause in words."""
+    while (inner := error.__cause__ or error.__context__) is not None:
+        error = inner
+    return " ".join(str(error).split())[:200] or type(error).__name__

@@ -26,7 +26,7 @@ MOST_SECONDS = 60.0
 AWAKE = 0.2  # seconds between two looks at Ctrl-C, the clock and the workers
 LOOK = 1.0  # seconds between two looks at which workers there are
 SMALL = 1 << 20  # bytes that are sent along with a task; more is sent to the worker first
-DEATHS = 3  # times that Dask may give a part up, each after four killed workers, before the run ends
+DEATHS = 8  # workers that may die in a row without a part coming back, before the run ends
 LONELY = 30.0  # seconds without workers before that is told
 FAILED_TO_COME = (OSError, CancelledError)  # of what a task needs: the worker that had it has gone
 LOST = 10.0  # seconds without an answer from the scheduler before it counts as lost
@@ -158,20 +158,26 @@ class DaskCrew(AbstractCrew):
             if sum(np.asarray(value).nbytes for value in arrays.values()) > SMALL:
                 arrays = self.client.scatter(arrays, workers=[address], hash=False)
         unit = Unit(self.job.key, share.first, share.count, quanta, token, self._seconds)
-        future = self.client.submit(
-            advance, unit, arrays, pure=False, workers=[address], allow_other_workers=True, key=f"radiosity-{uuid.uuid4().hex}"
-        )
+        # no other worker: Dask leaves tasks alone whose workers have all gone, also when others come; `_take_back` sees that
+        future = self.client.submit(advance, unit, arrays, pure=False, workers=[address], key=f"radiosity-{uuid.uuid4().hex}")
         future.add_done_callback(lambda _: self._awake.set())
         active[future] = Active(share, address, time.monotonic())
 
     def _take_back(self, run: InParts, shares: list[Share], active: dict[Any, Active]) -> int:
         """Take the outcomes of units that have ended; return their number of lines."""
         lines = 0
-        for future in [future for future in active if future.status != "pending"]:
-            one = active.pop(future)
+        for future, one in list(active.items()):
+            gone = one.address not in self._threads
+            if future.status == "pending" and not gone:
+                continue
+            del active[future]
             outcome = self._outcome(future, one)
             if outcome is None:
+                future.cancel()
+                if gone:
+                    self._died(one)
                 continue
+            self._deaths = 0
             self._check(outcome, one.address)
             state = run.whole.read(owned(outcome.arrays), replace(run.sizes, replicates=one.share.count))
             at = next(at for at, share in enumerate(shares) if share is one.share)
@@ -193,7 +199,7 @@ class DaskCrew(AbstractCrew):
         if future.status == "finished":
             try:
                 return future.result()
-            except (OSError, CancelledError):  # its worker has gone before the result was here
+            except FAILED_TO_COME:
                 return None
         if future.status != "error":  # cancelled, or lost
             return None
@@ -203,18 +209,18 @@ class DaskCrew(AbstractCrew):
                 self._tokens.pop(one.share.state, None)
             if str(error) == "job":
                 self.register()
-            return None
-        if isinstance(error, KilledWorker):
-            self._deaths += 1
-            if self._deaths < DEATHS:
-                return None
+        elif not isinstance(error, (*FAILED_TO_COME, KilledWorker)):
+            raise error
+        return None
+
+    def _died(self, one: Active) -> None:
+        """Count a worker that died at a share, and end the run where share after share kills its worker."""
+        self._deaths += 1
+        if self._deaths >= DEATHS:
             raise DeviceError(
-                f"workers died {4 * self._deaths} times at this run, the last one at {one.address}; their logs say why: often "
-                "too little memory (take larger patches or fewer replicates)"
+                f"{DEATHS} workers in a row died at this run, and no part came back in between; the last one was {one.address}. "
+                "Their logs say why: often too little memory (take larger patches or fewer replicates)"
             )
-        if isinstance(error, FAILED_TO_COME):
-            return None
-        raise error
 
     def _check(self, outcome: Outcome, address: str) -> None:
         here = facts()

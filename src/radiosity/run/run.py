@@ -131,7 +131,7 @@ class Run(Generic[R]):
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
-        self.teller.begin(0 if self.resume is None else algorithm.tally.swept_lines(self.problem, algorithm.capture()))
+        self.teller.begin(0 if self.resume is None else algorithm.swept_so_far())
         status, pending, steps = "complete", None, [target]
         while target:
             started = time.perf_counter()
