@@ -32,12 +32,12 @@ FLOORS = (  # a folder, or a file of the package's own folder, imports what is a
     "viewer",  # a page in the browser: it shows cameras and false colours of pictures, sensors, and findings
     "report_page",  # of a solution, for clients: its pictures, sensors and findings
     "lab",
+    "cluster",  # many machines: it drives runs, and nothing knows of it but the hook by which `solve` calls it
     "",  # __init__.py of the package: the public names, which what is outside the core may use
     "cli",
-    "cluster",
     "__main__",
 )
-TO_COME = {"cluster"}
+TO_COME: set[str] = set()
 APART = ("scene.formats",)  # folders within folders that count on their own
 MOST = 0.22  # of all lines may be in one folder
 
@@ -56,7 +56,8 @@ PLACES = {"drjit": KERNELS, "mitsuba": ("device/", "scene/formats/mitsuba/", "im
 EARLY = {  # packages besides numpy that a file may import when it is imported itself
     "cyclopts": ("cli/",),
     "drjit": KERNELS,
-    # its classes derive from the package's; their readers alone load it
+    # classes derive from the package's; where they are used their files are loaded
+    "distributed": ("cluster/plugin.py",),
     "pydantic": ("scene/formats/toml/schema.py", "scene/formats/honeybee/schema.py"),
 }
 RECORDING = {"while_loop", "syntax", "if_stmt", "switch", "dispatch", "freeze"}

@@ -81,9 +81,16 @@ def _adapt(*of, **options):
     return adapt(*of, **options)
 
 
+def _on_cluster(*of):
+    from .cluster.solve import solve
+
+    return solve(*of)
+
+
 HOOKS["export"] = _export  # of `Solution.export`
 HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)` and `solve(scene, adaptive=True)`
 HOOKS["gather"] = _gather  # of pictures with a final gather
+HOOKS["cluster"] = _on_cluster  # of `solve(scene, cluster=...)`
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {

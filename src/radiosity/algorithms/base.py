@@ -69,6 +69,10 @@ class AbstractAlgorithm(ABC, Generic[S]):
     def capture(self) -> S:
         """Return all that is needed to continue, and to read the result. The state does not change when the run continues."""
 
+    def swept_so_far(self) -> int:
+        """Return the number of lines up to now, without those that are traced when results are read."""
+        return self.tally.swept_lines(self.problem, self.capture())
+
     @abstractmethod
     def read(self, arrays: Arrays, sizes: Sizes) -> S:
         """Return the state of a run of this method from the arrays that `AbstractState.arrays` gave.

@@ -162,9 +162,11 @@ class AbstractState(Record):
     Attributes:
         quanta: N of the stage that began last.
         alone: the reason why no states of other replicates can be merged with it; "" where they can.
+        splits_within: True where a state within a stage can be split into those of parts of its replicates (`splitting`).
     """
 
     alone: ClassVar[str] = ""
+    splits_within: ClassVar[bool] = False
 
     quanta: int = number(int)
 

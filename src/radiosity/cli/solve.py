@@ -79,6 +79,7 @@ def solve(
         try:
             with bar() as progress:
                 options = asdict(budget) | {name: getattr(run, name) for name in ("seed", "device", "replicates", "memory")}
+                options |= {"cluster": run.cluster}
                 if cut.refine_check:
                     checked = rd.refine_check(patches, chosen, **options, progress=progress)
                     solution = checked.coarse

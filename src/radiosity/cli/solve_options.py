@@ -160,12 +160,15 @@ class Running(Machine):
             kill or a power cut. It is removed when all outputs are written. Default: for runs of a minute and more, beside the
             first output: out/box.glb -> out/box.checkpoint.npz.
         no_checkpoint: Write no checkpoint.
+        cluster: Trace on the workers of Dask: tcp://HOST:PORT or tls://HOST:PORT of a scheduler, or local:N for N processes on
+            this machine. The result has the same bits as without (docs/cluster.md).
     """
 
     replicates: Count = None
     resume: Path | None = None
     checkpoint: Path | None = None
     no_checkpoint: Flag = False
+    cluster: str | None = None
 
 
 @dataclass(frozen=True)

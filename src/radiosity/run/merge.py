@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
 
+from ..algorithms.in_parts import in_parts
 from ..device.memory import limited
 from ..device.turn import turn
 from ..errors import MethodError
@@ -103,6 +104,8 @@ def _part(at: int, solution: Solution) -> Part:
     if solution.quanta == 0 or not solution.state:
         what = "has no results yet" if solution.quanta == 0 else "holds no integers of its run"
         raise MethodError(f"merge: solution {at} {what}; go on with it to the end (resume), or solve it anew")
+    if in_parts(solution.state):
+        raise MethodError(f"merge: solution {at} is within a stage, as a cluster left it; go on with it to the end (resume)")
     seed = Seed(whole(facts.get("seed"), "seed", 0), whole(facts.get("first_replicate", 0), "first_replicate", 0))
     in_all = facts.get("all_replicates")
     return Part(seed, solution.replicates, None if in_all is None else whole(in_all, "all_replicates", 1))

@@ -63,17 +63,25 @@ class Part:
         Raises:
             MethodError: the method, or this many stages of it.
         """
-        reason = ALONE.get(method.machine, "")
-        if isinstance(method, Method) and method.coherent:
-            reason = "what a line meets where faces touch depends on the lines beside it"
-        if isinstance(method, Method) and method.machine == "iteration":
+        reason = together(method)
+        if isinstance(method, Method) and method.order == "incremental":
             several = budget.quanta is None or budget.quanta > rung
-            reason = TOGETHER.format("a warm-up") if method.warm_up else reason
-            if method.order == "incremental" and several:
-                reason = TOGETHER.format("a stage") + f"; with quanta={rung} or fewer there is one stage alone"
+            reason = f"{reason}; with quanta={rung} or fewer there is one stage alone" if several else ""
         if reason and (self.first or self.in_all is not None):
             given = f"first_replicate={self.first}" if self.first else f"all_replicates={self.in_all}"
             raise MethodError(f"{given}: {method} cannot be solved in parts, since {reason}; solve all replicates in one run")
+
+
+def together(method: Method | Baseline) -> str:
+    """Return why all replicates of a method advance together; "" where each can be solved alone."""
+    if isinstance(method, Method) and method.machine == "iteration":
+        if method.warm_up:
+            return TOGETHER.format("a warm-up")
+        if method.order == "incremental":
+            return TOGETHER.format("a stage")
+    if isinstance(method, Method) and method.coherent:
+        return "what a line meets where faces touch depends on the lines beside it"
+    return ALONE.get(method.machine, "")
 
 
 def check_stages(method: Method | Baseline, quanta: int, rung: int, parts: list[tuple[Part, int]]) -> None:

@@ -79,7 +79,7 @@ class AbstractRecord(ABC, Generic[R]):
             "tracing": TRACING,
             "budget": self.budget,
             **({} if self.choice is None else {"auto": self.choice}),
-            "versions": {name: _version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")},
+            "versions": versions(),
         }
 
 
@@ -125,6 +125,11 @@ class Record(AbstractRecord[Solution]):
         if before is not None and before.quanta > 0:
             return replace(before, seconds=seconds, status=status, state=state.arrays(), provenance=self.provenance)
         return without_results(self.patches, self.part.replicates, seconds, status, self.provenance, state.arrays())
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of the packages that bits of results depend on."""
+    return {name: _version(name) for name in ("radiosity", "drjit", "mitsuba", "numpy")}
 
 
 @cache

@@ -6,11 +6,12 @@ fall as patches shrink. The noise of both is known from the replicates, and is t
 """
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..device.memory import limited
 from ..device.turn import turn
 from ..errors import MethodError, keeping
+from ..hooks import HOOKS
 from ..method import Auto, Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..patches.nesting import halved, parents
@@ -28,13 +29,18 @@ APART = 1 << 20  # difference of the seeds of the two runs, so that their errors
 
 
 def refine_check(
-    scene: Scene | Patches, method: str | Method | Baseline | Auto = "auto", *, memory: str | float | None = None, **choices
+    scene: Scene | Patches,
+    method: str | Method | Baseline | Auto = "auto",
+    *,
+    memory: str | float | None = None,
+    cluster: Any = None,
+    **choices,
 ) -> RefineCheck:
     """Solve on the patches, and on four times as many with as many lines a patch.
 
     Args:
-        scene, method, memory, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first run, and the
-            second takes four times as many of the first two, as much time, or the same ``error``.
+        scene, method, memory, cluster, choices: as of `solve`; ``rays``, ``quanta`` and ``seconds`` are those of the first run,
+            and the second takes four times as many of the first two, as much time, or the same ``error``.
 
     Raises:
         MethodError: as of `solve`, or fewer than 2 replicates: then nothing tells noise from change. SceneError: patches too
@@ -60,18 +66,18 @@ def refine_check(
     seed = options.get("seed", 0)
     with limited(memory), turn(), keeping():
         first = prepared(coarse, chosen, **options)
-        one = _finished(first)
+        one = _finished(first, cluster)
         second = prepared(fine, first.method, **(options | more | {"seed": seed + APART}))
         second.also = lambda stage: stage.sums(parent, len(coarse))
-        other = _finished(second)
+        other = _finished(second, cluster)
     assert second.snapshot is not None
     received = second.snapshot.asked[1] / coarse.area[:, None]  # (replicates, n_coarse, n_bands)
     _, error = mean_and_error(received)
     return RefineCheck(replace(one, state={}), replace(other, state={}), parent, error)
 
 
-def _finished(run: "Run[Solution]") -> Solution:
-    solution = run.solve()
+def _finished(run: "Run[Solution]", cluster: Any) -> Solution:
+    solution = run.solve() if cluster is None else HOOKS["cluster"](cluster, lambda: run)
     if solution.status == "interrupted":
         raise KeyboardInterrupt
     return solution

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any, Generic
 
 from ..algorithms.base import AbstractAlgorithm, AbstractMeanTally, Interrupted
+from ..algorithms.in_parts import InParts, InTurn, in_parts
 from ..algorithms.merging import merge as merge_states
 from ..algorithms.state import AbstractState
 from ..algorithms.table import make
@@ -72,6 +73,7 @@ class Run(Generic[R]):
         self.snapshot: Snapshot | None = None  # of the last complete stage
         self.also: Callable[[Snapshot], Any] | None = None  # what else is read of a stage
         self.watch: Callable[[R], None] | None = None  # is given the result of each complete stage
+        self.spread: Callable[[AbstractAlgorithm], AbstractAlgorithm] | None = None  # makes an algorithm run on other machines
         self.seconds_before = 0.0 if resume is None else resume.seconds
         self.problem = Problem.of(patches, through=method.machine == "firing") if problem is None else problem
         bands = self.problem.groups.n_groups
@@ -109,7 +111,7 @@ class Run(Generic[R]):
             return self.record.told(self._stages())
 
     def _stages(self) -> R:
-        algorithm, target = self._algorithm(self.problem, self.part), 0
+        algorithm, target = self._spread_out(), 0
         self.algorithm = algorithm
         self.ladder = self.budget
         if self.budget.rays is not None and self.budget.error is None:
@@ -131,7 +133,7 @@ class Run(Generic[R]):
                     "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
                     f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
                 )
-        self.teller.begin(0 if self.resume is None else algorithm.tally.swept_lines(self.problem, algorithm.capture()))
+        self.teller.begin(0 if self.resume is None else algorithm.swept_so_far())
         status, pending, steps = "complete", None, [*self._looks(algorithm, target), target]
         while target:
             started = time.perf_counter()
@@ -164,7 +166,7 @@ class Run(Generic[R]):
             at = Progressed(target, lines, self.teller.elapsed, stage, error * margin, slope)
             replay = not algorithm.stage_independent
             if replay and self._missed(at):
-                self.algorithm = algorithm = self._algorithm(self.problem, self.part)
+                self.algorithm = algorithm = self._spread_out()
                 steps = self._climb(target)
                 target = steps[-1]
                 continue
@@ -299,6 +301,13 @@ class Run(Generic[R]):
 
     def _algorithm(self, problem: Problem, part: Part) -> AbstractAlgorithm:
         return make(self.geometry, problem, self.method, part.seed, part.replicates)
+
+    def _spread_out(self) -> AbstractAlgorithm:
+        """Return the algorithm of the run: on other machines, or in parts where it goes on from such a run, or else here."""
+        whole = self._algorithm(self.problem, self.part)
+        if self.spread is not None:
+            return self.spread(whole)
+        return InParts(whole, InTurn()) if self.resume is not None and in_parts(self.resume.state) else whole
 
     @property
     def _error_matters(self) -> bool:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -56,6 +56,7 @@ def solve(
     checkpoint: str | Path | Checkpoint | None = None,
     checkpoint_every: float = 30.0,
     memory: str | float | None = None,
+    cluster: Any = None,
     **choices,
 ) -> Solution:
     """Solve B = E + rho F B.
@@ -98,6 +99,8 @@ def solve(
             writes it too; at the end it stays, brought up to date.
         checkpoint_every: seconds; longer where writing takes more than a thirtieth of that.
         memory: the limit, such as "8G", a number of bytes, or "none" for no limit. Default: 70 % of what is free.
+        cluster: workers of Dask that trace the lines, to the same bits as here: the address of a scheduler
+            ("tcp://host:8786"), "local:N" for N processes on this machine, or a `distributed.Client` (docs/cluster.md).
 
     Returns:
         The solution of the last complete stage. Ctrl-C ends the run early and returns what is there; the integers of an
@@ -119,26 +122,30 @@ def solve(
     with limited(memory), turn(), keeping():
         if adaptive is not False:
             scene = _adapted(scene, chosen, adaptive, seed, device, progress, resume)
-        run = prepared(
-            scene,
-            chosen,
-            rays=rays,
-            seconds=seconds,
-            error=error,
-            quanta=quanta,
-            replicates=replicates,
-            seed=seed,
-            first_replicate=first_replicate,
-            all_replicates=all_replicates,
-            device=device,
-            progress=progress,
-            resume=resume,
-            error_of=error_of,
-            checkpoint=checkpoint,
-            checkpoint_every=checkpoint_every,
-        )
-        run.watch = watch
-        return run.solve()
+
+        def made() -> "Run[Solution]":
+            run = prepared(
+                scene,
+                chosen,
+                rays=rays,
+                seconds=seconds,
+                error=error,
+                quanta=quanta,
+                replicates=replicates,
+                seed=seed,
+                first_replicate=first_replicate,
+                all_replicates=all_replicates,
+                device=device,
+                progress=progress,
+                resume=resume,
+                error_of=error_of,
+                checkpoint=checkpoint,
+                checkpoint_every=checkpoint_every,
+            )
+            run.watch = watch
+            return run
+
+        return made().solve() if cluster is None else HOOKS["cluster"](cluster, made)
 
 
 def prepared(

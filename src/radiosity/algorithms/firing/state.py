@@ -38,6 +38,8 @@ class FiringState(AbstractState):
         bands: powers, where bands differ.
     """
 
+    splits_within = True
+
     arrivals: np.ndarray = array("replicates", "rows")
     fired: np.ndarray = array("replicates", "rows")
     missed: np.ndarray = array(2, "replicates")

@@ -1,0 +1,98 @@
+"""Connections to a Dask scheduler: one that exists, a client that the caller has, or workers on this machine."""
+
+import logging
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from importlib.util import find_spec
+from typing import Any
+
+from ..errors import DeviceError, MethodError, installing
+
+LOCAL = "local:"
+PROTOCOLS = ("tcp://", "tls://", "ucx://", "ws://", "wss://", "inproc://")
+TIMEOUT = 15.0  # seconds to reach a scheduler
+FORMS = "give the address of a scheduler (tcp://HOST:PORT, tls://HOST:PORT), or local:N for N processes on this machine"
+
+
+@contextmanager
+def connected(cluster: Any) -> Iterator[Any]:
+    """Yield a `distributed.Client`: the one that is given, or one that is made here and closed at the end.
+
+    Args:
+        cluster: an address, "local:N", or a client.
+
+    Raises:
+        DeviceError: 'distributed' is not installed, or no scheduler answers. MethodError: it is none of these.
+    """
+    if find_spec("distributed") is None:
+        raise DeviceError(f"cluster {_named(cluster)} needs 'distributed', which is not installed; {installing('cluster')}")
+    from distributed import Client
+
+    if isinstance(cluster, Client):
+        if cluster.asynchronous:
+            raise MethodError("cluster: the client is asynchronous; give one that was made without asynchronous=True")
+        yield cluster
+    elif isinstance(cluster, str) and cluster.startswith(LOCAL):
+        with _local(_count(cluster)) as client:
+            yield client
+    elif isinstance(cluster, str) and cluster.startswith(PROTOCOLS):
+        with _remote(cluster) as client:
+            yield client
+    else:
+        raise MethodError(f"cluster is {cluster!r}; {FORMS}, or a distributed.Client")
+
+
+def _named(cluster: Any) -> str:
+    return f"'{cluster}'" if isinstance(cluster, str) else type(cluster).__name__
+
+
+def _count(cluster: str) -> int:
+    text = cluster.removeprefix(LOCAL)
+    if not text.isdecimal() or int(text) < 1:
+        raise MethodError(f"cluster is '{cluster}'; write local:N with a number N of processes, 1 or more")
+    return int(text)
+
+
+@contextmanager
+def _local(workers: int) -> Iterator[Any]:
+    """Start processes on this machine, which share its cores."""
+    from distributed import Client, LocalCluster
+
+    threads = max(1, _cores() // workers)
+    # no limit of Dask's own: it would stop a worker at a share of the memory; a run estimates what it takes beforehand
+    options = {"memory_limit": 0, "dashboard_address": None, "silence_logs": logging.CRITICAL}
+    with (
+        LocalCluster(n_workers=workers, threads_per_worker=threads, processes=True, **options) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def _remote(address: str) -> Iterator[Any]:
+    from distributed import Client
+
+    try:
+        client = Client(address, timeout=TIMEOUT)
+    except (OSError, ValueError, TypeError) as error:  # refused, no such host, another protocol, certificates
+        raise DeviceError(
+            f"cluster '{address}': no scheduler answers ({_why(error)}); is it running (`dask scheduler`), and is the address "
+            "the one that it prints? tls:// needs the certificates of Dask's configuration (docs/cluster.md)"
+        ) from None
+    try:
+        yield client
+    finally:
+        with suppress(Exception):  # the scheduler may have gone
+            client.close(timeout=2)
+
+
+def _why(error: BaseException) -> str:
+    """Return the first cause in words."""
+    while (inner := error.__cause__ or error.__context__) is not None:
+        error = inner
+    return " ".join(str(error).split())[:200] or type(error).__name__

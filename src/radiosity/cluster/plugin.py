@@ -1,0 +1,24 @@
+"""The plugin that brings a job to workers: to those that are there, and to each that comes later, before its first task."""
+
+from typing import Any
+
+from distributed import WorkerPlugin
+
+from . import worker
+from .job import Job
+
+
+class JobPlugin(WorkerPlugin):
+    """Keeps a job on a worker until it is taken off."""
+
+    def __init__(self, job: Job):
+        self.job, self.name = job, f"radiosity-{job.key}"
+
+    def setup(self, worker: Any) -> None:
+        put(self.job)
+
+    def teardown(self, worker: Any) -> None:
+        drop(self.job.key)
+
+
+put, drop = worker.put, worker.drop

@@ -1,0 +1,50 @@
+"""A run on a cluster, from the connection to the end."""
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+from ..algorithms.in_parts import InParts
+from ..errors import DeviceError, RadiosityWarning, result_kept
+from ..run.part import together
+from ..run.result import R
+from ..run.run import Run
+from .connect import connected
+from .crew import DaskCrew
+from .job import Job
+
+
+def solve(cluster: Any, prepared: Callable[[], Run[R]]) -> R:
+    """Return the result of a run whose parts workers bring forward.
+
+    Args:
+        cluster: an address, "local:N" or a client, see `connected`.
+        prepared: gives the run, once the cluster is there.
+
+    Raises:
+        DeviceError: as of `connected`; workers die again and again, or have other versions of packages; or the scheduler was
+            lost before the first stage was complete.
+    """
+    with connected(cluster) as client:
+        run = prepared()
+        crew = DaskCrew(client, Job(run.problem, run.method, run.part.seed, run.device.name), together(run.method))
+        crew.register()
+        try:
+            run.spread = lambda whole: InParts(whole, crew)
+            solution = run.solve()
+        except KeyboardInterrupt:
+            if crew.lost:
+                raise DeviceError(f"{crew.lost}, and no stage was complete; {_next(run)}") from None
+            raise
+        finally:
+            crew.release()
+        if crew.lost:
+            with result_kept():
+                warnings.warn(f"{crew.lost}: the run has ended before its end; {_next(run)}", RadiosityWarning, stacklevel=2)
+        return solution
+
+
+def _next(run: Run) -> str:
+    keeper = run.checkpoint
+    what = "the solution" if keeper is None or not keeper.written else f"the checkpoint {keeper.path}"
+    return f"{what} goes on (resume), with another cluster or without one"

@@ -1,0 +1,154 @@
+"""What runs on workers: a part of a run goes on for a few seconds, and its state comes back."""
+
+import time
+import uuid
+import warnings
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..algorithms.base import Interrupted
+from ..device.backend import threads
+from ..device.turn import turn
+from .job import Job, facts
+
+KEPT = 2  # algorithms that stay on a worker between two units, so that their states need not be sent
+
+_jobs: dict[str, Job] = {}
+_live: OrderedDict[tuple[str, int, int], tuple[str, Any]] = OrderedDict()
+
+
+class Missing(Exception):
+    """The worker lacks the job, or the state that a unit goes on from."""
+
+
+class _Enough(Interrupted):
+    """The time of a unit is over."""
+
+
+@dataclass(frozen=True, eq=False)
+class Unit:
+    """What a worker is to do: bring replicates of a run forward within a stage.
+
+    Attributes:
+        job: the key of the job.
+        first, count: the replicates.
+        quanta: N at the end of the stage.
+        token: of the state that it goes on from; "" for the beginning.
+        seconds: after which it stops.
+    """
+
+    job: str
+    first: int
+    count: int
+    quanta: int
+    token: str
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a unit has done.
+
+    Attributes:
+        arrays: of the state.
+        token: of that state.
+        lines: traced since the state before.
+        done: True where the stage is complete.
+        seconds: of work.
+        ended: why the algorithm itself ended the stage early, or "".
+        told: warnings.
+        address: of the worker.
+        facts: of its packages.
+    """
+
+    arrays: dict[str, np.ndarray]
+    token: str
+    lines: int
+    done: bool
+    seconds: float
+    ended: str
+    told: tuple[str, ...]
+    address: str
+    facts: dict[str, str]
+
+
+def put(job: Job) -> None:
+    """Keep a job for units to come."""
+    _jobs[job.key] = job
+
+
+def drop(key: str) -> None:
+    """Forget a job, and free what was made of it."""
+    _jobs.pop(key, None)
+    for one in [one for one in _live if one[0] == key]:
+        _live.pop(one, None)
+
+
+def owned(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return copies of arrays that came over the network: those may be misaligned, read-only or shared."""
+    return {name: np.array(value, order="C") for name, value in arrays.items()}
+
+
+def advance(unit: Unit, arrays: Mapping[str, np.ndarray] | None) -> Outcome:
+    """Bring a unit's replicates forward, until the stage or the time ends.
+
+    Args:
+        arrays: the state that it goes on from; None where it begins, or where the worker still has it.
+
+    Raises:
+        Missing: this worker has no such job, or no such state.
+    """
+    begun, lines = time.perf_counter(), 0
+    job = _jobs.get(unit.job)
+    if job is None:
+        raise Missing("job")
+
+    def swept(count: int) -> None:
+        nonlocal lines
+        lines += count
+        if time.perf_counter() - begun > unit.seconds:
+            raise _Enough
+
+    address, count = _here()
+    with turn(), threads(count), warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        algorithm = _ready(job, unit, arrays)
+        done, ended = False, ""
+        try:
+            algorithm.advance(unit.quanta, swept)
+            done = True
+        except _Enough:
+            pass
+        except Interrupted as reason:
+            ended = str(reason)
+        state, token = algorithm.capture().arrays(), uuid.uuid4().hex
+        _live[unit.job, unit.first, unit.count] = (token, algorithm)
+        while len(_live) > KEPT:
+            _live.popitem(last=False)
+    texts = tuple(dict.fromkeys(str(one.message) for one in told))
+    return Outcome(state, token, lines, done, time.perf_counter() - begun, ended, texts, address, facts())
+
+
+def _ready(job: Job, unit: Unit, arrays: Mapping[str, np.ndarray] | None) -> Any:
+    """Return the algorithm of a unit, in the state that it goes on from."""
+    token, algorithm = _live.pop((unit.job, unit.first, unit.count), ("", None))
+    if unit.token and token == unit.token:
+        return algorithm
+    if unit.token and arrays is None:
+        raise Missing("state")
+    algorithm = job.algorithm(unit.first, unit.count)
+    if arrays is not None:
+        algorithm.restore(algorithm.read(owned(arrays), algorithm.sizes))
+    return algorithm
+
+
+def _here() -> tuple[str, int]:
+    """Return address and threads of the worker whose task this is: Dr.Jit would take all cores of the machine."""
+    from distributed import get_worker
+
+    worker = get_worker()
+    return worker.address, worker.state.nthreads

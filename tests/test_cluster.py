@@ -1,0 +1,177 @@
+"""Runs on a cluster of Dask have the bits of runs on one machine, however many workers there are and whatever becomes of them."""
+
+import signal
+
+import numpy as np
+import pytest
+from iterations import open_room
+from test_merge import FIRST, INCREMENTAL, PARTS, TOGETHER, assert_same
+
+import radiosity as rd
+from radiosity.algorithms.matrix.state import MatrixState
+from radiosity.algorithms.merging import merge as merge_states
+from radiosity.algorithms.splitting import divisible, split
+from radiosity.run import budget
+from radiosity.run.solve import prepared
+
+distributed = pytest.importorskip("distributed", reason="distributed is not installed")
+from radiosity.cluster import connect, crew, worker  # noqa: E402
+from radiosity.cluster.job import Job  # noqa: E402
+
+QUANTA = 3 << 12  # stages at 4096 (of 5 replicates), 8192 and 12288
+GREY = ["firing", "gathering", "regular", "local matrix"]
+MORE_GREY = ["depth-first", "random numbers", "continuous", "fractional", "density", "control variate", "two ends", "first shot"]
+COLOURED = ["firing", "fractional"]
+MORE_COLOURED = ["continuous", "gathering", "regular", "control variate", "first shot", "global matrix"]
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::radiosity.errors.RadiosityWarning"),  # of few lines
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),
+]
+
+
+@pytest.fixture(scope="module")
+def client():
+    """Two workers that are threads of this process."""
+    options = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def grey():
+    return rd.subdivide(open_room(two_sided=True), cells=1)
+
+
+@pytest.fixture(scope="module")
+def coloured():
+    return rd.subdivide(rd.load_scene("cornell-box"), cells=1)
+
+
+@pytest.fixture(autouse=True)
+def short(monkeypatch):
+    """Several stages at few lines, and units of a wavefront each."""
+    monkeypatch.setattr(budget, "FIRST_STAGE", FIRST)
+    monkeypatch.setattr(crew, "SECONDS", 0.0)
+    monkeypatch.setattr(crew, "MOST_SECONDS", 0.0)
+
+
+def solved(patches, method, **options) -> rd.Solution:
+    return rd.solve(patches, method, **{"quanta": QUANTA, "replicates": 5, "seed": 3} | options)
+
+
+def some(names, more):
+    """Some of many cases, and the rest among the slow tests."""
+    return pytest.mark.parametrize("name", [*names, *(pytest.param(name, marks=pytest.mark.slow) for name in more)])
+
+
+@some(GREY, MORE_GREY)
+def test_parts_on_workers_are_one_run(client, grey, name):
+    assert_same(solved(grey, PARTS[name], cluster=client), solved(grey, PARTS[name]))
+
+
+@some(COLOURED, MORE_COLOURED)
+def test_parts_on_workers_are_one_run_in_colour(client, coloured, name):
+    assert_same(solved(coloured, PARTS[name], cluster=client), solved(coloured, PARTS[name]))
+
+
+@some(["incremental"], ["pooled", "warm-up", "coherent", "progressive", "gather"])
+def test_methods_whose_replicates_advance_together_run_on_one_worker(client, grey, name):
+    method = (TOGETHER | INCREMENTAL | {"gather": rd.PRESETS["gather"].method})[name]
+    options = {"replicates": 1} if isinstance(method, rd.Baseline) else {}
+    assert_same(solved(grey, method, cluster=client, **options), solved(grey, method, **options))
+
+
+def test_an_error_target_is_reached_as_on_one_machine(client, grey):
+    options = {"quanta": None, "error": 0.05, "replicates": 4}
+    assert_same(solved(grey, "random-walk", cluster=client, **options), solved(grey, "random-walk", **options))
+
+
+def test_a_split_state_merged_is_the_state(grey):
+    for name in ("firing", "fractional", "regular", "two ends", "first shot"):
+        run = prepared(grey, PARTS[name], quanta=QUANTA, replicates=5)
+        run.solve()
+        state = run.algorithm.capture()
+        assert divisible(type(state))
+        one, other = state.arrays(), merge_states(split(state, [2, 1, 2])).arrays()
+        assert all(np.array_equal(one[key], other[key]) for key in one | other), name
+    assert not divisible(MatrixState)  # of pairs of all replicates
+
+
+# ---- interruptions, and workers that come and go ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["firing", "regular"])
+def test_a_run_that_is_stopped_within_a_stage_goes_on_with_and_without_a_cluster(client, coloured, name, tmp_path):
+    whole, sweeps = solved(coloured, PARTS[name]), []
+
+    def stop(moment):
+        sweeps.append(moment)
+        if moment.stage == 1 and moment.rays > 0 and len([one for one in sweeps if one.stage == 1]) == 4:
+            signal.raise_signal(signal.SIGINT)
+
+    stopped = solved(coloured, PARTS[name], cluster=client, progress=stop, checkpoint=tmp_path / "run.npz")
+    assert stopped.status == "interrupted"
+    assert stopped.quanta < QUANTA
+    assert "parts" in stopped.state  # each part is elsewhere in the stage
+    with pytest.raises(rd.MethodError, match="within a stage"):
+        rd.merge([stopped])
+    before = rd.load_solution(tmp_path / "run.npz")
+    assert_same(solved(coloured, PARTS[name], resume=before), whole)
+    assert_same(solved(coloured, PARTS[name], resume=before, cluster=client), whole)
+
+
+def test_workers_that_leave_and_come(coloured):
+    options = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    seen = set()
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
+
+        def change(moment):
+            there = client.nthreads()
+            seen.update(there)
+            if moment.rays > 0 and len(seen) == 2:
+                cluster.scale(1 if len(there) == 2 else 2)
+
+        found = solved(coloured, PARTS["firing"], cluster=client, progress=change)
+    assert len(seen) == 3
+    assert_same(found, solved(coloured, PARTS["firing"]))
+
+
+def test_a_worker_with_other_packages_is_refused(client, grey, monkeypatch):
+    monkeypatch.setattr(worker, "facts", lambda: crew.facts() | {"mitsuba": "3.0.0"})
+    with pytest.raises(rd.DeviceError, match=r"worker .* would give other bits: mitsuba 3.0.0 there, .* here"):
+        solved(grey, PARTS["firing"], cluster=client)
+
+
+def test_errors_of_workers_are_those_of_one_machine(client, monkeypatch):
+    def broken(self, first, count):
+        raise rd.MethodError("too much of it")
+
+    monkeypatch.setattr(Job, "algorithm", broken)
+    with pytest.raises(rd.MethodError, match="too much of it"):
+        solved(rd.subdivide(rd.load_scene("room"), cells=1), "random-walk", cluster=client)
+
+
+# ---- what is no cluster -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("cluster", "error", "message"),
+    [
+        ("local:0", rd.MethodError, "a number N of processes"),
+        ("local:many", rd.MethodError, "a number N of processes"),
+        ("localhost:8786", rd.MethodError, "give the address of a scheduler"),
+        (7, rd.MethodError, "cluster is 7"),
+        ("tcp://127.0.0.1:1", rd.DeviceError, r"tcp://127\.0\.0\.1:1': no scheduler answers \(.*refused\)"),
+        ("tls://127.0.0.1:1", rd.DeviceError, "certificates"),
+    ],
+)
+def test_what_is_no_cluster(grey, cluster, error, message, monkeypatch):
+    monkeypatch.setattr(connect, "TIMEOUT", 0.2)
+    with pytest.raises(error, match=message):
+        solved(grey, "random-walk", cluster=cluster)
+
+
+def test_without_the_extra(grey, monkeypatch):
+    monkeypatch.setattr(connect, "find_spec", lambda name: None)
+    with pytest.raises(rd.DeviceError, match=r"needs 'distributed'.*radiosity\[cluster\]"):
+        solved(grey, "random-walk", cluster="local:2")
