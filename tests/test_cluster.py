@@ -32,7 +32,7 @@ pytestmark = [
 @pytest.fixture(scope="module")
 def client():
     """Two workers that are threads of this process."""
-    options = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    options = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": "127.0.0.1:0"}
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         yield client
 
@@ -121,7 +121,7 @@ def test_a_run_that_is_stopped_within_a_stage_goes_on_with_and_without_a_cluster
 
 
 def test_workers_that_leave_and_come(coloured):
-    options = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    options = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": "127.0.0.1:0"}
     seen = set()
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
 

@@ -61,7 +61,7 @@ def _local(workers: int) -> Iterator[Any]:
 
     threads = max(1, _cores() // workers)
     # no limit of Dask's own: it would stop a worker at a share of the memory; a run estimates what it takes beforehand
-    options = {"memory_limit": 0, "dashboard_address": None, "silence_logs": logging.CRITICAL}
+    options = {"memory_limit": 0, "dashboard_address": "127.0.0.1:0", "silence_logs": logging.CRITICAL}
     with (
         LocalCluster(n_workers=workers, threads_per_worker=threads, processes=True, **options) as cluster,
         Client(cluster) as client,
