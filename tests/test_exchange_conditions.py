@@ -312,3 +312,58 @@ def test_a_surface_that_is_called_like_the_surroundings_is_told():
     patches = rd.subdivide(scene_of([("surroundings", SHEET), ("b", [SHEET[0][::-1] + np.array([0, 0, 0.2])])]), cells=1)
     with pytest.warns(rd.RadiosityWarning, match="a surface is called 'surroundings', too; of two rows"):
         rd.radiative_exchange(patches, {"*": 300}, emissivity=0.5, surroundings=0, **FEW)
+
+
+SHEET_FILE = "o sheet\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 2 3 4\no floor\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 5 6 7 8\n"
+
+
+@pytest.mark.parametrize("entries", ["{ front = 0.2, back = 0.8 }", "0.8|{ front = 0.2 }", "{ back = 0.8 }|{ front = [0.2] }"])
+def test_sides_of_a_toml_have_emissivities_of_their_own(entries, tmp_path):
+    """Where no file gives a reflectance each side reflects the rest; the conditions hold what they hold in Python."""
+    (tmp_path / "a.obj").write_text(SHEET_FILE)
+    path = tmp_path / "a.toml"
+    tables = "".join(f'[[surface]]\nname = "sheet"\ntemperature = 300\nemissivity = {one}\n' for one in entries.split("|"))
+    path.write_text(
+        f'geometry = "a.obj"\nsurroundings = 280\n{tables}[[surface]]\nname = "floor"\nadiabatic = true\nemissivity = 0.5\n'
+    )
+    scene = rd.load_scene(path)
+    assert scene.heat.emissivity == ({"front": (0.2,), "back": (0.8,)}, (0.5,))
+    assert scene.reflectance[0].tolist() == [pytest.approx(0.8)]
+    assert scene.back_reflectance[0].tolist() == [pytest.approx(0.2)]
+    patches = rd.subdivide(scene, cells=1)
+    assert Conditions.of(patches).emissivity.tolist() == [[0.2, 0.8, 0.5, 0.5]]
+    with pytest.warns(rd.RadiosityWarning, match="surfaces of their own"):
+        rd.save_scene(scene, tmp_path / "b.toml")  # each side becomes a surface, with its own emissivity
+    assert rd.load_scene(tmp_path / "b.toml").heat.emissivity == ((0.2,), (0.8,), (0.5,))
+
+
+def test_surfaces_that_one_becomes_share_its_heat_flow(tmp_path):
+    """A sheet of 1 m² and 12 W, whose sides reflect otherwise."""
+    (tmp_path / "a.obj").write_text(SHEET_FILE)
+    (tmp_path / "a.toml").write_text(
+        'geometry = "a.obj"\nsurroundings = 280\n[[surface]]\nname = "sheet"\nflux = 12.0\n'
+        "emissivity = { front = 0.2, back = 0.8 }\n"
+        '[[surface]]\nname = "floor"\nadiabatic = true\nemissivity = 0.5\n'
+    )
+    with pytest.warns(rd.RadiosityWarning) as told:
+        rd.save_scene(rd.load_scene(tmp_path / "a.toml"), tmp_path / "b.toml")
+    assert any("share it by area and may differ in temperature: 'sheet'" in str(one.message) for one in told)
+    heat = rd.load_scene(tmp_path / "b.toml").heat
+    assert heat.flux.tolist() == [6.0, 6.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        ("{ top = 0.5 }", r"surface 1 \('sheet'\), emissivity, top: Input should be 'front' or 'back'"),
+        ("{}", r"surface 1 \('sheet'\), emissivity: .* at least 1 item"),
+        ("{ front = 1.5 }", r"surface 1 \('sheet'\), emissivity, front 1: .*less than or equal to 1"),
+        ("{ front = 0.5, back = [0.5, 0.6] }", r"emissivity has 2 numbers; wavelengths = \[\] makes 1 band"),
+        ('"bright"', r"surface 1 \('sheet'\), emissivity"),
+    ],
+)
+def test_sides_of_a_toml_that_make_no_sense(given, text, tmp_path):
+    (tmp_path / "a.obj").write_text(SHEET_FILE)
+    (tmp_path / "a.toml").write_text(f'geometry = "a.obj"\n[[surface]]\nname = "sheet"\nemissivity = {given}\n')
+    with pytest.raises(rd.SceneError, match=text):
+        rd.load_scene(tmp_path / "a.toml")

@@ -57,7 +57,7 @@ def everything() -> rd.Scene:
     )
     k = len(room.names)
     sizes = np.where(np.arange(k) % 2, 0.5, np.nan)
-    emissivity = tuple(None if i == 1 else (0.5, 0.25) for i in range(k))
+    emissivity = tuple(None if i == 1 else {"front": (0.5, 0.25), "back": (0.5,)} if i == 2 else (0.5, 0.25) for i in range(k))
     known, isothermal = np.where(np.arange(k) % 2, 300.0, np.nan), np.arange(k) % 4 == 0
     heat = Heat(known, np.where(isothermal, 5.0, np.nan), emissivity, isothermal, 290.0, (3.0,))
     paints = {"reflectance_paint": paint(random, n, 0.9), "emission_paint": paint(random, n, 7.0)}
@@ -101,7 +101,8 @@ def is_default(field, value) -> bool:
 def solution() -> rd.Solution:
     patches, random = rd.subdivide(everything(), size=2.5), np.random.Generator(np.random.Philox(2))
     own = {"own_reflectance": patches.reflectance / 2, "own_emission": random.random(patches.emission.shape)}
-    return rd.solve(replace(patches, **own), "random-walk", quanta=2000, replicates=3, seed=2**40)
+    solution = rd.solve(replace(patches, **own), "random-walk", quanta=2000, replicates=3, seed=2**40)
+    return replace(solution, warnings=("one", "another"))
 
 
 def test_no_field_has_its_default(solution):

@@ -2591,6 +2591,13 @@ MISTAKES = (
         "backs that became surfaces of their own shine to the front",
     ),
     Mistake(
+        "scene/formats/toml/heat.py",
+        "{**sides, **{side: tuple(values)",
+        "{**{side: tuple(values)",
+        ("test_exchange_conditions.py",),
+        "an entry for one side takes the emissivity of the other away",
+    ),
+    Mistake(
         "solution/loading.py",
         "tuple(meta.get(WARNINGS, ()))",
         "()",

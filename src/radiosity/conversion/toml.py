@@ -18,6 +18,7 @@ from . import gltf, webs
 from .obj import object_names, write_geometry
 from .pieces import Piece, pieces, tell_of_rest
 from .told import Told
+from .toml_heat import of_surface
 
 HOLDS = frozenset({"names", "reflectance", "emission", "units", "backs", "panes", "textures", "lights", "openings"}) | {
     "cameras",
@@ -42,12 +43,12 @@ def write(scene: Scene, path: Path, told: Told) -> None:
     if painted:
         geometry = geometry_of(path, ".glb")
         names = gltf.write_geometry(scene, geometry, told)
-        entries = _entries_beside(scene, parts, names)
+        entries = _entries_beside(scene, parts, names, told)
     else:
         geometry = geometry_of(path, ".obj")
         names = object_names(parts, told)
         write_geometry(scene, geometry, parts, names)
-        entries = [_entry(scene, piece, name) for piece, name in zip(parts, names, strict=True)]
+        entries = [_entry(scene, parts, piece, name, told) for piece, name in zip(parts, names, strict=True)]
     lines = [f"geometry = {_value(geometry.name)}", f"photometric = {_value(scene.photometric)}"]
     heat = scene.heat
     if heat is not None and heat.surroundings is not None:
@@ -74,9 +75,9 @@ def geometry_of(path: Path, suffix: str) -> Path:
     return path.with_name(f"{path.stem}.geometry{suffix}")
 
 
-def _entry(scene: Scene, piece: Piece, name: str) -> dict:
+def _entry(scene: Scene, parts: list[Piece], piece: Piece, name: str, told: Told) -> dict:
     entry: dict = {"name": name, "reflectance": piece.reflectance, "emission": piece.emission, "back": BACKS[piece.back]}
-    return entry | _light_through(piece) | _of_surface(scene, piece.surface)
+    return entry | _light_through(piece) | of_surface(scene, parts, piece, told)
 
 
 def _light_through(piece: Piece) -> dict:
@@ -91,34 +92,16 @@ def _light_through(piece: Piece) -> dict:
     return entry | ({"diffuse_transmittance": piece.diffuse} if piece.diffuse.any() else {})
 
 
-def _entries_beside(scene: Scene, parts: list[Piece], names: list[str]) -> list[dict]:
+def _entries_beside(scene: Scene, parts: list[Piece], names: list[str], told: Told) -> list[dict]:
     """Entries where the geometry holds reflectance and emission: those that say more."""
     found = []
     for piece, name in zip(parts, names, strict=True):
         entry: dict = {"name": name} | ({} if piece.back in (Back.ABSORBS, Back.RADIATES) else {"back": BACKS[piece.back]})
         entry |= _light_through(piece)
-        entry |= _of_surface(scene, piece.surface)
+        entry |= of_surface(scene, parts, piece, told)
         if len(entry) > 1:
             found.append(entry)
     return found
-
-
-def _of_surface(scene: Scene, surface: int) -> dict:
-    """What an entry says of patch size and heat."""
-    entry: dict = {}
-    heat = scene.heat
-    if np.isfinite(scene.patch_size[surface]):
-        entry["patch_size"] = float(scene.patch_size[surface])
-    if heat is None:
-        return entry
-    if np.isfinite(heat.temperature[surface]):
-        entry["temperature"] = float(heat.temperature[surface])
-    elif np.isfinite(heat.flux[surface]):
-        entry |= {"adiabatic": True} if heat.flux[surface] == 0 else {"flux": float(heat.flux[surface])}
-    if heat.isothermal[surface]:
-        entry["isothermal"] = True
-    emissivity = heat.emissivity[surface]
-    return entry if emissivity is None else entry | {"emissivity": emissivity}
 
 
 def _camera(camera) -> dict:
@@ -195,4 +178,6 @@ def _value(value) -> str:
         return str(value)
     if isinstance(value, float | np.floating):
         return repr(float(value))
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {_value(one)}' for key, one in value.items())} }}"
     return f"[{', '.join(_value(one if np.ndim(one) else float(one)) for one in value)}]"

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
 from ..patches.model import Patches
-from ..patches.values import SIDES, of_sides
-from ..scene.heat import HOTTEST, MOST_EDGES, Heat
+from ..patches.values import of_sides
+from ..scene.heat import HOTTEST, MOST_EDGES, SIDES, Heat
 from ..scene.named import surfaces_called
 from .report import SURROUNDINGS
 

@@ -6,10 +6,9 @@ import numpy as np
 
 from ..errors import SceneError
 from ..scene.arguments import LARGEST, array
+from ..scene.heat import SIDES
 from ..scene.named import surfaces_called
 from .model import Patches
-
-SIDES = ("front", "back")
 
 
 def values_of(patches: Patches, given, what: str) -> np.ndarray | None:

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 MOST_EDGES = 100  # between bands of wavelength
+SIDES = ("front", "back")
+Emissivity = tuple[float, ...] | dict[str, tuple[float, ...]]  # one number, or one for each band; or so for each side
 HOTTEST = 1e6  # K; a larger number is an error of units, or of typing
 
 
@@ -16,7 +18,8 @@ class Heat:
         temperature: (n_surfaces,) K, NaN where the scene gives none.
         flux: (n_surfaces,) W that a whole surface gets from elsewhere and gives off, 0 where it is adiabatic, NaN where the scene
             gives none.
-        emissivity: for each surface one number, or one for each band; None where the scene gives none.
+        emissivity: for each surface one number, or one for each band, or a dictionary of them by side ("front", "back"); None
+            where the scene gives none.
         isothermal: (n_surfaces,) bool, surfaces that are one temperature where it is not given.
         surroundings: K, of the black surroundings of what escapes; None where the scene gives none.
         wavelengths: edges between the bands, µm, ascending; none: one band.
@@ -24,7 +27,7 @@ class Heat:
 
     temperature: np.ndarray
     flux: np.ndarray
-    emissivity: tuple[tuple[float, ...] | None, ...]
+    emissivity: tuple[Emissivity | None, ...]
     isothermal: np.ndarray
     surroundings: float | None = None
     wavelengths: tuple[float, ...] = field(default=())
@@ -49,6 +52,12 @@ class Heat:
     def of(facts: dict) -> "Heat":
         """Make the conditions that `facts` gave."""
         one, other = (np.array([np.nan if v is None else v for v in facts[key]], float) for key in ("temperature", "flux"))
-        emissivity = tuple(None if value is None else tuple(value) for value in facts["emissivity"])
+        emissivity = tuple(_emissivity(value) for value in facts["emissivity"])
         isothermal = np.array(facts["isothermal"], bool)
         return Heat(one, other, emissivity, isothermal, facts["surroundings"], tuple(facts["wavelengths"]))
+
+
+def _emissivity(value) -> Emissivity | None:
+    if isinstance(value, dict):
+        return {side: tuple(values) for side, values in value.items()}
+    return None if value is None else tuple(value)

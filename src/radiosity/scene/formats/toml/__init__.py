@@ -18,7 +18,7 @@ from ...model import Back, Camera, Scene
 from ..beside import named_file
 from ..units import UNITS
 from .daylight import daylight_of
-from .heat import check_bands, heat_of, reflecting
+from .heat import check_bands, heat_of, of_sides, reflecting
 from .luminaires import luminaires_of, warn_of_y_up
 from .panes import check_pane, clear_light
 from .sensors import sensors_of
@@ -123,7 +123,7 @@ class Looks:
         for number, entry in enumerate(self.entries):
             if not self.means(entry, part.name):
                 continue
-            emissivity = emissivity if entry.emissivity is None else entry.emissivity
+            emissivity = of_sides(emissivity, entry.emissivity)
             if entry.reflectance is not None:
                 of_side = {"reflectance": tuple(entry.reflectance), "back_reflectance": None, "diffuse": True}
                 material = replace(material, **of_side, given=max(entry.reflectance) < 1, origin=self.source)

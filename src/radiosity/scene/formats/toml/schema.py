@@ -3,7 +3,17 @@
 from itertools import pairwise
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    model_validator,
+)
 
 from ....errors import SceneError, shown
 from ...heat import HOTTEST, MOST_EDGES
@@ -45,6 +55,12 @@ def _pointing(value: list[float]) -> list[float]:
 
 Bands = Annotated[list[NotNegative], BeforeValidator(_listed), AfterValidator(_one_or_three)]
 Emissivities = Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1), BeforeValidator(_listed)]
+ALIKE, OF_SIDES = "alike", "of sides"  # emissivities: those of both sides together, or of each
+EmissivitiesOfSides = Annotated[
+    Annotated[Emissivities, Tag(ALIKE)]
+    | Annotated[Annotated[dict[Literal["front", "back"], Emissivities], Field(min_length=1)], Tag(OF_SIDES)],
+    Discriminator(lambda value: OF_SIDES if isinstance(value, dict) else ALIKE),
+]
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 Direction = Annotated[Point, AfterValidator(_pointing)]
 
@@ -86,7 +102,7 @@ class Surface(_Table):
     flux: float | None = None
     adiabatic: Literal[True] | None = None
     isothermal: bool | None = None
-    emissivity: Emissivities | None = None
+    emissivity: EmissivitiesOfSides | None = None
 
     @model_validator(mode="after")
     def _once(self) -> "Surface":
@@ -335,7 +351,7 @@ def checked(values: dict, source: str) -> SceneFile:
 
 
 def _sentence(fault, values: dict) -> str:
-    path = fault["loc"]
+    path: list = [step for step in fault["loc"] if step not in (ALIKE, OF_SIDES, "[key]")]
     where = ", ".join(
         f"{step} {path[i + 1] + 1}" if i + 1 < len(path) and isinstance(path[i + 1], int) else str(step)
         for i, step in enumerate(path)
