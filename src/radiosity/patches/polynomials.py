@@ -8,6 +8,9 @@ import numpy as np
 from .bases import Basis
 from .model import Patches
 
+CORNERS = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+CORNERS_OF_TRIANGLE = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, 1.0)])
+
 
 @dataclass(frozen=True, eq=False)
 class Polynomials:
@@ -40,6 +43,17 @@ class Polynomials:
         """Return values at coordinates within patches, (m, n)."""
         functions = self.basis.at(a, b, self.patches.scene.is_quad[self.patches.face[patch]])
         return self.mean[patch] + np.einsum("mnk,mk->mn", self.others[patch], functions[:, 1:])
+
+    def at_corners(self) -> np.ndarray:
+        """Return values at the corners of patches, (n_patches, 4, n), in the order of `Patches.corners`."""
+        quad = self.patches.scene.is_quad[self.patches.face]
+        found = np.empty((len(self.mean), 4, self.mean.shape[1]))
+        for some, places, turned in ((quad, CORNERS, [0, 3, 2, 1]), (~quad, CORNERS_OF_TRIANGLE, [0, 2, 1, 1])):
+            functions = self.basis.at(places[:, 0], places[:, 1], np.array(places is CORNERS))[:, 1:]
+            for side, order in ((~self.patches.is_back, [0, 1, 2, 3]), (self.patches.is_back, turned)):
+                rows = np.flatnonzero(some & side)
+                found[rows] = self.mean[rows, None] + np.einsum("mnk,ck->mcn", self.others[rows], functions[order])
+        return found
 
     @cached_property
     def _cells(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

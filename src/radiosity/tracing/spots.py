@@ -7,7 +7,7 @@ import drjit as dr
 
 from .faces import COLUMN_BITS, INVERTED, QUAD
 from .geometry import Geometry
-from .hits import first_hit
+from .hits import Hit, first_hit
 from .line_tracer import LineTracer
 from .ray_generation import MASK, position
 
@@ -44,8 +44,19 @@ def traced(tracer: LineTracer, number, index, record, bits: int) -> tuple[Any, S
     begin = spot(geometry, record[1], *position(geometry, record[1], numbers[2], numbers[3]))
     on_patch = slot < tracer.total
     _, place = tracer.record(dr.select(on_patch, slot, 0))
-    columns, rows = (tracer.types.Float(x & MASK) for x in (hit.packed, hit.packed >> COLUMN_BITS))
-    return slot, begin, spot(geometry, place, hit.u * columns, hit.v * rows)
+    return slot, begin, _at_hit(geometry, place, hit)
+
+
+def spot_of(geometry: Geometry, patch, active, hit: Hit) -> Spot:
+    """Return where lines hit patches, from the numbers of the patches; without meaning for lines that are not ``active``."""
+    types = geometry.device.types
+    _, place = dr.gather(types.Array2u, geometry.patch_records, dr.select(active, patch, 0))
+    return _at_hit(geometry, place, hit)
+
+
+def _at_hit(geometry: Geometry, place, hit: Hit) -> Spot:
+    columns, rows = (geometry.device.types.Float(x & MASK) for x in (hit.packed, hit.packed >> COLUMN_BITS))
+    return spot(geometry, place, hit.u * columns, hit.v * rows)
 
 
 def spot(geometry: Geometry, place, s, t) -> Spot:
