@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
+from ..patches.bases import CONSTANT, Basis
 from ..problem.model import Problem
 from ..sampling.streams import Seed
 from ..tracing.geometry import Geometry
@@ -101,10 +102,12 @@ class AbstractTally(ABC, Generic[S]):
     Attributes:
         settles: True where, with several replicates, results are quick to read and smaller than the state they are read from.
         counts_hits: True where arrivals are hits, and a patch's power comes with them.
+        basis: of the light on patches.
     """
 
     settles: ClassVar[bool] = False
     counts_hits: ClassVar[bool] = True
+    basis: Basis = CONSTANT
 
     @abstractmethod
     def lines(self, problem: Problem, state: S) -> int:
@@ -132,6 +135,10 @@ class AbstractTally(ABC, Generic[S]):
 
         Irradiance times area is value times unit.
         """
+
+    def moment(self, problem: Problem, state: S, group: int, function: int) -> np.ndarray:
+        """Return moments of a group, (replicates, n_patches), in the unit of `irradiance`: of one of the functions of `basis`."""
+        raise NotImplementedError
 
     def line(self, problem: Problem, state: S, group: int) -> np.ndarray | float:
         """Return the power that one more line from the lights would bring where it hits, W or lm, one number or (n_patches,).

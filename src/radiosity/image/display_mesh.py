@@ -37,20 +37,30 @@ class DisplayMesh:
         is NaN where all are unknown.
         """
         values = np.asarray(values, np.float64)
+        return self.smoothed_corners(values[:, None])
+
+    def smoothed_corners(self, values: np.ndarray) -> np.ndarray:
+        """Turn values at the corners of patches, (n_patches, 4 or 1, n_bands), into vertex values, see `smoothed`."""
         corner, n = self.polygons.ravel(), len(self.vertices)
-        result = np.empty((n, values.shape[1]))
-        for band in range(values.shape[1]):
-            known = np.isfinite(values[:, band])
-            weight = np.where(known[:, None], self.angle, 0.0)
-            total = np.bincount(corner, (weight * np.where(known, values[:, band], 0.0)[:, None]).ravel(), n)
+        result = np.empty((n, values.shape[2]))
+        for band in range(values.shape[2]):
+            known = np.isfinite(values[..., band])
+            weight = np.where(known, self.angle, 0.0)
+            total = np.bincount(corner, (weight * np.where(known, values[..., band], 0.0)).ravel(), n)
             weights = np.bincount(corner, weight.ravel(), n)
             result[:, band] = np.divide(total, weights, out=np.full(n, np.nan), where=weights > 0)
         return result
 
-    def flat(self) -> tuple["DisplayMesh", np.ndarray]:
-        """Return the mesh with no vertex shared between patches, and the patch of each of its vertices."""
+    @property
+    def own_corners(self) -> np.ndarray:
+        """Which corners of polygons are vertices of their own in the mesh that `flat` returns, (n_patches, 4) bool."""
         used = np.ones(self.polygons.shape, bool)
         used[:, 3] = self.is_quad
+        return used
+
+    def flat(self) -> tuple["DisplayMesh", np.ndarray]:
+        """Return the mesh with no vertex shared between patches, and the patch of each of its vertices."""
+        used = self.own_corners
         number = (np.cumsum(used.ravel()) - 1).astype(np.int32).reshape(used.shape)
         mesh = DisplayMesh(self.vertices[self.polygons[used]], number, self.angle, self.surface)
         return mesh, np.repeat(np.arange(len(used), dtype=np.int32), used.sum(axis=1))

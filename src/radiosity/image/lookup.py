@@ -6,18 +6,25 @@ from functools import cached_property
 import numpy as np
 
 from ..patches import Patches, cells
+from ..patches.polynomials import Polynomials
 from ..scene import Back
+from . import polynomial_light
 from .display_mesh import DisplayMesh, build
 from .plane_fit import PlaneFit
 
 
 @dataclass(frozen=True, eq=False)
 class Lookup:
-    """Values (n_patches, n) of patches, found from hits; ``smooth``: interpolated between smoothed vertex values."""
+    """Values (n_patches, n) of patches, found from hits.
+
+    With ``smooth`` they are interpolated between smoothed vertex values. ``light`` has the polynomials that values are the means
+    of, where there are any; without ``smooth`` these are shown as they are.
+    """
 
     patches: Patches
     values: np.ndarray
     smooth: bool = True
+    light: Polynomials | None = None
 
     @cached_property
     def mesh(self) -> DisplayMesh:
@@ -26,6 +33,11 @@ class Lookup:
     @cached_property
     def at_vertices(self) -> np.ndarray:
         return self.mesh.smoothed(self.values)
+
+    @cached_property
+    def moves(self) -> np.ndarray | None:
+        """The moves of polynomials at corners of patches, see `polynomial_light.moves`; None where there are none."""
+        return None if self.light is None else polynomial_light.moves(self.light, self.mesh)
 
     @cached_property
     def planes(self) -> PlaneFit:
@@ -41,7 +53,10 @@ class Lookup:
         patch = self.patch(hits)
         seen = np.flatnonzero(patch >= 0)
         values = np.zeros((len(patch), self.values.shape[1]))
-        if self.smooth:
+        if self.light is not None:
+            u, v = (np.asarray(x, np.float64)[seen] for x in (hits.u, hits.v))
+            values[seen] = self._polynomials(self.light, patch[seen], u, v)
+        elif self.smooth:
             weight = self._weights(np.asarray(hits.u)[seen], np.asarray(hits.v)[seen], patch[seen])
             corners = self.mesh.polygons[patch[seen]]
             for k in range(4):
@@ -55,6 +70,11 @@ class Lookup:
         else:
             values[seen] = self.values[patch[seen]]
         return values, patch
+
+    def _polynomials(self, light: Polynomials, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        if not self.smooth or self.moves is None:
+            return np.maximum(light.at(patch, u, v), 0)
+        return polynomial_light.moved(light, self.moves, patch, self._weights(u, v, patch), u, v)
 
     def patch(self, hits) -> np.ndarray:
         """Return the patches that were hit, or -1, (m,) int64."""

@@ -8,7 +8,7 @@ import numpy as np
 from ..scene.up import up_axis
 from . import density_mesh, display_mesh, tone
 from .look import Look
-from .plane_fit import at_vertices
+from .polynomial_light import own_values, vertex_values
 from .quantity import choose
 
 FAR = 16  # times its extent: a surface whose coordinates are larger would lose 1e-6 of its size in single precision
@@ -115,10 +115,11 @@ def coloured(solution, look: Look) -> ColouredMesh:
         mesh, values, _ = density_mesh.display(solution, look.quantity)
     elif look.smooth:
         mesh = display_mesh.build(patches)
-        values = at_vertices(patches, mesh, shown.values)
+        values = vertex_values(patches, mesh, shown)
     else:
-        mesh, owner = display_mesh.build(patches).flat()
-        values = shown.values[owner]
+        whole = display_mesh.build(patches)
+        mesh, owner = whole.flat()
+        values = own_values(whole, owner, shown)
     triangles, patch = mesh.triangles()
     return ColouredMesh(
         mesh.vertices,

@@ -55,7 +55,7 @@ def take(solution, shown: Quantity, camera: View, *, look: Lookup | Gathered | N
     """
     samples = checked_samples(samples)
     hits, camera = hits or first_hits, checked(camera)
-    look = look or Lookup(solution.patches, shown.values)
+    look = look or Lookup(solution.patches, shown.values, light=shown.light)
     sight = Sight(solution.patches.scene, look, hits, shown.adds)
     width, n = int(camera.width), int(camera.width) * int(camera.height)
     total, count, own = np.zeros((n, shown.values.shape[1])), np.zeros(n), np.zeros(n)

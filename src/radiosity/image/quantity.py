@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import OutputError
+from ..patches.polynomials import Polynomials
 from . import tone
 
 NAMES = {
@@ -17,6 +18,7 @@ NAMES = {
     "radiance": "radiance",
 }
 
+LIGHT = ("radiosity", "irradiance", "luminance", "radiance")
 OF_DIRECTIONS = ("luminance", "radiance")  # radiosity over pi: what a diffuse surface sends to every direction
 
 
@@ -31,6 +33,7 @@ class Quantity:
         bands: names of the columns.
         own_light: (n_patches,) bool, patches that emit; they are left out where scales are found.
         adds: values of a pane and of what is behind it add up.
+        light: the polynomials that ``values`` are the means of, where the solution has them; None elsewhere.
     """
 
     values: np.ndarray
@@ -39,6 +42,7 @@ class Quantity:
     bands: tuple[str, ...]
     own_light: np.ndarray
     adds: bool = False
+    light: Polynomials | None = None
 
 
 def choose(solution, name: str = "radiosity", band: str | int | None = None, *, single: bool = False) -> Quantity:
@@ -63,7 +67,7 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
     own = (solution.patches.emission[:, rows] > 0).any(axis=1)
     if name == "luminance" and not solution.patches.scene.photometric:
         raise OutputError("luminance is of scenes in lm and lx; this one is in W: take radiance")
-    values = _values(solution, name)[:, rows]
+    values, others = _values(solution, name)[:, rows], _others(solution, name, rows)
     base = np.asarray(solution.radiosity, np.float64)[:, rows]
     if several and band is not None:
         title += f", {names[0]}"
@@ -71,8 +75,10 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         title += ", bands weighted as the eye does" if len(names) == 3 else ", mean of the bands"
         # errors of the bands come from the same lines, so they are added as if fully correlated: never too small
         values, base, names = tone.luminance(values)[:, None], tone.luminance(base)[:, None], ["all"]
+        others = None if others is None else tone.luminance(np.moveaxis(others, 1, 2))[:, None]
+    light = None if others is None else Polynomials(solution.patches, solution.basis, values, others)
     if name != "relative_error":
-        return Quantity(values, title, _unit(solution, name), tuple(names), own, name in ("radiosity", *OF_DIRECTIONS))
+        return Quantity(values, title, _unit(solution, name), tuple(names), own, name in ("radiosity", *OF_DIRECTIONS), light)
     ratio = np.divide(values, base, out=np.full(values.shape, np.nan), where=base > 0)
     return Quantity(100 * ratio, title, "%", tuple(names), own)
 
@@ -93,6 +99,16 @@ def _values(solution, name: str) -> np.ndarray:
     if name in OF_DIRECTIONS:
         return np.asarray(solution.radiosity, np.float64) / np.pi
     return np.asarray(getattr(solution, "standard_error" if name == "relative_error" else name), np.float64)
+
+
+def _others(solution, name: str, rows: slice) -> np.ndarray | None:
+    """Return the coefficients of the light after its mean, (n_patches, n, K - 1); None where it is constant on patches."""
+    found = getattr(solution, "irradiance_coefficients", None)  # what is shown need not be a solution
+    if name not in LIGHT or found is None:
+        return None
+    if name == "irradiance":
+        return found[:, rows]
+    return solution.radiosity_coefficients[:, rows] / (np.pi if name in OF_DIRECTIONS else 1.0)
 
 
 def _unit(solution, name: str) -> str:

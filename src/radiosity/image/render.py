@@ -93,7 +93,7 @@ def render(
         raise OutputError("denoise is of a final gather with 2 samples a pixel or more; give final_gather, or leave it out")
     shown = choose(solution, quantity, band, single=false_color)
     view = choose_camera(solution, camera, width, height, hits)
-    look: Lookup | Gathered = Lookup(solution.patches, shown.values, smooth)
+    look: Lookup | Gathered = Lookup(solution.patches, shown.values, smooth, shown.light)
     if lines is not None:
         of_gather = {"lines": lines, "points": checked(view).width * view.height * samples, "seed": seed, "progress": progress}
         look = Gathered.of(solution, look, quantity, band, single=false_color, **of_gather)

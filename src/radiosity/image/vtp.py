@@ -12,7 +12,8 @@ import numpy as np
 from ..solution.replacing import replacing
 from . import display_mesh
 from .look import Look
-from .plane_fit import at_vertices
+from .polynomial_light import own_values, vertex_values
+from .quantity import choose
 
 TYPES = {"f4": "Float32", "f8": "Float64", "i4": "Int32", "i8": "Int64", "u1": "UInt8"}
 CHUNK = 3 << 20  # bytes; a multiple of 3, so that base64 can be written piece by piece
@@ -20,11 +21,17 @@ PER_PATCH = ("radiosity", "irradiance", "standard_error", "irradiance_standard_e
 
 
 def write(solution, path, look: Look) -> None:
-    """Write a VTP file. Without ``look.smooth`` each patch has vertices of its own, and there is no point data."""
+    """Write a VTP file. Without ``look.smooth`` each patch has vertices of its own, and there is point data only of
+    polynomials (`radiosity.patches.bases`)."""
     patches = solution.patches
     mesh = display_mesh.build(patches)
-    points = {"radiosity": at_vertices(patches, mesh, np.asarray(solution.radiosity, np.float64))} if look.smooth else {}
-    mesh = mesh if look.smooth else mesh.flat()[0]
+    shown, points = choose(solution), {}
+    if look.smooth:
+        points["radiosity"] = vertex_values(patches, mesh, shown)
+    else:
+        whole, (mesh, owner) = mesh, mesh.flat()
+        if shown.light is not None:
+            points["radiosity"] = own_values(whole, owner, shown)
     used = np.ones(mesh.polygons.shape, bool)
     used[:, 3] = mesh.is_quad
     cells = {name: np.asarray(getattr(solution, name), np.float64) for name in PER_PATCH}

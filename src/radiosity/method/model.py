@@ -38,6 +38,7 @@ class Method:
     control_variate: bool = False
     warm_up: bool = False
     reconstruction: str = "patches"
+    basis: str = "constant"
     coherent: bool = False
 
     def __post_init__(self):
@@ -80,5 +81,6 @@ class Method:
         extras += [] if self.absorption == "auto" else [self.absorption]
         extras += [f"first-shot={self.first_shot:g}"] if self.first_shot else []
         extras += [self.reconstruction] if self.reconstruction != "patches" else []
+        extras += [self.basis] if self.basis != "constant" else []
         extras += [name.replace("_", "-") for name in ("control_variate", "warm_up", "coherent") if getattr(self, name)]
         return "/".join([self.equation, self.lines, self.order, self.points, *extras])

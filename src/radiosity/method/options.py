@@ -4,6 +4,7 @@ Everything that tells or checks an option reads it here: docstrings, ``radiosity
 """
 
 from ..sampling.numbers import NUMBERS
+from .basis import BASES
 from .equation import EQUATIONS
 from .estimator import ABSORPTIONS, ESTIMATORS
 from .lines import LINES
@@ -75,6 +76,12 @@ METHOD = table(
         "Particles: patches (hits are counted) or local-linear (planes are fitted to them). Gather: patches or smooth.",
         details="smooth: values are smoothed over each plane, as far as noise asks for it; it needs 2 replicates or more.",
         values=RECONSTRUCTIONS,
+    ),
+    Option(
+        "basis",
+        "How light varies over a patch: constant, linear or quadratic. Of iterations.",
+        values=BASES,
+        details="See docs/bases.md.",
     ),
     Option(
         "coherent",

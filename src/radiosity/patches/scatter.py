@@ -34,6 +34,11 @@ class Scatter:
         """Return that of a single group from its `column`, for `of_rows`."""
         return Scatter(self.reflectance[:, None], None if self.through is None else self.through[:, None], self.other)
 
+    def of_moments(self, moments: np.ndarray) -> np.ndarray:
+        """Return what (n_patches, k, m) received moments are sent on as."""
+        sent = self.reflectance[:, :, None] * moments
+        return sent if self.through is None else sent + self.through[:, :, None] * moments[self.other]
+
     def of(self, values: np.ndarray) -> np.ndarray:
         """Return what (n_patches, k) received values are sent on as."""
         sent = self.reflectance * values

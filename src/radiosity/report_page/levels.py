@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import MethodError
 from ..image.lookup import Lookup
+from ..patches.polynomials import Polynomials
 from ..scene import Back, Scene
 from ..scene.named import surfaces_called
 from ..scene.up import up_axis, up_vector
@@ -84,8 +85,11 @@ def _plan(solution: Solution, surface: int, level: float, own: np.ndarray, area:
     y = bottom + (np.arange(rows) + 0.5) * (top - bottom) / rows
     points = (x[None, :, None] * right + y[:, None, None] * ahead + (level + NEAR * scene.reach) * up).reshape(-1, 3)
     hits = first_hits(scene, points, np.broadcast_to(-up, points.shape))
-    values = single(scene, solution.irradiance)[:, None]
-    seen, patch = Lookup(patches, values)(hits)
+    values, others = single(scene, solution.irradiance)[:, None], solution.irradiance_coefficients
+    light = None
+    if others is not None:
+        light = Polynomials(patches, solution.basis, values, single(scene, np.moveaxis(others, 1, 2))[:, None])
+    seen, patch = Lookup(patches, values, light=light)(hits)
     on = (patch >= 0) & (patches.surface[patch] == surface) & (np.asarray(hits.distance) < 3 * NEAR * scene.reach + 2e-3)
     on &= ~((seen[:, 0] <= 0) & _covered(scene, points, up))
     shown = np.where(on, np.maximum(seen[:, 0], 0), np.nan).reshape(rows, columns)

@@ -116,6 +116,7 @@ class Record(AbstractRecord[Solution]):
             snapshot.surface_power,
             snapshot.side_power,
             kept_warnings(),
+            *(snapshot.coefficients or (None, None)),
         )
 
     def told(self, result: Solution) -> Solution:

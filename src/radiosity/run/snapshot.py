@@ -32,7 +32,7 @@ class Snapshot:
         """
         if self.tally.settles:
             _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power
-            _ = self.books, self.asked
+            _ = self.books, self.asked, self.coefficients
             self.state = None
             self.tally.forget()
 
@@ -71,6 +71,25 @@ class Snapshot:
         if some and self.tally.counts_hits:
             usual = usual_power(mean, self.arrivals, self.problem.patches.area, self.line)
             error = least_error(mean, error, self.arrivals, self.problem.patches.area, usual, self.replicates)
+        return mean, error
+
+    @cached_property
+    def coefficients(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Mean and standard error of the coefficients of irradiance after the first, (n_patches, n_bands, K - 1) each.
+
+        None where the basis has one function.
+        """
+        size, groups, area = self.tally.basis.size, self.problem.groups, self.problem.patches.area
+        if size == 1:
+            return None
+        mean, error = (np.empty((len(area), len(groups.index), size - 1)) for _ in range(2))
+        for group in range(groups.n_groups):
+            bands = np.flatnonzero(groups.index == group)
+            unit = self.tally.irradiance(self.problem, self.state, group)[1]
+            for function in range(1, size):
+                values = self.tally.moment(self.problem, self.state, group, function)
+                found = (x * (unit / area) for x in mean_and_error(values))
+                mean[:, bands, function - 1], error[:, bands, function - 1] = (x[:, None] * groups.scale[bands] for x in found)
         return mean, error
 
     @cached_property

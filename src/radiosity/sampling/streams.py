@@ -68,6 +68,7 @@ class Purpose(IntEnum):
     YEAR_SENSORS = 20  # cosine lines of sensors
     YEAR_SENSORS_SHADOW = 21  # shadow rays of sensors through openings
     YEAR_SUN = 22  # where rays to the sun begin on patches, and where on its disc they end
+    REST = 23  # iterations of polynomials: whether the rest is dropped, a child each step
     ROUNDING = 2  # iterations: how many lines a patch fires, a child each step; they never meet the other purpose of this number
 
 

@@ -22,16 +22,19 @@ def with_bright(solution: Solution, problem: Problem, light: np.ndarray) -> tupl
 
     Args:
         problem: of the solution.
-        light: (n_patches, n_groups) what patches reflect, in shares of the unit of light.
+        light: (n_patches, n_columns) what patches reflect, in shares of the unit of light, see `mean_reflected`.
     """
-    patches, level = solution.patches, light.max(axis=1)
+    patches, size = solution.patches, solution.basis.size
+    level = light[:, ::size].max(axis=1)
     bright = _bright(sides(patches), patches.area, level)
     bright &= ~patches.scene.panes[patches.face]  # of panes only a part is solid
     if not bright.any():
         return problem, light
     emission = np.where(bright[:, None], np.nan_to_num(solution.radiosity), patches.emission)
     changed = Problem.of(replace(patches, own_emission=emission))
-    return changed, np.where(bright[:, None], 0.0, np.nan_to_num(mean_reflected(solution, changed)))
+    read = np.nan_to_num(mean_reflected(solution, changed))
+    read[bright, ::size] = 0.0  # how their light varies about its mean is still read
+    return changed, read
 
 
 def _bright(side: np.ndarray, area: np.ndarray, level: np.ndarray) -> np.ndarray:

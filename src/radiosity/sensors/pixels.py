@@ -32,7 +32,7 @@ class Gather:
     Attributes:
         solution: that lines read, in the mean over its replicates.
         geometry, problem: of its scene.
-        light: (n_patches, n_groups) what patches reflect, in shares of the unit of light.
+        light: (n_patches, n_columns) what patches reflect, in shares of the unit of light, see `mean_reflected`.
         lines: of each point, both kinds together.
         seed: that all numbers follow from.
         teller: of progress.

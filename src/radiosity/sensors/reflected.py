@@ -11,9 +11,9 @@ from ..tracing.geometry import Geometry
 
 
 def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.ndarray:
-    """Return B - E of each replicate, (replicates, n_patches, n_groups) float64, in shares of `Problem.unit`.
+    """Return B - E of each replicate, (replicates, n_patches, n_groups * K) float64, in shares of `Problem.unit`.
 
-    A solution without replicates has one.
+    With a basis of K functions a group has K coefficients. A solution without replicates has one.
     """
     unit = np.maximum(problem.unit, 1e-300)
     if solution.by_baseline or solution.replicates < 2:
@@ -29,12 +29,18 @@ def reflected(solution: Solution, geometry: Geometry, problem: Problem) -> np.nd
     found = []
     for group in range(problem.groups.n_groups):
         power, scale = algorithm.tally.irradiance(own, state, group)
-        received = np.asarray(power, np.float64) * (scale / unit[group]) / problem.patches.area
-        found.append(problem.groups.scatter.of_rows(received, group))
+        others = [algorithm.tally.moment(own, state, group, k) for k in range(1, algorithm.tally.basis.size)]
+        for one in (power, *others):
+            received = np.asarray(one, np.float64) * (scale / unit[group]) / problem.patches.area
+            found.append(problem.groups.scatter.of_rows(received, group))
     return np.stack(found, axis=-1)
 
 
 def mean_reflected(solution: Solution, problem: Problem) -> np.ndarray:
-    """Return B - E of the solution, (n_patches, n_groups) float64, in shares of `Problem.unit`."""
-    unit = np.maximum(problem.unit, 1e-300)
-    return problem.groups.scatter.of(solution.irradiance[:, problem.groups.leaders]) / unit
+    """Return B - E of the solution, (n_patches, n_groups * K) float64, in shares of `Problem.unit`; see `reflected`."""
+    unit, leaders = np.maximum(problem.unit, 1e-300), problem.groups.leaders
+    means = problem.groups.scatter.of(solution.irradiance[:, leaders]) / unit
+    if solution.irradiance_coefficients is None:
+        return means
+    others = problem.groups.scatter.of_moments(solution.irradiance_coefficients[:, leaders]) / unit[:, None]
+    return np.concatenate([means[:, :, None], others], axis=2).reshape(len(means), -1)

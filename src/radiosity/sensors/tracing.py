@@ -30,7 +30,7 @@ class Tracing:
     Attributes:
         receivers: the lanes.
         lines: what traces them.
-        read: what cosine lines read, of each group.
+        read: what cosine lines read, of each group, or each of its coefficients.
         shares: (2, count) float64, lines of both kinds of each packet, one in the mean over planes and both kinds together.
         counts: (2, count) int64, lines so far.
         brought, met: sums, of each group.
@@ -63,7 +63,7 @@ class Tracing:
         """Run the pilot.
 
         Args:
-            reflected: (replicates, n_patches, n_groups), see `sensors.reflected`.
+            reflected: (replicates, n_patches, n_columns), see `sensors.reflected`.
             direct: the light of lamps, suns and the sky counts; False: only what surfaces reflect.
             faces: that sensors lie on, see `Receivers`.
             pilot: its lines of each kind of each plane, 2 or more; 0: without it, both kinds have half of the lines.
@@ -86,9 +86,9 @@ class Tracing:
         lines = Lines.of(receivers, chances, problem, method, seed, (Purpose.SENSORS, Purpose.SENSORS_SHADOW))
         lines = lines if direct else _without_direct(lines)
         whole = np.broadcast_to(reflected, (replicates, *reflected.shape[1:]))
-        read = [upload(types.Float, whole[..., group].astype(np.float32)) for group in range(problem.groups.n_groups)]
+        read = [upload(types.Float, whole[..., column].astype(np.float32)) for column in range(whole.shape[2])]
         kinds: tuple[Any, ...] = (types.UInt64, types.Int64)
-        brought, met = ([dr.zeros(kind, receivers.lanes) for _ in read] for kind in kinds)
+        brought, met = ([dr.zeros(kind, receivers.lanes) for _ in range(lines.groups)] for kind in kinds)
         missed = [dr.zeros(types.UInt32, receivers.lanes) for _ in range(2)]
         traced = 2 * pilot * one.receivers
         return Tracing(receivers, lines, read, shares, np.zeros((2, one.count), np.int64), brought, met, missed, traced)

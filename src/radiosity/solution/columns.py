@@ -33,6 +33,7 @@ def patch_columns(solution) -> dict[str, np.ndarray]:
         for i, band in enumerate(bands):
             label = f"{title} {band}" if len(bands) > 1 else title
             columns[f"{label} [{measure}]" if measure else label] = np.asarray(values)[:, i]
+    columns |= _coefficients(solution, bands, received)
     columns["arrivals"] = np.asarray(solution.arrivals)
     columns["few arrivals"] = (np.asarray(solution.few) & ~sides_of(solution).dark).astype(int)
     low, high = solution.interval(0.95, "irradiance")
@@ -43,4 +44,17 @@ def patch_columns(solution) -> dict[str, np.ndarray]:
         one = photopic(patches.scene, np.asarray(values))
         if one is not None:  # errors of bands are of the same lines: their sum is never too small
             columns[f"{title}illuminance [lx]"] = one
+    return columns
+
+
+def _coefficients(solution, bands: list[str], unit: str) -> dict[str, np.ndarray]:
+    """Return the columns of the coefficients of polynomials after the mean, and of their errors (docs/bases.md)."""
+    columns, several = {}, len(bands) > 1
+    if getattr(solution, "irradiance_coefficients", None) is None:
+        return columns
+    parts = ("", solution.irradiance_coefficients), ("standard error of ", solution.irradiance_coefficients_standard_error)
+    for title, values in parts:
+        for i, band in enumerate(bands):
+            for k in range(values.shape[2]):
+                columns[f"{title}irradiance coefficient {k + 1}{f' {band}' if several else ''} [{unit}]"] = values[:, i, k]
     return columns

@@ -5,6 +5,7 @@ from typing import Any
 
 from .model import Solution
 from .npz import (
+    BASIS_ARRAYS,
     FORMAT,
     FORMAT_OF_LIGHTS,
     FORMAT_OF_OWN,
@@ -40,7 +41,7 @@ def _restore(arrays: dict[str, Any], meta: dict[str, Any]) -> Solution:
     scalars = {name: meta[name] for name in SCALARS}
     scalars["books"] = tuple(scalars["books"])
     scalars[WARNINGS] = tuple(meta.get(WARNINGS, ()))
-    scalars |= {"state": state, **{name: arrays.get(name) for name in POWER_ARRAYS}}
+    scalars |= {"state": state, **{name: arrays.get(name) for name in (*POWER_ARRAYS, *BASIS_ARRAYS)}}
     solution = Solution(patches, *(arrays[name] for name in SOLUTION_ARRAYS), **scalars)
     validate(solution)
     return solution

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..hooks import HOOKS
+from ..patches.bases import CONSTANT, Basis, of_size
 from ..patches.model import Patches
 from ..scene.model import Back
 from . import intervals, means
@@ -42,6 +43,9 @@ class Solution:
         side_power: (2, replicates, 2 n_surfaces, n_bands) float64, the same powers for front and back of each surface in turn.
             None where no back radiates, and in files of older versions.
         warnings: what the run warned of; on the command line also what reading the scene did. Empty in files of older versions.
+        irradiance_coefficients: (n_patches, n_bands, K - 1) float64, in the unit of the irradiance: the coefficients after the
+            mean of its polynomial on each patch, where the method's basis has K functions (`basis`); else None.
+        irradiance_coefficients_standard_error: the same shape; NaN (unknown) without replicates.
 
     Example:
         >>> solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), rays=10_000)
@@ -65,6 +69,8 @@ class Solution:
     surface_power: np.ndarray | None = None
     side_power: np.ndarray | None = None
     warnings: tuple[str, ...] = ()
+    irradiance_coefficients: np.ndarray | None = None
+    irradiance_coefficients_standard_error: np.ndarray | None = None
 
     @cached_property
     def radiosity(self) -> np.ndarray:
@@ -83,6 +89,17 @@ class Solution:
         do not depend on each other.
         """
         return self.patches.scatter.error_of(self.irradiance_standard_error)
+
+    @property
+    def basis(self) -> Basis:
+        """The basis of the light on patches."""
+        found = self.irradiance_coefficients
+        return CONSTANT if found is None else of_size(found.shape[2] + 1)
+
+    @cached_property
+    def radiosity_coefficients(self) -> np.ndarray | None:
+        """The coefficients after the mean of the radiosity on each patch, (n_patches, n_bands, K - 1); None with constants."""
+        return None if self.irradiance_coefficients is None else self.patches.scatter.of_moments(self.irradiance_coefficients)
 
     @property
     def bands(self) -> tuple[str, ...]:

@@ -32,4 +32,5 @@ PAINT_ARRAYS = ("image", "uv", "color")
 SOLUTION_ARRAYS = ("irradiance", "irradiance_standard_error", "arrivals")
 POWER_ARRAYS = ("surface_power", "side_power")  # arrays that may be missing
 WARNINGS = "warnings"  # a list of texts, which may be missing
+BASIS_ARRAYS = ("irradiance_coefficients", "irradiance_coefficients_standard_error")  # only of bases of several functions
 SCALARS = ("rays", "seconds", "quanta", "replicates", "books", "status", "provenance")

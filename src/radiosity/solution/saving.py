@@ -5,7 +5,17 @@ from pathlib import Path
 
 import numpy as np
 
-from .npz import FORMAT, FORMAT_OF_LIGHTS, FORMAT_OF_OWN, OWN_ARRAYS, POWER_ARRAYS, SCALARS, SOLUTION_ARRAYS, WARNINGS
+from .npz import (
+    BASIS_ARRAYS,
+    FORMAT,
+    FORMAT_OF_LIGHTS,
+    FORMAT_OF_OWN,
+    OWN_ARRAYS,
+    POWER_ARRAYS,
+    SCALARS,
+    SOLUTION_ARRAYS,
+    WARNINGS,
+)
 from .stored_patches import stored
 from .whole import whole_file
 
@@ -23,7 +33,7 @@ def save(solution, path: Path, *, derived: bool = True) -> None:
     """
     arrays, facts = stored(solution.patches)
     arrays |= {name: getattr(solution, name) for name in SOLUTION_ARRAYS}
-    arrays |= {name: getattr(solution, name) for name in POWER_ARRAYS if getattr(solution, name) is not None}
+    arrays |= {name: getattr(solution, name) for name in (*POWER_ARRAYS, *BASIS_ARRAYS) if getattr(solution, name) is not None}
     if derived:
         arrays |= {"radiosity": solution.radiosity, "standard_error": solution.standard_error}
     arrays |= {f"state_{name}": value for name, value in solution.state.items()}

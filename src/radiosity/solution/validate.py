@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from ..patches.bases import BASES
 from ..patches.model import Patches
 from ..scene import panes
 from ..scene.lights.given import fault_of, light_bands
@@ -41,8 +42,26 @@ def validate(solution: Solution) -> None:
         if power is not None:
             _array("powers", power, "f", (2, solution.replicates, many * len(scene.names), bands))
             _that((np.abs(power) <= MOST).all(), "powers that are not finite")
+    _coefficients(solution, (n_patches, bands), bool(none_yet))
     history = solution.history
     _that(history.ndim == 2 and history.shape[1] == 2 and history.dtype.kind in "fiu", "a history of another shape")
+
+
+def _coefficients(solution: Solution, shape: tuple[int, int], none_yet: bool) -> None:
+    """Refuse coefficients that are not those of the basis of the run's choices."""
+    choices = solution.provenance.get("choices")
+    basis = BASES.get(choices.get("basis", "constant") if isinstance(choices, dict) else "constant")
+    _that(basis is not None, "a basis of no known name")
+    if basis is None or basis.size == 1 or none_yet:
+        _that(solution.irradiance_coefficients is None or none_yet, "coefficients without a basis")
+        return
+    mean, error = solution.irradiance_coefficients, solution.irradiance_coefficients_standard_error
+    _that(mean is not None and error is not None, "no coefficients of its basis")
+    if mean is not None and error is not None:
+        for name, value in (("coefficients", mean), ("errors of coefficients", error)):
+            _array(name, value, "f", (*shape, basis.size - 1))
+        _that((np.abs(mean) <= MOST).all(), "coefficients that are not finite")
+        _that((np.isnan(error) | ((error >= 0) & (error <= MOST))).all(), "errors of coefficients out of range")
 
 
 def validate_patches(patches: Patches, n_patches: int) -> None:

@@ -15,12 +15,15 @@ import numpy as np
 from ..device.backend import frozen, upload
 from ..device.launches import shared
 from ..method import Method
+from ..patches.bases import CONSTANT, Basis
 from ..sampling.streams import Purpose, Seed, stream
 from ..tracing.geometry import Geometry
 from ..tracing.lanes import Batch, Launch
 from ..tracing.line_tracer import LineTracer
+from ..tracing.spots import traced
 from .hit_counts import HitCounts
 from .hit_tally import DENSE
+from .moments import Moments
 
 FEW = 1 << 13  # batches of at most this many lines share one kernel
 
@@ -35,11 +38,13 @@ class Ends:
 
     Attributes:
         density: (slots,) Float, expected lines of each patch by its area, any unit; positive where it fires; 0 behind patches.
-        carried: (slots * n_groups,) Float, the power by area, in fixed point units times the unit of density; 0 behind patches.
+        carried: (slots * n_columns,) Float, the power by area, in fixed point units times the unit of density; 0 behind patches.
+        groups: how many groups of bands it has; None: those of the shooter.
     """
 
     density: Any
     carried: Any
+    groups: int | None = None
 
 
 class Shooter:
@@ -49,15 +54,26 @@ class Shooter:
         tracer: lines of the patches, with the numbers of the sequence that is taken now.
         hits: the hit counts.
         fired: UInt32 (total,), lines of each patch in that sequence.
-        received: (slots * n_groups,) Int64, power of the last shot, group g of slot s at s * n_groups + g.
+        basis: of the light on patches.
+        received: (slots * n_columns,) Int64, power of the last shot. A slot has a column for each group of bands, or with a basis
+            of K functions K columns for each: the power times each function, summed.
     """
 
-    def __init__(self, geometry: Geometry, method: Method, seed: Seed | int, replicates: int, n_groups: int, sequences: int = 1):
+    def __init__(
+        self,
+        geometry: Geometry,
+        method: Method,
+        seed: Seed | int,
+        replicates: int,
+        n_groups: int,
+        sequences: int = 1,
+        basis: Basis = CONSTANT,
+    ):
         self.tracer = tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates)
         self.types, self.total, self.slots, self.groups = tracer.types, tracer.total, tracer.slots, n_groups
-        self.hits = HitCounts(tracer)
+        self.hits, self.basis = HitCounts(tracer), basis
         self.fired = dr.opaque(self.types.UInt32, 0, self.total)
-        self.received = dr.opaque(self.types.Int64, 0, self.slots * n_groups) if n_groups else None
+        self.received = dr.opaque(self.types.Int64, 0, self.slots * n_groups * basis.size) if n_groups else None
         self.sequence, self._tracers, self._fired = 0, [tracer], [self.fired]
         for more in range(1, sequences):
             streams = [stream(seed, r, Purpose.SEQUENCE, more) for r in range(replicates)]
@@ -81,14 +97,16 @@ class Shooter:
 
         Args:
             counts: (total,) UInt32, lines that each patch number fires now.
-            weights: (total * n_groups,) Int32, what each line of a patch number adds to the slot that it hits.
+            weights: (total * n_groups,) Int32, what each line of a patch number adds to the slot that it hits; with a basis of
+                more functions (total * n_columns,) Float, the coefficients of a polynomial.
             ends: what lines add at both ends, in place of ``weights``.
             pairs: called for every launch with patch numbers and the slots that their lines hit, (m,) uint32 each; the
                 arrays are valid until it returns.
         """
         types, tracer = self.types, self.tracer
         if self.groups:
-            self.received = dr.opaque(types.Int64, 0, self.slots * self.groups)
+            groups = self.groups if ends is None or ends.groups is None else ends.groups
+            self.received = dr.opaque(types.Int64, 0, self.slots * groups * self.basis.size)
         dr.eval(counts, weights)
         rows: Any = dr.compress(counts > 0)
         if dr.width(rows) == 0:
@@ -108,10 +126,13 @@ class Shooter:
     def _fire(self, launch: Launch, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode) -> None:
         types, tracer = self.types, self.tracer
         number, index, record = launch.read(types)
-        landed = tracer.trace(number, index, record, bits)
         real = launch.mask(types)
+        if self.basis.size > 1:
+            landed = self._fire_moments(number, index, record, bits, weights, ends, real, mode)
+        else:
+            landed = tracer.trace(number, index, record, bits)
         self.hits.add(landed, real, mode)
-        for g in range(self.groups):
+        for g in range(self.groups if self.basis.size == 1 else 0):
             here, there = number * self.groups + g, landed * self.groups + g
             if ends is None:
                 self._add(types.Int64(dr.gather(types.Int, weights, here)), there, real, mode)
@@ -126,6 +147,21 @@ class Shooter:
             dr.eval(self.hits.arrivals, self.received)
         if pairs is not None:
             pairs(frozen(number)[: launch.lanes], frozen(landed)[: launch.lanes])
+
+    def _fire_moments(self, number, index, record, bits: int, weights, ends: Ends | None, real, mode):
+        """Add what lines bring to moments, and return the slots that they hit."""
+        landed, begin, end = traced(self.tracer, number, index, record, bits)
+        groups = self.groups if ends is None or ends.groups is None else ends.groups
+        moments = Moments(self.basis, groups, self.total, self.types)
+
+        def add(value, column, counts):
+            self._add(value, column, real & counts, mode)
+
+        if ends is None:
+            moments.forth(weights, number, landed, begin, end, add)
+        else:
+            moments.both(ends, number, landed, begin, end, add)
+        return landed
 
     def _add(self, value, index, real, mode) -> None:
         dr.scatter_add(self.received, value, index, active=real, mode=mode)

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ..image import density_mesh, display_mesh
-from ..image.plane_fit import at_vertices
+from ..image.polynomial_light import own_values, vertex_values
 from ..image.quantity import Quantity
 from .picking import Cut
 from .subject import Subject
@@ -78,14 +78,14 @@ class Shapes:
         if not smooth:
             mesh, owner = self._flat
             corners, patch = self._flat_corners
-            return Triangles(mesh.vertices, quantity.values[owner], corners, patch)
+            return Triangles(mesh.vertices, own_values(self._smooth, owner, quantity), corners, patch)
         fitted = band is None and name in ("radiosity", "irradiance") and quantity.values.shape[1] == len(self._bands)
         if fitted and solution is not None and density_mesh.estimated(solution):
             mesh, values, first = density_mesh.display(solution, name)
             corners, polygon = mesh.triangles()
             return Triangles(mesh.vertices, values, corners, first[polygon])
         corners, patch = self._smooth_corners
-        return Triangles(self._smooth.vertices, at_vertices(self.subject.patches, self._smooth, quantity.values), corners, patch)
+        return Triangles(self._smooth.vertices, vertex_values(self.subject.patches, self._smooth, quantity), corners, patch)
 
     def at(self, subject: Subject) -> "Shapes":
         """Return the meshes of another solution of the same patches."""

@@ -9,12 +9,14 @@ import numpy as np
 from ...device.backend import upload
 from ...device.recorded import loop
 from ...method import Method
+from ...patches.bases import of_size
 from ...problem.model import Problem
 from ...sampling.numbers import AbstractNumbers, ready
 from ...sampling.streams import Seed, stream
 from ...tracing.against import light_along, sends
 from ...tracing.hits import Hit, first_hit, patch_of
 from ...tracing.ray_generation import before, place_number
+from ...tracing.spots import spot_of
 from .chances import Chances
 from .glow import Glow
 from .packets import ESCAPED, LOST, Packets
@@ -88,7 +90,7 @@ class Lines:
 
         Args:
             done, counts: of each packet, (count,) int: the lines of each patch so far, and now.
-            read: of each group, the reflected radiosity of each lane, Float.
+            read: of each group, the reflected radiosity of each lane, Float; or its K coefficients in a basis, group by group.
             keep: UInt32, line number times lanes plus lane: takes the lane's place where the line hits, or
                 `packets.ESCAPED` or `LOST`.
             bins: ``bins(lane, direction, value)`` is called with what each line brings of the first group, in fixed point.
@@ -103,6 +105,7 @@ class Lines:
         normal, row = frame.normal * frame.side, chances.row(place)
         base, lanes, scale = replicate * packets.read_width, dr.opaque(UInt32, packets.lanes), dr.opaque(Float, self.unit)
         one, none = UInt32(1), UInt32(0)
+        size = 1 if read is None else len(read) // self.groups
         dr.eval(start, count, row, base)
 
         def values_of(hit: Hit, met, origin, direction):
@@ -111,8 +114,17 @@ class Lines:
             where = dr.gather(UInt32, packets.place_on_device, met)
             if read is not None:
                 there = where < packets.read_width
-                values = [value + dr.gather(Float, b, base + where, there) for value, b in zip(values, read, strict=True)]
+                here = [dr.gather(Float, b, base + where, there) for b in read]
+                if size > 1:
+                    here = light_at(here, spot_of(geometry, met, there, hit))
+                values = [value + one for value, one in zip(values, here, strict=True)]
             return where, values
+
+        def light_at(coefficients, spot):
+            functions = of_size(size).functions(spot.a, spot.b, spot.select)
+            parts = (coefficients[at : at + size] for at in range(0, len(coefficients), size))
+            found = (sum(c * value for c, value in zip(part, functions, strict=True)) for part in parts)
+            return [dr.clip(value, -self.most, self.most) for value in found]  # so that sums hold them
 
         def nearest(origin, direction):
             hit = first_hit(geometry, origin, direction, coherent=packets.coherent)

@@ -39,6 +39,10 @@ class Iteration(AbstractAlgorithm[IterationState]):
         return self.scheme.quanta
 
     @property
+    def sizes(self) -> Sizes:
+        return self.exchange.sizes
+
+    @property
     def stage_independent(self) -> bool:
         return False
 
@@ -85,4 +89,4 @@ class Iteration(AbstractAlgorithm[IterationState]):
 
     @property
     def tally(self) -> IterationTally:
-        return IterationTally()
+        return IterationTally(self.exchange.basis)

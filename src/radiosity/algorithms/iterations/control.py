@@ -16,6 +16,7 @@ from ...tally.shooter import Ends
 from .exchange import BITS, LINE, Exchange
 from .state import ControlState
 
+UNIT = 2**20  # fixed point units of one missed line, in moments
 SHARE = 8  # one line in 8 measures the share of missed lines
 
 
@@ -23,15 +24,17 @@ class Control:
     """The constants of all replicates and groups, and the share of its lines that each patch misses.
 
     Attributes:
-        beta: (replicates, groups) float64, in units of Phi over the scene's area.
+        beta: (replicates, columns) float64, in units of Phi over the scene's area; 0 in columns of other functions than 1.
         missed: (2, replicates, n_patches) int64, probing lines escaped and lost.
+        moments: (replicates, n_patches, K - 1) int64, the sums of the other functions where missed lines begin, times `UNIT`.
         probed: (replicates, n_patches) int64, probing lines fired.
     """
 
     def __init__(self, exchange: Exchange):
         self.exchange, n, replicates = exchange, exchange.n, exchange.replicates
-        self.beta = np.zeros((replicates, exchange.groups))
+        self.beta = np.zeros((replicates, exchange.columns))
         self.missed = np.zeros((2, replicates, n), np.int64)
+        self.moments = np.zeros((replicates, n, exchange.basis.size - 1), np.int64)
         self.probed = np.zeros((replicates, n), np.int64)
         self._kept: Any = None  # `kept` on the device
 
@@ -39,6 +42,13 @@ class Control:
         """Fire ``lines`` of each replicate, evenly over all area and at least one a patch, to count which are missed."""
         exchange, types = self.exchange, self.exchange.types
         counts = dr.maximum(exchange.counts(types.UInt64(exchange.area * dr.opaque(types.Float64, float(lines) * LINE))), 1)
+        fired = self._probe(counts) if exchange.basis.size == 1 else self._probe_moments(counts)
+        self._kept = None
+        self.probed += np.array(counts, np.int64).reshape(exchange.replicates, exchange.n)
+        return fired
+
+    def _probe(self, counts) -> int:
+        exchange, types = self.exchange, self.exchange.types
         slots, groups, replicates = exchange.shooter.slots, exchange.groups, exchange.replicates
         carried = np.zeros((slots, groups), np.float32)
         carried[-2 * replicates : -replicates], carried[-replicates:] = 1, LINE
@@ -46,47 +56,72 @@ class Control:
         fired = exchange.shoot(counts, ends=ends)
         seen = np.array(exchange.patches(exchange.shooter.received)).reshape(replicates, exchange.n, groups)[..., 0]
         self.missed += [seen % LINE, seen >> BITS]
-        self._kept = None
-        self.probed += np.array(counts, np.int64).reshape(replicates, exchange.n)
+        return fired
+
+    def _probe_moments(self, counts) -> int:
+        """Count missed lines as two groups of bands see them: one sees those that escape, the other those that are lost."""
+        exchange, types = self.exchange, self.exchange.types
+        slots, size, replicates = exchange.shooter.slots, exchange.basis.size, exchange.replicates
+        carried = np.zeros((slots, 2, size), np.float32)
+        carried[-2 * replicates : -replicates, 0, 0], carried[-replicates:, 1, 0] = UNIT, UNIT
+        ends = Ends(dr.opaque(types.Float, 0.5, slots), upload(types.Float, carried), groups=2)
+        fired = exchange.shoot(counts, ends=ends)
+        seen = np.array(exchange.shooter.received)[: exchange.total * 2 * size].reshape(replicates, exchange.n, 2, size)
+        self.missed += np.moveaxis(seen[..., 0], 2, 0) // UNIT
+        self.moments += seen[..., 1:].sum(axis=2)
         return fired
 
     def kept(self) -> np.ndarray:
-        """The share f_i of lines that hit patches, from all probing lines so far, (replicates, n_patches) float64."""
-        return kept(self.missed, self.probed)
+        """The share f_i of lines that hit patches, and its other moments, (replicates, n_patches, K) float64."""
+        return moments_kept(self.missed, self.moments, self.probed)
 
     def constant(self):
-        """Return the power A_i beta / Phi of the constant on each patch, (total * groups,) Float64."""
+        """Return the power A_i beta / Phi of the constant on each patch, (total * columns,) Float64."""
         exchange = self.exchange
-        return exchange.by_group(self.beta) * exchange.by_patch(exchange.area)
+        return exchange.by_column(self.beta) * exchange.by_patch(exchange.area)
 
     def received(self):
-        """Return the power f_i A_i beta / Phi that patches receive of the constant, (total * groups,) Float64."""
+        """Return the power f_i A_i beta / Phi that patches receive of the constant, and its moments, (total * columns,)."""
         if self._kept is None:
-            self._kept = upload(self.exchange.types.Float64, self.kept())
-        return self.constant() * self.exchange.by_patch(self._kept)
+            kept = np.tile(self.kept(), self.exchange.groups)
+            self._kept = upload(self.exchange.types.Float64, kept)
+        exchange, size = self.exchange, self.exchange.basis.size
+        constant = np.repeat(self.beta[:, ::size], size, axis=1)
+        return exchange.by_column(constant) * exchange.by_patch(exchange.area) * self._kept
 
     def adapt(self, power) -> None:
         """Take the area-weighted median of the radiosity, where the lines' power, sum A |B - beta|, is least."""
         exchange = self.exchange
-        value = np.array(power).reshape(exchange.replicates, exchange.n, exchange.groups) / exchange.areas[:, None]
+        value = np.array(power).reshape(exchange.replicates, exchange.n, exchange.columns) / exchange.areas[:, None]
         for replicate in range(exchange.replicates):
-            for group in range(exchange.groups):
+            for group in range(0, exchange.columns, exchange.basis.size):
                 self.beta[replicate, group] = median(value[replicate, :, group], exchange.areas)
 
     def capture(self) -> ControlState:
         """Return copies of the numbers."""
         beta, missed, probed = self.beta.copy(), self.missed.copy(), self.probed.copy()
-        return ControlState(sizes=self.exchange.sizes, beta=beta, probe_missed=missed, probed=probed)
+        moments = self.moments.copy() if self.exchange.basis.size > 1 else None
+        return ControlState(sizes=self.exchange.sizes, beta=beta, probe_missed=missed, probed=probed, probe_moments=moments)
 
     def restore(self, state: ControlState) -> None:
         """Set the numbers to captured ones."""
         self.beta, self.missed, self.probed = state.beta.copy(), state.probe_missed.copy(), state.probed.copy()
+        if state.probe_moments is not None:
+            self.moments = state.probe_moments.copy()
         self._kept = None
 
 
 def kept(missed: np.ndarray, probed: np.ndarray) -> np.ndarray:
     """Return the share of the probing lines that hit patches."""
     return 1 - missed.sum(axis=0) / np.maximum(probed, 1)
+
+
+def moments_kept(missed: np.ndarray, moments: np.ndarray | None, probed: np.ndarray) -> np.ndarray:
+    """Return the share of the probing lines that hit patches, and its other moments, (replicates, n_patches, K) float64."""
+    first = kept(missed, probed)[..., None]
+    if moments is None:
+        return first
+    return np.concatenate([first, -moments / (UNIT * np.maximum(probed, 1))[..., None]], axis=2)
 
 
 def median(values: np.ndarray, weights: np.ndarray) -> float:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...device.backend import frozen, small, upload
 from ...method import Method
+from ...patches.bases import BASES
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...sampling.streams import Purpose, Seed, stream
@@ -28,17 +29,19 @@ TURNS = 2  # sequences that steps take in turn where both ends of a line score (
 class Exchange:
     """Sends powers along lines, and receives them.
 
-    Arrays over patches and groups are flat, group g of patch number m at m * n_groups + g.
+    Arrays over patches and columns are flat, column c of patch number m at m * n_columns + c. A group of bands has a column for
+    each function of the basis: the power of a patch times the coefficient of its polynomial, the first of which is the power.
 
     Attributes:
         shooter: fires the lines.
-        n, replicates, groups, total: sizes; total is n * replicates.
+        basis: of the light on patches.
+        n, replicates, groups, columns, total: sizes; total is n * replicates.
         area: (total,) Float64, share of each patch in the area of all.
-        rho: (total * groups,) Float64, reflectance, rounded as in the firing engine.
+        rho: (total * columns,) Float64, reflectance, rounded as in the firing engine.
         tau: the same of diffuse transmittance; None where nothing diffuses light.
-        beyond: (total * groups,) UInt32, the entry of the other side of each; None where nothing diffuses light.
-        emitted: (total * groups,) Float64, E_i A_i over Phi.
-        group: (total * groups,) UInt32, replicate * n_groups + group of each entry.
+        beyond: (total * columns,) UInt32, the entry of the other side of each; None where nothing diffuses light.
+        emitted: (total * columns,) Float64, E_i A_i over Phi.
+        column: (total * columns,) UInt32, replicate * n_columns + column of each entry.
         step: the number of steps so far: each has rounding offsets of its own.
         turns: the number of sequences of points that steps take in turn; a warm-up has as many others.
         first: the first of the sequences that are used now.
@@ -47,33 +50,38 @@ class Exchange:
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
         groups = problem.groups
         self.seed, self.replicates, self.groups = seed, replicates, groups.n_groups
+        self.basis = BASES[method.basis]
+        self.columns = self.groups * self.basis.size
         self.two_ended = method.estimator == "bidirectional"
         self.turns, self.first = TURNS if self.two_ended else 1, 0
         sequences = self.turns * (2 if self.two_ended and method.warm_up else 1)
-        self.shooter = Shooter(geometry, method, seed, replicates, self.groups, sequences)
+        self.shooter = Shooter(geometry, method, seed, replicates, self.groups, sequences, self.basis)
         self.types, self.n, self.total = self.shooter.types, len(problem.patches), self.shooter.total
         self.areas = problem.patches.area / problem.patches.area.sum()
         self.area = self._tiled(self.areas[:, None])
-        self.rho = self._tiled(Source.fixed(groups.reflectance) * 2.0**-32)
+        self.rho = self._tiled(self._by_function(Source.fixed(groups.reflectance) * 2.0**-32))
         self.tau: Any = None
         self.beyond: Any = None
         if groups.through is not None and groups.other is not None:
-            self.tau = self._tiled(Source.fixed(groups.through) * 2.0**-32)
+            self.tau = self._tiled(self._by_function(Source.fixed(groups.through) * 2.0**-32))
             numbers = np.arange(replicates)[:, None] * self.n + groups.other
-            entries = numbers.reshape(-1, 1) * self.groups + np.arange(self.groups)
+            entries = numbers.reshape(-1, 1) * self.columns + np.arange(self.columns)
             self.beyond = upload(self.types.UInt32, entries.astype(np.uint32))
-        self.emitted = self._tiled(groups.emission * problem.patches.area[:, None] / problem.source.power)
+        emitted = groups.emission * problem.patches.area[:, None] / problem.source.power
+        if self.basis.size > 1:  # emission is constant on a patch
+            emitted = self._by_function(emitted) * (np.arange(self.columns) % self.basis.size == 0)
+        self.emitted = self._tiled(emitted)
         self.replicate = self.shooter.tracer.replicate(dr.arange(self.types.UInt32, self.total))
         every = np.arange(replicates)
         slots = np.concatenate([np.repeat(every, self.n), every, every])
-        self.slot_replicate = upload(self.types.UInt32, np.repeat(slots, self.groups).astype(np.uint32))
-        row = dr.arange(self.types.UInt32, self.total * self.groups)
-        self.group = self.by_patch(self.replicate) * self.groups + row % self.groups
-        dr.eval(self.replicate, self.group)
+        self.slot_replicate = upload(self.types.UInt32, np.repeat(slots, self.columns).astype(np.uint32))
+        row = dr.arange(self.types.UInt32, self.total * self.columns)
+        self.column = self.by_patch(self.replicate) * self.columns + row % self.columns
+        dr.eval(self.replicate, self.column)
         self.step = 0
 
     def scattered(self, values):
-        """Return what patches send on of received values, (total * groups,) Float64."""
+        """Return what patches send on of received values, (total * columns,) Float64."""
         sent = self.rho * values
         if self.tau is None:
             return sent
@@ -83,30 +91,42 @@ class Exchange:
     @property
     def sizes(self) -> Sizes:
         """The sizes of states."""
-        return Sizes(self.replicates, self.n, self.groups)
+        return Sizes(self.replicates, self.n, self.columns)
 
     def _tiled(self, values: np.ndarray):
         return upload(self.types.Float64, np.tile(values.ravel(), self.replicates))
 
     def by_patch(self, values):
-        """Spread a (total,) array over the groups."""
-        return values if self.groups == 1 else dr.repeat(values, self.groups)
+        """Spread a (total,) array over the columns."""
+        return values if self.columns == 1 else dr.repeat(values, self.columns)
+
+    def _by_function(self, values: np.ndarray) -> np.ndarray:
+        """Spread (n, groups) over the columns."""
+        return values if self.basis.size == 1 else np.repeat(values, self.basis.size, axis=1)
 
     def by_replicate(self, values: np.ndarray):
         """Spread (replicates,) float64 over patches, to (total,) Float64."""
         return dr.gather(self.types.Float64, small(self.types.Float64, values), self.replicate)
 
     def by_slot(self, values: np.ndarray):
-        """Spread (replicates,) float64 over slots and groups."""
+        """Spread (replicates,) float64 over slots and columns."""
         return dr.gather(self.types.Float64, small(self.types.Float64, values), self.slot_replicate)
 
-    def by_group(self, values: np.ndarray):
-        """Spread (replicates, groups) float64 over patches, to (total * groups,) Float64."""
-        return dr.gather(self.types.Float64, small(self.types.Float64, values), self.group)
+    def by_column(self, values: np.ndarray):
+        """Spread (replicates, columns) float64 over patches, to (total * columns,) Float64."""
+        return dr.gather(self.types.Float64, small(self.types.Float64, values), self.column)
 
     def largest(self, values):
-        """Return the largest magnitude of the groups, from (total * groups,) to (total,)."""
-        return dr.abs(values) if self.groups == 1 else dr.block_reduce(dr.ReduceOp.Max, dr.abs(values), self.groups)
+        """Return the largest magnitude of the groups, from (total * columns,) to (total,).
+
+        That of a polynomial is the root of its mean square over the patch, from all its coefficients.
+        """
+        if self.basis.size == 1:
+            sizes = dr.abs(values)
+        else:
+            dr.eval(values)
+            sizes = dr.sqrt(dr.block_reduce(dr.ReduceOp.Add, values * values, self.basis.size))
+        return sizes if self.groups == 1 else dr.block_reduce(dr.ReduceOp.Max, sizes, self.groups)
 
     def sums(self, values) -> np.ndarray:
         """Return the sum of (total,) whole numbers in each replicate, (replicates,)."""
@@ -152,12 +172,12 @@ class Exchange:
         """Send powers; `Shooter.received` then holds what arrived.
 
         Args:
-            power: (total * groups,) Float64, signed, in the units of received power; below 2^30 of them for each expected line.
+            power: (total * columns,) Float64, signed, in the units of received power; below 2^30 of them for each expected line.
             expected: (total,) UInt64, mean number of lines that patches fire, times LINE; positive where there is power.
 
         Returns:
             Lines fired, and a function that reads the power that left each replicate in them, (replicates, groups) int64; None
-            where both ends score.
+            where both ends score, or lines carry polynomials.
         """
         types = self.types
         counts = self.counts(expected)
@@ -166,26 +186,29 @@ class Exchange:
             return self.shoot(counts, ends=self._ends(power, mean)), None
         # a patch that surely fires divides its power among its lines; one that may not fire sends it over its probability
         lines = dr.select(expected >= LINE, types.Float64(counts), mean)
-        weights = types.Int(dr.round(power / self.by_patch(dr.select(lines > 0, lines, 1.0))))
+        share = power / self.by_patch(dr.select(lines > 0, lines, 1.0))
+        if self.basis.size > 1:
+            return self.shoot(counts, types.Float(share)), None
+        weights = types.Int(dr.round(share))
         dr.eval(weights)
         return self.shoot(counts, weights), lambda: self._left(weights, counts)
 
     def _left(self, weights, counts) -> np.ndarray:
         """Return the power that left along lines, (replicates, groups) int64."""
         types = self.types
-        total = dr.opaque(types.Int64, 0, self.replicates * self.groups + 1)
+        total = dr.opaque(types.Int64, 0, self.replicates * self.columns + 1)
         left = types.Int64(weights) * types.Int64(self.by_patch(counts))
-        dr.scatter_add(total, left, self.group, mode=dr.ReduceMode.Expand)
-        return frozen(total)[:-1].reshape(self.replicates, self.groups)
+        dr.scatter_add(total, left, self.column, mode=dr.ReduceMode.Expand)
+        return frozen(total)[:-1].reshape(self.replicates, self.columns)
 
     def _ends(self, power, mean) -> Ends:
         types = self.types
         none = dr.zeros(types.Float, 2 * self.replicates)
         density = dr.concat([types.Float(mean / self.area), none])
-        carried = dr.concat([types.Float(power / self.by_patch(self.area)), dr.repeat(none, self.groups)])
+        carried = dr.concat([types.Float(power / self.by_patch(self.area)), dr.repeat(none, self.columns)])
         dr.eval(density, carried)
         return Ends(density, carried)
 
     def patches(self, received):
-        """Return the part of the patches of an array over slots and groups, (total * groups,)."""
-        return dr.gather(type(received), received, dr.arange(self.types.UInt32, self.total * self.groups))
+        """Return the part of the patches of an array over slots and columns, (total * columns,)."""
+        return dr.gather(type(received), received, dr.arange(self.types.UInt32, self.total * self.columns))

@@ -16,6 +16,7 @@ from ...problem.model import Problem
 from ..base import Swept
 from .control import SHARE, Control, source_constant
 from .exchange import LINE, Exchange
+from .polynomials import end_of_polynomials
 from .state import IncrementalState
 
 
@@ -23,22 +24,22 @@ class Incremental:
     """Power received and unsent of all replicates, in units of a quantum / LINE.
 
     Attributes:
-        received: (slots * groups,) Int64, all that arrived.
-        unsent: (total * groups,) Float64, whole numbers.
-        emitted, fired: (replicates, groups) int64, the power that sources gave and that left along lines.
+        received: (slots * columns,) Int64, all that arrived.
+        unsent: (total * columns,) Float64, whole numbers.
+        emitted, fired: (replicates, columns) int64, the power that sources gave and that left along lines.
     """
 
     def __init__(self, exchange: Exchange, problem: Problem, control: Control | None):
         self.exchange, self.control, self.quanta = exchange, control, 0
         types = exchange.types
-        self.received = upload(types.Int64, np.zeros(exchange.shooter.slots * exchange.groups, np.int64))
-        self.unsent = upload(types.Float64, np.zeros(exchange.total * exchange.groups))
-        self.emitted, self.fired = (np.zeros((exchange.replicates, exchange.groups), np.int64) for _ in range(2))
+        self.received = upload(types.Int64, np.zeros(exchange.shooter.slots * exchange.columns, np.int64))
+        self.unsent = upload(types.Float64, np.zeros(exchange.total * exchange.columns))
+        self.emitted, self.fired = (np.zeros((exchange.replicates, exchange.columns), np.int64) for _ in range(2))
         self.probing = 0
         if control is not None:
             groups, area = problem.groups, problem.patches.area
             best = [source_constant(*columns, area) for columns in zip(groups.emission.T, groups.scatter.albedo.T, strict=True)]
-            control.beta[:] = np.array(best) * area.sum() / problem.source.power
+            control.beta[:, :: exchange.basis.size] = np.array(best) * area.sum() / problem.source.power
 
     def advance(self, quanta: int, swept: Swept) -> None:
         """Send all power that patches must send at N quanta."""
@@ -58,7 +59,7 @@ class Incremental:
             source += np.array(exchange.scattered(self.control.received()) - self.control.constant())
         new = np.rint(source * (float(more) * LINE))
         self.unsent = upload(types.Float64, np.array(self.unsent) + new)
-        self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.groups).sum(axis=1)
+        self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.columns).sum(axis=1)
 
     def step(self) -> int:
         """Make one iteration, and return its number of lines; 0 when all is sent."""
@@ -68,7 +69,10 @@ class Incremental:
         exchange, types = self.exchange, self.exchange.types
         if not dr.any(self.unsent != 0):
             return 0  # no step is counted: a run that continues here calls this twice
-        lines, fired = exchange.send(self.unsent, types.UInt64(exchange.largest(self.unsent)))
+        expected = types.UInt64(exchange.largest(self.unsent))
+        if exchange.basis.size > 1:
+            self.unsent, expected = end_of_polynomials(exchange, self.unsent, self.quanta)
+        lines, fired = exchange.send(self.unsent, expected)
         self.fired += 0 if fired is None else fired()
         self.received += exchange.shooter.received
         self.unsent = dr.round(exchange.scattered(types.Float64(exchange.patches(exchange.shooter.received))))
@@ -82,7 +86,7 @@ class Incremental:
 
     def capture(self) -> IncrementalState:
         """Return copies of the power."""
-        whole = not self.exchange.two_ended and self.control is None
+        whole = not self.exchange.two_ended and self.control is None and self.exchange.basis.size == 1
         return IncrementalState(
             sizes=self.exchange.sizes,
             received=np.array(self.received),

@@ -16,7 +16,7 @@ class Plan:
     """Counters of a replicate; they are the same for all replicates.
 
     Attributes:
-        n: the number of patches.
+        n: the least lines of an iteration: the number of patches, or more where lines carry polynomials.
         mean: the mean reflectance, about the factor by which light falls from bounce to bounce.
         quanta, done: lines to trace up to the end of this stage, and lines traced so far.
         summed, count: lines of the iterations in the mean, and the number of these iterations.

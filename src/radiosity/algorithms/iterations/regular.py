@@ -25,6 +25,7 @@ from .control import Control
 from .exchange import LINE, Exchange
 from .incremental import Incremental
 from .plan import START, Plan
+from .polynomials import least_lines
 from .state import RegularState
 
 FORGET = {1: 1 / 2, 2: 7 / 8}  # least weight of an iteration in the source that takes it, by turns
@@ -36,22 +37,22 @@ class Regular:
     """Means over the iterations of all replicates.
 
     Attributes:
-        received: (slots * groups,) Float64, the mean of R_k over Phi.
-        sources: (total * groups,) Float64 each, A over Phi: for each turn, of what steps of the other turn received.
+        received: (slots * columns,) Float64, the mean of R_k over Phi.
+        sources: (total * columns,) Float64 each, A over Phi: for each turn, of what steps of the other turn received.
         weights: (replicates,) float64, the sum of the weights of all R_k in the mean.
-        constants: (replicates, groups) float64, the mean of beta_k.
+        constants: (replicates, columns) float64, the mean of beta_k.
         plan: the number of lines of each iteration.
     """
 
     def __init__(self, exchange: Exchange, problem: Problem, control: Control | None, warm_up: bool):
         self.exchange, self.control, types = exchange, control, exchange.types
         rho, area = problem.groups.scatter.albedo.max(axis=1), problem.patches.area
-        self.plan = Plan(exchange.n, min(float(rho @ area / area.sum()), 0.99))
+        self.plan = Plan(least_lines(exchange), min(float(rho @ area / area.sum()), 0.99))
         self.total = TOTAL * (1 - float(rho.max()))
         self.warm = Incremental(exchange, problem, None) if warm_up else None
-        self.received = upload(types.Float64, np.zeros(exchange.shooter.slots * exchange.groups))
-        self.sources = [upload(types.Float64, np.zeros(exchange.total * exchange.groups)) for _ in range(exchange.turns)]
-        self.weights, self.constants = np.zeros(exchange.replicates), np.zeros((exchange.replicates, exchange.groups))
+        self.received = upload(types.Float64, np.zeros(exchange.shooter.slots * exchange.columns))
+        self.sources = [upload(types.Float64, np.zeros(exchange.total * exchange.columns)) for _ in range(exchange.turns)]
+        self.weights, self.constants = np.zeros(exchange.replicates), np.zeros((exchange.replicates, exchange.columns))
 
     def advance(self, quanta: int, swept: Swept) -> None:
         """Iterate until a replicate has traced N lines."""

@@ -1,5 +1,7 @@
 """The state of iterations between two steps.
 
+With a basis of K functions, groups in the layouts of arrays are columns: K for each group of bands (`Exchange`).
+
 Each step draws its rounding offsets by its number, and all replicates of a run make the same number of steps: as many as the one
 that needs most. So the steps of an incremental solution change the numbers of all later steps, in all replicates.
 """
@@ -75,11 +77,13 @@ class ControlState(Record):
         beta: (replicates, groups) float64, constants.
         probe_missed: (2, replicates, n_patches) int64, probing lines escaped and lost.
         probed: (replicates, n_patches) int64, probing lines fired.
+        probe_moments: (replicates, n_patches, K - 1) int64, other moments of missed lines; only with a basis of K functions.
     """
 
     beta: np.ndarray = array("replicates", "groups")
     probe_missed: np.ndarray = array(2, "replicates", "rows")
     probed: np.ndarray = array("replicates", "rows")
+    probe_moments: np.ndarray | None = array("replicates", "rows", "any", optional=True)
 
 
 def _steps(layout, values: list, records: list["IterationState"]) -> int:

@@ -1,18 +1,28 @@
 """The tally of iterations."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ...patches.bases import CONSTANT, Basis
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...solution.books import Books, by_difference, exact_sum, exact_totals
 from ..base import AbstractTally, line_of_quanta
-from .control import kept
+from .control import moments_kept
 from .exchange import LINE
 from .state import IncrementalState, IterationState
 
 
+@dataclass(frozen=True)
 class IterationTally(AbstractTally[IterationState]):
-    """Reads power received, in fixed point, where ``scale`` times it is the share of Phi, and adds that of a control variate."""
+    """Reads power received, in fixed point, where ``scale`` times it is the share of Phi, and adds that of a control variate.
+
+    Attributes:
+        basis: of the light on patches.
+    """
+
+    basis: Basis = CONSTANT
 
     def lines(self, problem: Problem, state: IterationState) -> int:
         return int(state.fired.sum(dtype=np.uint64))
@@ -21,8 +31,11 @@ class IterationTally(AbstractTally[IterationState]):
         return state.arrivals.sum(axis=0, dtype=np.int64)
 
     def irradiance(self, problem: Problem, state: IterationState, group: int) -> tuple[np.ndarray, float]:
-        values, _ = _received(problem, state, group)
+        values, _ = _received(problem, state, group, self.basis.size)
         return values, problem.source.power
+
+    def moment(self, problem: Problem, state: IterationState, group: int, function: int) -> np.ndarray:
+        return _received(problem, state, group, self.basis.size, function)[0]
 
     def line(self, problem: Problem, state: IterationState, group: int) -> np.ndarray | float:
         """Return the power of a line from the number of lines traced, which in short stages is larger than that of quanta."""
@@ -31,23 +44,29 @@ class IterationTally(AbstractTally[IterationState]):
     def books(self, problem: Problem, state: IterationState, group: int) -> dict:
         if isinstance(state.scheme, IncrementalState) and state.scheme.left is not None:
             return _exact(problem, state, state.scheme, group)
-        values, missed = _received(problem, state, group)
+        values, missed = _received(problem, state, group, self.basis.size)
         power, area = problem.source.power, problem.patches.area
         absorbed = float((values.mean(axis=0) * power) @ (1 - problem.groups.scatter.albedo[:, group]))
         escaped, lost = (float(x) * power for x in missed.mean(axis=1))
         return by_difference(float(problem.groups.emission[:, group] @ area), absorbed, escaped, lost)
 
 
-def _received(problem: Problem, state: IterationState, group: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return shares of Phi: received by patches, (replicates, n_patches), and escaped and lost, (2, replicates)."""
+def _received(problem: Problem, state: IterationState, group: int, size: int, function: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Return shares of Phi: received by patches, (replicates, n_patches), and escaped and lost, (2, replicates).
+
+    Args:
+        size: the number of functions of the basis.
+        function: whose moment of the power is returned; that of the first is the power itself.
+    """
     replicates, n = state.fired.shape
     scheme, control = state.scheme, state.control
-    received = scheme.received.reshape(replicates * (n + 2), -1)[:, group] * scheme.scale
+    received = scheme.received.reshape(replicates * (n + 2), -1)[:, group * size + function] * scheme.scale
     values, missed = received[: replicates * n].reshape(replicates, n), received[replicates * n :].reshape(2, replicates)
     if control is not None:
-        beta = (control.beta if isinstance(scheme, IncrementalState) else scheme.constants)[:, group, None]
+        beta = (control.beta if isinstance(scheme, IncrementalState) else scheme.constants)[:, group * size, None]
         area = problem.patches.area / problem.patches.area.sum()
-        values = values + beta * area * kept(control.probe_missed, control.probed)
+        kept = moments_kept(control.probe_missed, control.probe_moments, control.probed)
+        values = values + beta * area * kept[..., function]
         shares = control.probe_missed / np.maximum(control.probed, 1)
         missed = missed + beta[:, 0] * (shares @ area)
     return values, missed
