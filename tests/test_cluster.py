@@ -99,6 +99,16 @@ def test_a_split_state_merged_is_the_state(grey):
     assert not divisible(MatrixState)  # of pairs of all replicates
 
 
+def test_lines_and_view_factors_are_those_of_one_machine(client, grey):
+    options = {"rays": 30_000, "replicates": 3, "seed": 4}
+    alone, lines = (rd.trace_lines(grey, **options, **more) for more in ({}, {"cluster": client}))
+    assert lines.provenance == alone.provenance
+    assert lines.rays == alone.rays
+    options |= {"method": "lines", "error": None}
+    one, other = (rd.view_factors(grey, **options, **more) for more in ({}, {"cluster": client}))
+    assert np.array_equal(one.matrix, other.matrix)
+
+
 # ---- one replicate on several workers -----------------------------------------------------------------------------------
 
 CUT = {

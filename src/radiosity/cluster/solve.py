@@ -9,6 +9,7 @@ from ..algorithms.firing.algorithm import Firing
 from ..algorithms.in_parts import InParts, in_parts
 from ..errors import DeviceError, RadiosityWarning, result_kept
 from ..run.part import together
+from ..run.record import Record
 from ..run.result import R
 from ..run.run import Run
 from .connect import connected
@@ -53,7 +54,7 @@ def _spread(whole: AbstractAlgorithm, crew: DaskCrew, run: Run) -> AbstractAlgor
     if isinstance(whole, Firing) and not whole.counters.coherent and not begun and len(crew.present()) > whole.replicates:
         whole.counters.firer = DaskFirer(crew)
         return whole
-    return InParts(whole, crew)
+    return InParts(whole, crew, waits=not isinstance(run.record, Record))
 
 
 def _next(run: Run) -> str:
