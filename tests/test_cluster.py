@@ -1,6 +1,7 @@
 """Runs on a cluster of Dask have the bits of runs on one machine, however many workers there are and whatever becomes of them."""
 
 import signal
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from iterations import open_room
 from test_merge import FIRST, INCREMENTAL, PARTS, TOGETHER, assert_same
 
 import radiosity as rd
+from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.algorithms.matrix.state import MatrixState
 from radiosity.algorithms.merging import merge as merge_states
 from radiosity.algorithms.splitting import divisible, split
@@ -15,7 +17,7 @@ from radiosity.run import budget
 from radiosity.run.solve import prepared
 
 distributed = pytest.importorskip("distributed", reason="distributed is not installed")
-from radiosity.cluster import connect, crew, worker  # noqa: E402
+from radiosity.cluster import connect, crew, wavefronts, worker  # noqa: E402
 from radiosity.cluster.job import Job  # noqa: E402
 
 QUANTA = 3 << 12  # stages at 4096 (of 5 replicates), 8192 and 12288
@@ -95,6 +97,42 @@ def test_a_split_state_merged_is_the_state(grey):
         one, other = state.arrays(), merge_states(split(state, [2, 1, 2])).arrays()
         assert all(np.array_equal(one[key], other[key]) for key in one | other), name
     assert not divisible(MatrixState)  # of pairs of all replicates
+
+
+def test_lines_and_view_factors_are_those_of_one_machine(client, grey):
+    options = {"rays": 30_000, "replicates": 3, "seed": 4}
+    alone, lines = (rd.trace_lines(grey, **options, **more) for more in ({}, {"cluster": client}))
+    assert lines.provenance == alone.provenance
+    assert lines.rays == alone.rays
+    options |= {"method": "lines", "error": None}
+    one, other = (rd.view_factors(grey, **options, **more) for more in ({}, {"cluster": client}))
+    assert np.array_equal(one.matrix, other.matrix)
+
+
+# ---- one replicate on several workers -----------------------------------------------------------------------------------
+
+CUT = {
+    "grey": ("room", {}, {}),
+    "depth-first": ("room", {"order": "depth-first"}, {}),
+    "colours": ("cornell-box", {}, {}),
+    "random numbers": ("room", {"numbers": "random"}, {}),
+}
+
+
+@some(["grey", "colours"], ["depth-first", "random numbers"])
+def test_one_replicate_on_two_workers(client, name, monkeypatch):
+    scene, choices, options = CUT[name]
+    monkeypatch.setattr(wavefronts, "FEWEST", 64)
+    monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 256})
+    patches, units = rd.subdivide(rd.load_scene(scene), cells=2), []
+    submit = wavefronts.DaskFirer._submit
+    monkeypatch.setattr(wavefronts.DaskFirer, "_submit", lambda *of: (units.append(of[1]), submit(*of)))
+    given = {"replicates": 1, "quanta": 20_000} | options | choices
+    found = solved(patches, "random-walk", cluster=client, **given)
+    assert len(units) > 10
+    firsts = [one for unit in units for one in unit]
+    assert any(np.isin(one.rows, other.rows).any() for one, other in pairwise(firsts))  # lines of one row went to both
+    assert_same(found, solved(patches, "random-walk", **given))
 
 
 # ---- interruptions, and workers that come and go ------------------------------------------------------------------------

@@ -17,6 +17,7 @@ from radiosity.diagnostics.leaks import follow
 from radiosity.factors.missed import missed
 from radiosity.image import render
 from radiosity.run.run import Run
+from radiosity.tracing import lanes
 from radiosity.tracing.first_hits import first_hits
 from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.global_lines.spans import Spans
@@ -242,3 +243,22 @@ def test_runs_at_once_give_the_bits_of_runs_alone():
     for thread, _ in threads:
         thread.join()
     assert [found for _, found in threads] == [{"result": 0}, {"result": 0}]
+
+
+def test_walks_that_stop_within_a_stage_go_on_with_another_number_of_threads(monkeypatch):
+    """A state counts its launches in chunks, and not in launches, whose size depends on the threads."""
+    monkeypatch.setattr(lanes, "CHUNK", 1 << 10)
+    monkeypatch.setattr(lanes, "CORE_CHUNK", 1 << 8)
+    patches, options = rd.subdivide(rd.load_scene("room"), cells=1), {"quanta": 20_000, "replicates": 2, "seed": 3}
+
+    def stop(moment):
+        if moment.rays > 0:
+            signal.raise_signal(signal.SIGINT)
+
+    whole = rd.solve(patches, "particle-tracing", **options)
+    with device.threads(16):
+        stopped = rd.solve(patches, "particle-tracing", **options, progress=stop, checkpoint=None)
+    assert stopped.status == "interrupted"
+    assert stopped.state["launches"] == 4
+    found = rd.solve(patches, "particle-tracing", **options, resume=stopped)
+    assert all(np.array_equal(found.state[name], whole.state[name]) for name in whole.state)

@@ -99,11 +99,12 @@ class InParts(AbstractAlgorithm[AbstractState]):
     Args:
         whole: the algorithm of all replicates. It reads states, and results from them.
         crew: brings the parts forward.
+        waits: `capture` within a stage returns the state at its beginning, not that of the parts.
     """
 
-    def __init__(self, whole: AbstractAlgorithm, crew: AbstractCrew):
+    def __init__(self, whole: AbstractAlgorithm, crew: AbstractCrew, *, waits: bool = False):
         super().__init__(whole.geometry, whole.problem, whole.method, whole.seed, whole.replicates)
-        self.whole, self.crew = whole, crew
+        self.whole, self.crew, self.before = whole, crew, whole.capture() if waits else None
         self._quanta, self._shares, self._state = 0, list[Share](), None
 
     @property
@@ -137,6 +138,8 @@ class InParts(AbstractAlgorithm[AbstractState]):
         self.tally.forget()
         if quanta != self._quanta or not self._shares:
             self._shares = self._cut()
+        if self.before is not None and self._state is not None:
+            self.before = self._state
         self._quanta, self._state = quanta, None
         self.crew.complete(self, self._shares, quanta, swept)
         # where all is one part, the state may be of a kind that has no parts
@@ -158,9 +161,8 @@ class InParts(AbstractAlgorithm[AbstractState]):
         return _shares(counts, split(self._state, counts))
 
     def capture(self) -> AbstractState:
-        if self._state is not None:
-            return self._state
-        return PartsState(sizes=self.sizes, quanta=self._quanta, shares=tuple(self._shares))
+        state = self.before if self._state is None else self._state
+        return state or PartsState(sizes=self.sizes, quanta=self._quanta, shares=tuple(self._shares))
 
     def read(self, arrays: Arrays, sizes: Sizes) -> AbstractState:
         if TABLE not in arrays:

@@ -36,6 +36,7 @@ class Tracing:
         seed: Seed of all random numbers. Equal seeds give equal results.
         device: auto, cpu or cuda.
         memory: Memory limit, such as 8G or none. Default: 70 % of what is free.
+        cluster: Trace lines on the workers of Dask, as of `radiosity solve`: tcp://HOST:PORT, or local:N.
     """
 
     rays: Count = None
@@ -49,6 +50,7 @@ class Tracing:
     seed: Seed = 0
     device: DeviceName = "auto"
     memory: str | None = None
+    cluster: str | None = None
 
 
 TracingOptions = Annotated[Tracing, Parameter(name="*", group=Group("Lines and patches", sort_key=1))]

@@ -61,6 +61,7 @@ class LineRunning(Machine):
         checkpoint: An .npz file that keeps the lines so far, written about every 30 seconds, for --resume after a crash. It is
             removed at the end. Default: for runs of a minute and more, beside the output.
         no_checkpoint: Write no checkpoint.
+        cluster: Trace on the workers of Dask, as of `radiosity solve`: tcp://HOST:PORT, or local:N.
     """
 
     replicates: Count = 8
@@ -68,6 +69,7 @@ class LineRunning(Machine):
     resume: Path | None = None
     checkpoint: Path | None = None
     no_checkpoint: Flag = False
+    cluster: str | None = None
 
 
 class Plain:
@@ -116,7 +118,7 @@ def lines(
     try:
         with bar() as progress:
             given: dict[str, Any] = asdict(budget) | {
-                name: getattr(run, name) for name in ("seed", "device", "replicates", "first_replicate", "memory")
+                name: getattr(run, name) for name in ("seed", "device", "replicates", "first_replicate", "memory", "cluster")
             }
             found = rd.trace_lines(
                 _patches(loaded, size, before, run, progress),

@@ -63,7 +63,7 @@ class DaskCrew(AbstractCrew):
     _seconds: float = SECONDS
     _deaths: int = 0
     _told: set[str] = field(default_factory=set)
-    _awake: threading.Event = field(default_factory=threading.Event)
+    awake: threading.Event = field(default_factory=threading.Event)
 
     # ---- workers ---------------------------------------------------------------------------------------------------
 
@@ -84,10 +84,10 @@ class DaskCrew(AbstractCrew):
 
     def cut(self, replicates: int) -> list[int]:
         """One part a worker; all replicates in one where they must advance together."""
-        parts = 1 if self.together else min(max(len(self._present()), 1), replicates)
+        parts = 1 if self.together else min(max(len(self.present()), 1), replicates)
         return [replicates * (at + 1) // parts - replicates * at // parts for at in range(parts)]
 
-    def _present(self) -> dict[str, int]:
+    def present(self) -> dict[str, int]:
         """Return the workers; where there are none yet, wait for the first for a while."""
         begun = time.monotonic()
         while not (there := self.workers()) and time.monotonic() - begun < LONELY:
@@ -106,12 +106,12 @@ class DaskCrew(AbstractCrew):
                 if workers:
                     lonely = time.monotonic()
                 elif time.monotonic() - lonely > LONELY:
-                    self._tell("there are no workers; the run goes on when one comes")
+                    self.tell("there are no workers; the run goes on when one comes")
                 self._split(shares, active, workers)
                 self._hand_out(run, shares, active, quanta, workers)
                 with aside():
-                    self._awake.wait(AWAKE)
-                self._awake.clear()
+                    self.awake.wait(AWAKE)
+                self.awake.clear()
                 swept(self._take_back(run, shares, active))
         finally:
             for future in active:
@@ -160,7 +160,7 @@ class DaskCrew(AbstractCrew):
         unit = Unit(self.job.key, share.first, share.count, quanta, token, self._seconds)
         # no other worker: Dask leaves tasks alone whose workers have all gone, also when others come; `_take_back` sees that
         future = self.client.submit(advance, unit, arrays, pure=False, workers=[address], key=f"radiosity-{uuid.uuid4().hex}")
-        future.add_done_callback(lambda _: self._awake.set())
+        future.add_done_callback(lambda _: self.awake.set())
         active[future] = Active(share, address, time.monotonic())
 
     def _take_back(self, run: InParts, shares: list[Share], active: dict[Any, Active]) -> int:
@@ -178,7 +178,7 @@ class DaskCrew(AbstractCrew):
                     self._died(one)
                 continue
             self._deaths = 0
-            self._check(outcome, one.address)
+            self.check(outcome.facts, outcome.address)
             state = run.whole.read(owned(outcome.arrays), replace(run.sizes, replicates=one.share.count))
             at = next(at for at, share in enumerate(shares) if share is one.share)
             shares[at] = Share(one.share.first, one.share.count, state, outcome.done)
@@ -187,7 +187,7 @@ class DaskCrew(AbstractCrew):
             wall = time.monotonic() - one.begun
             self._seconds = min(max(SECONDS, TIMES * (wall - outcome.seconds)), MOST_SECONDS)
             for text in outcome.told:
-                self._tell(text)
+                self.tell(text)
             if outcome.ended:
                 raise Interrupted(outcome.ended)
         return lines
@@ -222,15 +222,18 @@ class DaskCrew(AbstractCrew):
                 "Their logs say why: often too little memory (take larger patches or fewer replicates)"
             )
 
-    def _check(self, outcome: Outcome, address: str) -> None:
-        here = facts()
-        differs = [f"{name} {value} there, {here[name]} here" for name, value in outcome.facts.items() if value != here[name]]
-        if differs:
-            raise DeviceError(
-                f"worker {outcome.address} would give other bits: {'; '.join(differs)}. Install the same on all machines"
-            )
+    def check(self, there: dict[str, str], address: str) -> None:
+        """Refuse a worker that would give other bits.
 
-    def _tell(self, text: str) -> None:
+        Raises:
+            DeviceError: it has other versions of packages, or another kind of processor.
+        """
+        here = facts()
+        differs = [f"{name} {value} there, {here[name]} here" for name, value in there.items() if value != here[name]]
+        if differs:
+            raise DeviceError(f"worker {address} would give other bits: {'; '.join(differs)}. Install the same on all machines")
+
+    def tell(self, text: str) -> None:
         """Warn, once for each text."""
         if text not in self._told:
             self._told.add(text)

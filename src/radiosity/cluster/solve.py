@@ -4,14 +4,18 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
-from ..algorithms.in_parts import InParts
+from ..algorithms.base import AbstractAlgorithm
+from ..algorithms.firing.algorithm import Firing
+from ..algorithms.in_parts import InParts, in_parts
 from ..errors import DeviceError, RadiosityWarning, result_kept
 from ..run.part import together
+from ..run.record import Record
 from ..run.result import R
 from ..run.run import Run
 from .connect import connected
 from .crew import DaskCrew
 from .job import Job
+from .wavefronts import DaskFirer
 
 
 def solve(cluster: Any, prepared: Callable[[], Run[R]]) -> R:
@@ -30,7 +34,7 @@ def solve(cluster: Any, prepared: Callable[[], Run[R]]) -> R:
         crew = DaskCrew(client, Job(run.problem, run.method, run.part.seed, run.device.name), together(run.method))
         crew.register()
         try:
-            run.spread = lambda whole: InParts(whole, crew)
+            run.spread = lambda whole: _spread(whole, crew, run)
             solution = run.solve()
         except KeyboardInterrupt:
             if crew.lost:
@@ -42,6 +46,15 @@ def solve(cluster: Any, prepared: Callable[[], Run[R]]) -> R:
             with result_kept():
                 warnings.warn(f"{crew.lost}: the run has ended before its end; {_next(run)}", RadiosityWarning, stacklevel=2)
         return solution
+
+
+def _spread(whole: AbstractAlgorithm, crew: DaskCrew, run: Run) -> AbstractAlgorithm:
+    """Return the algorithm of a run: in parts of its replicates, or in cut wavefronts where there are more workers than those."""
+    begun = run.resume is not None and in_parts(run.resume.state)
+    if isinstance(whole, Firing) and not whole.counters.coherent and not begun and len(crew.present()) > whole.replicates:
+        whole.counters.firer = DaskFirer(crew)
+        return whole
+    return InParts(whole, crew, waits=not isinstance(run.record, Record))
 
 
 def _next(run: Run) -> str:

@@ -4,13 +4,14 @@ import time
 import uuid
 import warnings
 from collections import OrderedDict
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ..algorithms.base import Interrupted
+from ..algorithms.firing.elsewhere import Hits, Lines, fire_here
 from ..device.backend import threads
 from ..device.turn import turn
 from .job import Job, facts
@@ -88,6 +89,53 @@ def drop(key: str) -> None:
         _live.pop(one, None)
 
 
+@dataclass(frozen=True, eq=False)
+class Fired:
+    """What lines of a wavefront brought, and the time that they took."""
+
+    hits: list[Hits]
+    seconds: float
+    address: str
+    facts: dict[str, str]
+
+
+def fire(key: str, lines: list[Lines]) -> Fired:
+    """Fire lines of a wavefront.
+
+    Raises:
+        Missing: this worker has no such job.
+    """
+    begun = time.perf_counter()
+    if key not in _jobs:
+        raise Missing("job")
+    address, count = _here()
+    with turn(), threads(count):
+        hits = list(fire_all(_jobs[key], [owned_lines(one) for one in lines]))
+    return Fired(hits, time.perf_counter() - begun, address, facts())
+
+
+def fire_all(job: Job, lines: list[Lines]) -> Iterator[Hits]:
+    """Yield the hits of lines, one replicate after the other; counters of some replicates stay for later wavefronts."""
+    for one in lines:
+        place = (job.key, one.replicate, 0)
+        _, counters = _live.pop(place, ("", None))
+        counters = job.algorithm(one.replicate, 1).counters if counters is None else counters
+        yield fire_here(counters, one)
+        _keep(place, "", counters)
+
+
+def owned_lines(lines: Lines) -> Lines:
+    """Return a copy, see `owned`."""
+    arrays = {name: value for name, value in vars(lines).items() if isinstance(value, np.ndarray)}
+    return replace(lines, **owned(arrays))
+
+
+def _keep(place: tuple[str, int, int], token: str, kept: Any) -> None:
+    _live[place] = (token, kept)
+    while len(_live) > KEPT:
+        _live.popitem(last=False)
+
+
 def owned(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return copies of arrays that came over the network: those may be misaligned, read-only or shared."""
     return {name: np.array(value, order="C") for name, value in arrays.items()}
@@ -126,9 +174,7 @@ def advance(unit: Unit, arrays: Mapping[str, np.ndarray] | None) -> Outcome:
         except Interrupted as reason:
             ended = str(reason)
         state, token = algorithm.capture().arrays(), uuid.uuid4().hex
-        _live[unit.job, unit.first, unit.count] = (token, algorithm)
-        while len(_live) > KEPT:
-            _live.popitem(last=False)
+        _keep((unit.job, unit.first, unit.count), token, algorithm)
     texts = tuple(dict.fromkeys(str(one.message) for one in told))
     return Outcome(state, token, lines, done, time.perf_counter() - begun, ended, texts, address, facts())
 

@@ -1,5 +1,7 @@
 """`view_factors`, which makes view factors from a scene or from lines that were traced before."""
 
+from typing import Any
+
 import numpy as np
 
 from ..device.backend import choose
@@ -44,6 +46,7 @@ def view_factors(
     device: str = "auto",
     progress: Listener | None = None,
     memory: str | float | None = None,
+    cluster: Any = None,
 ) -> ViewFactors:
     """Return view factors between surfaces, groups of surfaces or patches.
 
@@ -67,6 +70,7 @@ def view_factors(
         sources: names of small surfaces that get more lines, as of `trace_lines`.
         numbers: the sequence of points of lines, as of `Method`.
         device, progress, memory: as of `solve`.
+        cluster: as of `solve`, for lines; pairs of polygons are traced here.
 
     Returns:
         The factors. Those of lines are as counted, see `ViewFactors.restored`; those of polygons are restored.
@@ -90,7 +94,7 @@ def view_factors(
         target, patches = FactorTarget.of(error, error_of), _cut(scene, group)
         target.check(groups_of(patches, group).names)
         options: dict = {"group": group, "method": method, "replicates": replicates, "seed": seed, "sources": sources}
-        options |= {"numbers": numbers, "device": device, "progress": progress, "memory": memory}
+        options |= {"numbers": numbers, "device": device, "progress": progress, "memory": memory, "cluster": cluster}
         return until(target, lambda work: view_factors(patches, rays=work, **options), len(patches), replicates, rays)
     Budget(rays=USUAL if rays is None else rays)  # refuses what is no number of lines
     work = int(USUAL if rays is None else rays)
@@ -124,7 +128,7 @@ def view_factors(
                     pairs = FacingPairs.of(geometry, len(groups.names), choice.sample.facing)
                     return _polygons(pairs, groups, choice.spent, replicates, number, facts)
         warn_of_narrow(geometry, groups)
-        lines = trace_lines(patches, rays=work, progress=progress, resume=pilot, **arguments)
+        lines = trace_lines(patches, rays=work, progress=progress, resume=pilot, cluster=cluster, **arguments)
         return from_lines(lines.pairs, groups, lines.rays, facts | {"line_set": lines.provenance}, lines.status)
 
 

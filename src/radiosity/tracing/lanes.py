@@ -120,22 +120,35 @@ class Batch:
         """True where a lane has more than one line."""
         return not isinstance(self.each, int)
 
-    def launches(self, types) -> "Iterator[Launch]":
-        """Yield launches of a bounded number of lanes."""
-        cuda = dr.backend_v(types.UInt32) is dr.JitBackend.CUDA
-        most = CUDA_CHUNK if cuda else max(CHUNK, CORE_CHUNK * dr.thread_count())
-        for start in range(0, self.total, most):
-            width = min(most, self.total - start)
-            first, end = dr.opaque(types.UInt64, start), dr.opaque(types.UInt64, start + width)  # no literals: one kernel for all
+    def launches(self, types, begin: int = 0, end: int | None = None) -> "Iterator[Launch]":
+        """Yield launches of a bounded number of lanes: a multiple of `chunk`, whatever the number of threads.
+
+        Args:
+            begin, end: the first lane, and the one after the last; all by default.
+        """
+        whole, cuda = chunk(types), dr.backend_v(types.UInt32) is dr.JitBackend.CUDA
+        most = whole if cuda else max(1, CORE_CHUNK * dr.thread_count() // whole) * whole
+        stop = self.total if end is None else min(end, self.total)
+        for start in range(begin, stop, most):
+            width = min(most, stop - start)
+            first, last = (
+                dr.opaque(types.UInt64, start),
+                dr.opaque(types.UInt64, start + width),
+            )  # no literals: one kernel for all
             # each entry writes its rank where its lanes begin; the running maximum carries it to all of them
             rank = dr.zeros(types.UInt32, few_sizes(width))
-            here = (self.lanes > 0) & (self.begins < end) & (self.begins + types.UInt64(self.lanes) > first)
+            here = (self.lanes > 0) & (self.begins < last) & (self.begins + types.UInt64(self.lanes) > first)
             at = types.UInt32(dr.maximum(self.begins, first) - first)
             dr.scatter(rank, dr.arange(types.UInt32, dr.width(self.numbers)), at, active=here)
             rank = dr.block_prefix_reduce(dr.ReduceOp.Max, rank, dr.width(rank), exclusive=False)
             dr.eval(rank)
             rank = dr.reshape(types.UInt32, rank, max(width, 2), shrink=True)
-            yield Launch(self, rank, first, end, width, max(width, 2))
+            yield Launch(self, rank, first, last, width, max(width, 2))
+
+
+def chunk(types) -> int:
+    """Return the lanes of a chunk, in which states count: launches have whole ones, on any number of threads."""
+    return CUDA_CHUNK if dr.backend_v(types.UInt32) is dr.JitBackend.CUDA else CHUNK
 
 
 def lanes_of(counts, shift):

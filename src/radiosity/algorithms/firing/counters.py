@@ -23,6 +23,8 @@ from ...tally.hit_tally import AbstractHitTally, hit_tally
 from ...tracing.geometry import Geometry
 from ...tracing.lanes import PIECE, Batch, Launch, Wavefront, boxes_for, sums
 from ...tracing.line_tracer import LineTracer
+from ..base import Interrupted
+from .elsewhere import AbstractFirer, fire_elsewhere
 
 MANY = 4  # after wavefronts of at least a line for 4 patches, all patches are looked through, and no flags are kept
 FEW = 1 << 13  # up to this many lines, the host sorts the slots that they hit: that is faster than to look through all flags
@@ -42,6 +44,7 @@ class FiringCounters:
         panes: the far sides of diffusing panes, or None.
         quanta: N of the stage that began last.
         has_due: True where some row may still have to fire a line.
+        firer: fires wavefronts elsewhere; None: here.
     """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
@@ -61,6 +64,7 @@ class FiringCounters:
         self.quanta = 0
         self.everywhere, self.has_due = True, False
         self.swept = 0  # lines of the wavefronts so far
+        self.firer: AbstractFirer | None = None  # where lines are fired elsewhere
 
     def set_quanta(self, quanta: int) -> None:
         """Begin a stage: N for each replicate; it may only grow."""
@@ -192,7 +196,16 @@ class FiringCounters:
     # ---- firing ----------------------------------------------------------------------------------------------------
 
     def fire(self, wavefront: Wavefront, largest: int) -> None:
-        """Trace all lines of a wavefront and count their hits."""
+        """Trace all lines of a wavefront and count their hits.
+
+        Raises:
+            Interrupted: they were fired elsewhere, and the run is to end; the counters are whole.
+        """
+        if self.firer is not None:
+            fire_elsewhere(self, wavefront, largest, self.firer)
+            if self.firer.over:
+                raise Interrupted("interrupted")
+            return
         types = self.types
         bits = self.tracer.numbers.bits_for(largest)
         few = wavefront.total <= FEW
@@ -214,9 +227,9 @@ class FiringCounters:
 
     def batches(self, wavefront: Wavefront, shifts: tuple[int, ...] = ()) -> Iterator[Batch]:
         """Yield the batches of a wavefront, with 2^shift lines a lane."""
-        return wavefront.batches(self.types, self._target_counts_before, self.fired, self.tracer.record, shifts)
+        return wavefront.batches(self.types, self.target_counts_before, self.fired, self.tracer.record, shifts)
 
-    def _target_counts_before(self, numbers):
+    def target_counts_before(self, numbers):
         """Return the target counts of patch numbers when the wavefront was fixed, from the hit counts that bands keep.
 
         It is for wavefronts that keep no counts.

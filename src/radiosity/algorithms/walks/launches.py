@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from typing import Any, TypeVar
 
-from ...tracing.lanes import Batch, Launch
+from ...tracing.lanes import Batch, Launch, chunk
 from ..base import AbstractAlgorithm, Swept
 from .state import AbstractLaunchState
 
@@ -47,11 +47,11 @@ class AbstractWalks(AbstractAlgorithm[S]):
             self._before, self._quanta, self._done, self._finished = self._quanta, quanta, 0, False
         batch, largest = self._sources(self._before, self._quanta)
         if batch is not None:
-            for at, launch in enumerate(batch.launches(self.geometry.device.types)):
-                if at >= self._done:
-                    lines = self._follow(launch, largest)
-                    self._done = at + 1
-                    swept(lines)
+            whole = chunk(self.geometry.device.types)
+            for launch in batch.launches(self.geometry.device.types, self._done * whole):
+                lines = self._follow(launch, largest)
+                self._done += -(-launch.lanes // whole)
+                swept(lines)
         self._finished = True
 
     def capture(self) -> S:

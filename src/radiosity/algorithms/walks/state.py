@@ -15,7 +15,7 @@ class AbstractLaunchState(AbstractState):
     Attributes:
         arrivals: (replicates, n_patches) uint32, hit counts.
         missed: (2, replicates) uint32, lines that escaped and were lost.
-        quanta_before, launches: within a stage, N of the stage before, and the number of launches done.
+        quanta_before, launches: within a stage, N of the stage before, and the number of chunks done (`lanes.chunk`).
     """
 
     arrivals: np.ndarray = array("replicates", "rows")

@@ -4,11 +4,13 @@ import warnings
 from collections.abc import Iterable, Mapping
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from ...device.memory import limited
 from ...device.turn import turn
 from ...diagnostics.contact_findings import tell
 from ...errors import MethodError, RadiosityWarning, result_kept
+from ...hooks import HOOKS
 from ...method import Method
 from ...patches import Patches
 from ...sampling.streams import Seed
@@ -46,6 +48,7 @@ def trace_lines(
     checkpoint: str | Path | Checkpoint | None = None,
     checkpoint_every: float = 30.0,
     memory: str | float | None = None,
+    cluster: Any = None,
 ) -> LineSet:
     """Count lines between patches, once for any light. Emission and reflectance of the scene do not matter.
 
@@ -63,7 +66,8 @@ def trace_lines(
         numbers: the sequence of points, as of `Method`.
         both_ways: each local line counts at both its ends, and rows are balanced: reciprocal, and with the right sums. False:
             lines count where they begin alone. Lines of scenes with backs that let lines pass always do so.
-        device, progress, checkpoint, checkpoint_every, memory: as of `solve`.
+        device, progress, checkpoint, checkpoint_every, memory, cluster: as of `solve`. On a cluster an interruption returns the
+            lines of the last complete stage.
         resume: a line set of the same geometry, sources, seed and replicates to go on from, also an interrupted one; the budget
             counts its lines. The result is that of one run with as many quanta.
 
@@ -115,7 +119,7 @@ def trace_lines(
         record = partial(LineRecord, sources=chosen.names, both_ways=both_ways)
         problem = problem_of(patches, chosen)
         run = Run(patches, method, budget, part, device, progress, resume, keeper, record=record, problem=problem)
-        found = run.solve()
+        found = run.solve() if cluster is None else HOOKS["cluster"](cluster, lambda: run)
     with result_kept():
         if resume is None and known:
             warn_of_more(found.rays, asked, part.replicates, patches)

@@ -17,6 +17,7 @@ __all__ = ["FIRED", "AbstractOrder", "fire_all"]
 
 
 def fire_all(name: str, counters: FiringCounters, swept: Swept) -> None:
-    """Fire every line that is due, in the order ``name``."""
+    """Fire every line that is due, in the order ``name``; elsewhere in whole wavefronts, to the same integers."""
+    name = name if counters.firer is None else "breadth-first"
     module, order = FIRED[name].split(":")
     getattr(import_module(f".{module}", __package__), order)().run(counters, swept)

@@ -1,0 +1,174 @@
+"""Wavefronts that are fired elsewhere: cut into ranges of lines, whose hits are summed when all are back (contract 16).
+
+The lines of a wavefront are fixed before its first is fired. So whoever knows a row, the lines that it has fired, how many it
+fires now and what power they carry, can fire them. Hits are whole numbers, and so are powers of bands.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...device.backend import frozen, upload
+from ...tracing.lanes import Wavefront
+
+if TYPE_CHECKING:
+    from .counters import FiringCounters
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Lines of some rows of a replicate.
+
+    Attributes:
+        replicate: counted from 0 on within the run.
+        rows: (k,) uint32, ascending.
+        fired, counts: (k,) whole numbers, lines that each row has fired before, and fires now.
+        weights: (k, groups) uint32, the power that its lines carry, see `BandTally`; None where there is one group.
+        largest: the largest line number of the wavefront.
+    """
+
+    replicate: int
+    rows: np.ndarray
+    fired: np.ndarray
+    counts: np.ndarray
+    weights: np.ndarray | None
+    largest: int
+
+    @property
+    def total(self) -> int:
+        return int(self.counts.sum(dtype=np.int64))
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """What lines of a replicate brought.
+
+    Attributes:
+        replicate: as of `Lines`.
+        arrivals, missed: (n_rows,) and (2,), hits, and lines that escaped and were lost.
+        received, received_missed: (n_rows, groups) and (2, groups) uint64, their power; None where there is one group.
+    """
+
+    replicate: int
+    arrivals: np.ndarray
+    missed: np.ndarray
+    received: np.ndarray | None
+    received_missed: np.ndarray | None
+
+
+class AbstractFirer(ABC):
+    """Fires lines elsewhere.
+
+    Attributes:
+        over: True where the run is to end: the lines that it was given have been fired all the same.
+    """
+
+    over: bool = False
+
+    @abstractmethod
+    def fire(self, lines: list[Lines]) -> Iterator[Hits]:
+        """Yield the hits of all lines, in any order and in any pieces."""
+
+
+def fire_elsewhere(counters: "FiringCounters", wavefront: Wavefront, largest: int, firer: AbstractFirer) -> None:
+    """Fire a wavefront, and add its hits to the counters."""
+    tracer, bands = counters.tracer, counters.bands
+    numbers, counts = _on_host(counters, wavefront)
+    fired, some = frozen(counters.fired).copy(), counts > 0
+    weights = None if bands is None else frozen(bands.weights).reshape(-1, bands.n)[: wavefront.size][some]
+    numbers, counts = numbers[some], counts[some]
+    order = np.argsort(numbers, kind="stable")
+    numbers, counts, weights = numbers[order], counts[order], None if weights is None else weights[order]
+    ends, found = np.searchsorted(numbers, np.arange(1, tracer.replicates + 1) * tracer.n), []
+    for replicate, (low, high) in enumerate(zip([0, *ends[:-1]], ends, strict=True)):
+        part, rows = slice(low, high), numbers[low:high] - np.uint32(replicate * tracer.n)
+        powers = None if weights is None else weights[part]
+        if high > low:
+            found.append(Lines(replicate, rows.astype(np.uint32), fired[numbers[part]], counts[part], powers, largest))
+    arrivals, missed = (column.copy() for column in counters.hits.read())
+    received = None if bands is None else frozen(bands.received).reshape(-1, bands.n).copy()
+    for hits in firer.fire(found):
+        arrivals[hits.replicate] += hits.arrivals
+        missed[:, hits.replicate] += hits.missed
+        if received is not None:
+            first = hits.replicate * tracer.n
+            received[first : first + tracer.n] += hits.received
+            received[tracer.total + hits.replicate :: tracer.replicates] += hits.received_missed
+    fired[numbers] += counts.astype(fired.dtype)
+    counters.hits.write(arrivals, missed)
+    counters.fired = upload(type(counters.fired), fired)
+    if bands is not None and received is not None and weights is not None:
+        bands.received = upload(type(bands.received), received)
+        sent = frozen(bands.fired).reshape(bands.n, tracer.replicates).copy()
+        for replicate in range(tracer.replicates):
+            own = numbers // tracer.n == replicate
+            sent[:, replicate] += (weights[own] * counts[own, None].astype(np.uint64)).sum(axis=0, dtype=np.uint64)
+        bands.fired = upload(type(bands.fired), sent)
+    counters.swept += wavefront.total
+    counters.look_everywhere()
+
+
+def fire_here(counters: "FiringCounters", lines: Lines) -> Hits:
+    """Fire lines with the counters of their replicate alone, which are of use for nothing else."""
+    types, tracer, bands, n = counters.types, counters.tracer, counters.bands, counters.tracer.n
+    zero = np.zeros((1, n), np.uint32)
+    counters.hits.write(zero, np.zeros((2, 1), np.uint32))
+    fired = frozen(counters.fired).copy()
+    fired[lines.rows] = lines.fired
+    counters.fired = upload(type(counters.fired), fired)
+    if bands is not None and lines.weights is not None:
+        bands.weights = upload(types.UInt32, lines.weights)
+        bands.received = upload(types.UInt64, np.zeros(tracer.slots * bands.n, np.uint64))
+    numbers, counts = upload(types.UInt32, lines.rows), upload(type(counters.fired), lines.counts)
+    counters.fire(Wavefront(numbers, 0, len(lines.rows), lines.total, counts), lines.largest)
+    arrivals, missed = counters.hits.read()
+    received = None if bands is None else frozen(bands.received).reshape(-1, bands.n).copy()
+    return Hits(
+        lines.replicate,
+        arrivals[0].copy(),
+        missed[:, 0].copy(),
+        None if received is None else received[:n],
+        None if received is None else received[n:],
+    )
+
+
+def cut(lines: list[Lines], shares: list[float]) -> list[list[Lines]]:
+    """Return the lines in as many parts as there are shares, in proportion to these; the lines of a row may be in several."""
+    total = sum(one.total for one in lines)
+    ends = np.rint(np.cumsum(shares) / sum(shares) * total).astype(np.int64)
+    return [_between(lines, low, high) for low, high in zip([0, *ends[:-1].tolist()], ends.tolist(), strict=True)]
+
+
+def _between(lines: list[Lines], low: int, high: int) -> list[Lines]:
+    """Return the lines from the ``low``-th to below the ``high``-th of all."""
+    found, before = [], 0
+    for one in lines:
+        begins = before + np.cumsum(one.counts, dtype=np.int64) - one.counts
+        first, end = np.maximum(begins, low), np.minimum(begins + one.counts, high)
+        some = np.flatnonzero(first < end)
+        before += one.total
+        if len(some):
+            counts = (end - first)[some].astype(one.counts.dtype)
+            fired = one.fired[some] + (first - begins)[some].astype(one.fired.dtype)
+            weights = None if one.weights is None else one.weights[some]
+            found.append(replace(one, rows=one.rows[some], fired=fired, counts=counts, weights=weights))
+    return found
+
+
+def _on_host(counters: "FiringCounters", wavefront: Wavefront) -> tuple[np.ndarray, np.ndarray]:
+    """Return the row numbers of a wavefront, and how many lines each fires."""
+    size = wavefront.size
+    numbers: Any = wavefront.numbers
+    if numbers is None:
+        numbers = np.arange(wavefront.low, wavefront.low + size, dtype=np.uint32)
+    else:
+        numbers = frozen(numbers)[:size]
+    if wavefront.counts is not None:
+        return numbers, frozen(wavefront.counts)[:size].copy()
+    types = counters.types
+    all_rows = upload(types.UInt32, numbers)
+    targets = frozen(counters.target_counts_before(all_rows))
+    return numbers, targets - frozen(counters.fired)[numbers]
