@@ -142,6 +142,19 @@ def test_a_strip_is_cut_along_its_length():
     assert (columns[0], rows[0]) == (1, 2)
 
 
+def test_errors_of_bright_insides_count_less():
+    """One of four squares is twenty times as bright as the others, and has the largest step: one of the others is cut."""
+    halves = halves_of()
+    x, face = halves.fine.centroid[:, 0] % 1, halves.fine.face
+    light = np.where(face == 0, 30 + 1.3 * x, 1 + x)
+    irradiance = np.stack([light[:, None]] * 4)
+    weights, found = halves.weights(irradiance), halves.variation(irradiance)
+    mean = np.bincount(face, halves.fine.area * light) / halves.coarse.area
+    assert weights == pytest.approx(1 / (1 + (mean / np.average(mean, weights=halves.coarse.area) / 3) ** 2))
+    assert halves.chosen(found, 1)[0].tolist() == [2, 1, 1, 1, 1]
+    assert halves.chosen(found, 1, weights)[0].tolist() == [1, 2, 1, 1, 1]
+
+
 def test_noise_is_not_taken_for_light(random):
     """Noise alone, 100 times over four squares: its mean square is left out, to within 4 standard errors."""
     halves = halves_of(two_sided=True)

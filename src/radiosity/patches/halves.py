@@ -8,6 +8,7 @@ from ..scene.model import Back, Scene
 from .model import Patches
 from .variation import Variation
 
+BRIGHT = 3.0  # times the mean light of the scene: where light is much brighter, errors count relative to it
 LONGEST = 128.0  # of a patch, over its width: along a lamp, light varies across a strip alone
 
 
@@ -61,11 +62,27 @@ class Halves:
             into[face], noise[face] = _square(0.5 * (self._cells(irradiance, face, 2) @ np.array((1, -1))))
         return Variation(along, across, rest, noise)
 
-    def chosen(self, light: Variation, more: int) -> tuple[np.ndarray, np.ndarray]:
+    def weights(self, irradiance: np.ndarray) -> np.ndarray:
+        """Return how much squares of errors count on each face, (n_faces,): 1 where it is dark, less where light is bright.
+
+        The inside of a luminaire may be a hundred times brighter than all that it lights. Were all squares equal, it would take
+        most of the patches. Where light is m times the mean of the scene, a square counts 1 / (1 + (m / `BRIGHT`)²).
+
+        Args:
+            irradiance: (replicates, n_fine, n_bands) of the fine patches.
+        """
+        fine, n = self.fine, self.coarse.scene.n_faces
+        light = (_counting(fine.reflectance) * irradiance.mean(axis=0)).sum(axis=1)
+        area = np.bincount(fine.face, fine.area, n)
+        power = np.bincount(fine.face, fine.area * light, n)
+        return 1 / (1 + (power / area * area.sum() / max(float(power.sum()), 1e-300) / BRIGHT) ** 2)
+
+    def chosen(self, light: Variation, more: int, weights: np.ndarray | float = 1.0) -> tuple[np.ndarray, np.ndarray]:
         """Return columns and rows of the faces, (n_faces,) int32 each: the cuts that gain most for each patch that they add.
 
         Args:
             more: the largest number of patches that cuts may add.
+            weights: (n_faces,), how much a face counts.
         """
         scene, columns, rows = self.coarse.scene, self.fine.columns, self.fine.rows
         sides = np.where(scene.back == Back.RADIATES, 2, 1)
@@ -75,7 +92,7 @@ class Halves:
         second = np.minimum(second, better)  # halves come before quarters
         better, second = (np.where(scene.is_quad, value, light.rest / 2) for value in (better, second))
         cost = np.concatenate([np.where(scene.is_quad, 1, 2) * sides, np.where(scene.is_quad, 2, 0) * sides])
-        rate = np.concatenate([better, second]) * np.tile(scene.area / sides, 2)
+        rate = np.concatenate([better, second]) * np.tile(weights * scene.area / sides, 2)
         order = np.argsort(-rate, kind="stable")
         order = order[(rate[order] > 0) & (cost[order] > 0)]
         order = order[np.cumsum(cost[order]) <= more]
@@ -89,7 +106,7 @@ class Halves:
     def _cells(self, irradiance: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
         """Return light that leaves the cells of some faces, (replicates, m, 2 n_bands, cells): fronts, then radiating backs."""
         rho, first = self.coarse.reflectance, self.fine.first[faces][:, None] + np.arange(count)
-        rho = rho if rho.any() else np.ones_like(rho)
+        rho = _counting(rho)
         back = self.coarse.scene.back[faces] == Back.RADIATES
         at = self.coarse.first[faces]
         above, below = irradiance[:, first], irradiance[:, first + count * back[:, None]]
@@ -99,6 +116,11 @@ class Halves:
             through = self.coarse.diffuse_transmittance[at][:, None]
             front, behind = front + through * below, behind + through * above
         return np.concatenate([front, behind], axis=3).transpose(0, 1, 3, 2)
+
+
+def _counting(reflectance: np.ndarray) -> np.ndarray:
+    """Return reflectances; ones where all are black, so that what falls on them counts."""
+    return reflectance if reflectance.any() else np.ones_like(reflectance)
 
 
 def _square(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -84,7 +84,7 @@ def adapt(
                 break
             irradiance, method = _pilot(halves.fine, method, number + step * APART, device, progress)
             found = halves.variation(irradiance).given(expected)
-            columns, rows = halves.chosen(found, more)
+            columns, rows = halves.chosen(found, more, halves.weights(irradiance))
             if (columns * rows == 1).all():
                 break
             current, part = _cut(current, columns, rows)
