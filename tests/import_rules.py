@@ -58,7 +58,7 @@ EARLY = {  # packages besides numpy that a file may import when it is imported i
     "drjit": KERNELS,
     # classes derive from the package's; where they are used their files are loaded
     "distributed": ("cluster/plugin.py",),
-    "pydantic": ("scene/formats/toml/schema.py", "scene/formats/honeybee/schema.py"),
+    "pydantic": ("scene/formats/toml/schema", "scene/formats/honeybee/schema.py"),
 }
 RECORDING = {"while_loop", "syntax", "if_stmt", "switch", "dispatch", "freeze"}
 WITH_NUMBERS = ("tracing/", "tally/", "factors/", "algorithms/")  # their kernels take numbers

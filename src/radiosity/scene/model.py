@@ -1,8 +1,7 @@
 """A scene: flat diffuse faces with reflectance and self-emitted radiosity, in metres and W/m² (or lm/m²)."""
 
-import hashlib
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -11,16 +10,16 @@ from numpy.typing import ArrayLike
 from .back import Back
 from .camera import Camera
 from .cut import Cut
+from .geometry import areas_of, centre_of, frames_of, plane_reach_of, unit_normals
+from .hashes import geometry_hash_of, hash_of
 from .heat import Heat
 from .lights.luminaire import Luminaire
 from .lights.model import Lights
 from .lights.sky import Sky
 from .lights.sun import Sun
 from .paint import Paint
-from .panes import panes_or_none
-from .precision import median_centre, plane_reach
-from .sampler import DEFAULT_SAMPLER
 from .sensor_request import SensorRequest
+from .taking import is_cut_of, taken
 
 __all__ = ["Back", "Scene", "unit_normals"]
 
@@ -210,15 +209,12 @@ class Scene:
     @cached_property
     def frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Origin and two edges of each face, (n_faces, 3) each: a point is origin + u edge_1 + v edge_2."""
-        corners = self.vertices[self.faces[:, :3]]
-        last = np.where(self.is_quad, self.faces[:, 3], self.faces[:, 2])
-        return corners[:, 0], corners[:, 1] - corners[:, 0], self.vertices[last] - corners[:, 0]
+        return frames_of(self.vertices, self.faces)
 
     @cached_property
     def area(self) -> np.ndarray:
         """The area of one side of each face, (n_faces,) m²."""
-        _, first, second = self.frames
-        return np.linalg.norm(np.cross(first, second), axis=1) * np.where(self.is_quad, 1.0, 0.5)
+        return areas_of(self.frames, self.is_quad)
 
     @cached_property
     def normal(self) -> np.ndarray:
@@ -238,10 +234,7 @@ class Scene:
 
         It is the middle of the box where the scene has no area.
         """
-        if not self.area.sum() > 0:
-            return self.bounds.mean(axis=0)
-        origin, first, second = self.frames
-        return median_centre(origin + (first + second) / np.where(self.is_quad, 2.0, 3.0)[:, None], self.area)
+        return centre_of(self.frames, self.is_quad, self.area, self.bounds)
 
     @cached_property
     def reach(self) -> float:
@@ -251,46 +244,17 @@ class Scene:
     @cached_property
     def plane_reach(self) -> np.ndarray:
         """The size of the numbers that place each face's plane, (n_faces,) metres; see `scene.precision.plane_reach`."""
-        corners = self.vertices[np.where(self.faces < 0, self.faces[:, :1], self.faces)] - self.centre
-        return plane_reach(self.normal, corners)
+        return plane_reach_of(self.vertices - self.centre, self.faces, self.normal)
 
     @cached_property
     def hash(self) -> str:
         """SHA-256 of everything that a solution depends on."""
-        digest = _digest(
-            self.vertices,
-            self.faces,
-            self.reflectance,
-            self.emission,
-            self.back,
-            self.back_reflectance,
-            self.back_emission,
-            self.surface,
-        )
-        for paint in (self.reflectance_paint, self.emission_paint):
-            for array in () if paint is None else (*paint.images, paint.image, paint.uv, paint.color, np.array(paint.limit)):
-                digest.update(np.ascontiguousarray(array).tobytes())
-            if paint is not None and any(sampler != DEFAULT_SAMPLER for sampler in paint.samplers):
-                digest.update(repr(paint.samplers).encode())  # plain ones as if there were none: older files have the same hash
-        if self.lights:
-            digest.update(self.lights.digest())
-        digest.update(repr((self.names, self.bands, self.photometric)).encode())
-        if self.diffuse_transmittance is not None:
-            digest.update(b"diffuse" + _digest(self.diffuse_transmittance).digest())
-        return self._with_panes(digest).hexdigest()
+        return hash_of(self)
 
     @cached_property
     def geometry_hash(self) -> str:
         """SHA-256 of everything that lines depend on: faces, backs, panes and surfaces, and neither emission nor reflectance."""
-        return self._with_panes(_digest(self.vertices, self.faces, self.back, self.surface)).hexdigest()
-
-    def _with_panes(self, digest):
-        """Add the panes to a digest, where there are any: other scenes keep the hashes of older versions."""
-        if self.transmittance is not None:
-            digest.update(_digest(self.transmittance).digest())
-        if self.refractive_index is not None:
-            digest.update(b"index" + _digest(self.refractive_index).digest())
-        return digest
+        return geometry_hash_of(self)
 
     def is_cut_of(self, scene: "Scene", any_light: bool = False) -> bool:
         """Return whether the faces are parts of the faces of that scene, with the same light and colours.
@@ -298,36 +262,11 @@ class Scene:
         Args:
             any_light: they may have got another light, or other colours, since they were cut.
         """
-        if self.cut is None or self.cut.whole != scene.hash:
-            return False
-        if any_light:
-            return True
-        paints = {
-            name: getattr(self, name)
-            for name in ("reflectance_paint", "emission_paint")
-            if getattr(self, name) is not None and getattr(scene, name) is not None
-        }
-        return replace(scene.take(self.cut.face), vertices=self.vertices, faces=self.faces, **paints).hash == self.hash
+        return is_cut_of(self, scene, any_light)
 
     def take(self, keep: np.ndarray) -> "Scene":
         """The scene of a choice of faces (indices or mask)."""
-        rows = np.flatnonzero(keep) if np.asarray(keep).dtype == bool else np.asarray(keep)
-        return replace(
-            self,
-            faces=self.faces[rows],
-            reflectance=self.reflectance[rows],
-            emission=self.emission[rows],
-            back=self.back[rows],
-            back_reflectance=self.back_reflectance[rows],
-            back_emission=self.back_emission[rows],
-            surface=self.surface[rows],
-            transmittance=panes_or_none(None if self.transmittance is None else self.transmittance[rows]),
-            diffuse_transmittance=panes_or_none(None if self.diffuse_transmittance is None else self.diffuse_transmittance[rows]),
-            refractive_index=panes_or_none(None if self.refractive_index is None else self.refractive_index[rows]),
-            reflectance_paint=self.reflectance_paint and self.reflectance_paint.take(rows),
-            emission_paint=self.emission_paint and self.emission_paint.take(rows),
-            cut=self.cut and self.cut.take(rows),
-        )
+        return taken(self, keep)
 
     def with_lights(
         self, luminaires: Iterable[Luminaire] = (), *, suns: Iterable[Sun] = (), sky: Sky | None = None, openings=None
@@ -364,18 +303,3 @@ class Scene:
         from .degenerate import leave_out
 
         return leave_out(self)
-
-
-def unit_normals(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Return unit normals, (n, 3), of faces with these edges, (n, 3) each."""
-    cross = np.cross(first, second)
-    return cross / np.linalg.norm(cross, axis=1, keepdims=True)
-
-
-def _digest(*arrays: np.ndarray):
-    """Return a SHA-256 of arrays, with their types and shapes."""
-    digest = hashlib.sha256()
-    for array in arrays:
-        digest.update(str((array.dtype.str, array.shape)).encode())
-        digest.update(np.ascontiguousarray(array).tobytes())
-    return digest

@@ -72,8 +72,8 @@ def of_sides(before: Emissivity | None, given: Mapping | Sequence[float] | None)
         return before
     if not isinstance(given, Mapping):
         return tuple(given)
-    sides = before if isinstance(before, Mapping) else {} if before is None else dict.fromkeys(SIDES, before)
-    return {**sides, **{side: tuple(values) for side, values in given.items()}}
+    sides = dict(before) if isinstance(before, dict) else {} if before is None else dict.fromkeys(SIDES, before)
+    return sides | {side: tuple(values) for side, values in given.items()}
 
 
 def reflecting(material: Material, emissivity: Emissivity | None, source: str, name: str) -> Material:
