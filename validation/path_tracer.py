@@ -123,20 +123,17 @@ def _pane(scene: rd.Scene, face: int) -> dict:
     Raises:
         ValueError: the pane is glass, whose share depends on the angle, or it emits: Mitsuba's scene would be another one.
     """
-    emits = scene.emission[face].any() or (scene.back[face] == rd.Back.RADIATES and scene.back_emission[face].any())
-    if emits or (scene.refractive_index is not None and scene.refractive_index[face] > 0):
+    radiates, through = scene.back[face] == rd.Back.RADIATES, scene.transmittance
+    emits = scene.emission[face].any() or (radiates and scene.back_emission[face].any())
+    if through is None or emits or (scene.refractive_index is not None and scene.refractive_index[face] > 0):
         name = scene.names[scene.surface[face]]
         raise ValueError(
-            f"{scene.source}, surface '{name}', face {face}: the path tracer takes no glass by angle and no pane that emits"
+            f"{scene.source}, surface '{name}', face {face}: it is glass by angle, or emits; give a pane that does neither"
         )
-    solid = 1 - scene.transmittance[face]  # of its area; what the pane reflects comes from there
-    radiates = scene.back[face] == rd.Back.RADIATES
+    solid = 1 - through[face]  # of its area; what the pane reflects comes from there
     front, back = scene.reflectance[face] / solid, scene.back_reflectance[face] / solid * radiates
-    return {
-        "type": "mask",
-        "opacity": float(solid),
-        "solid": {"type": "twosided", "front": _diffuse(front), "back": _diffuse(back)},
-    }
+    both = {"type": "twosided", "front": _diffuse(front), "back": _diffuse(back)}
+    return {"type": "mask", "opacity": float(solid), "solid": both}
 
 
 def _sheet(mi, polygons: list, surface: dict, emission: np.ndarray, upload, types):
