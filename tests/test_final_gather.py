@@ -12,6 +12,7 @@ import radiosity as rd
 from radiosity.cli import main
 from radiosity.image import export, render
 from radiosity.image.denoise import denoised
+from radiosity.image.edges import rough
 from radiosity.image.picture import Picture, first_hits
 from radiosity.image.view import directions
 from radiosity.scene.paint import Paint
@@ -206,6 +207,33 @@ def test_denoised_pictures_are_nearer_to_the_truth(tmp_path, standing):
         for on in (False, True)
     )
     assert clean < 0.8 * plain
+
+
+def test_rims_of_lamps_are_sampled_more(tmp_path, monkeypatch):
+    """Turned rims of a lamp 300 times as bright as the floor: with more lines of sight the error of the pixels on them falls."""
+    lamp, floor = quad((0.3, 0.1, 1), (0.43, 0.04, 0), (-0.04, 0.43, 0)), quad((-1, -1, 0), (3, 0, 0), (0, 3, 0))
+    scene = join([("floor", 0.5, 1.0, [floor]), ("lamp", 0.0, 300.0, [lamp])], source="rims")
+    camera = rd.Camera((0.5, 0.5, 3.0), (0.5, 0.5, 0.0), (0, 1, 0), 40.0, 24, 24)
+    solution = solved(scene, rays=2_000)
+
+    def picture(samples: int) -> np.ndarray:
+        return render(solution, tmp_path / "a.exr", camera=camera, samples=samples, final_gather=4 * samples)[..., 0]
+
+    truth, better = picture(128), picture(4)
+    monkeypatch.setattr("radiosity.image.picture.AT_EDGES", 0)
+    plain = picture(4)
+    rims = (truth > 10) & (truth < 290)
+    assert rims.sum() > 20
+    assert np.sqrt(np.mean((better - truth)[rims] ** 2)) < 0.4 * np.sqrt(np.mean((plain - truth)[rims] ** 2))
+    assert (better == plain)[:3].all()  # far from all rims nothing changes
+
+
+def test_rough_pixels_are_those_on_edges_and_beside_them():
+    variance, flat, level = np.zeros(49), np.zeros(49, int), np.ones(49)
+    variance[[0, 24]], flat[24] = 4.0, -1  # the first is noise within a plane
+    assert rough(variance, flat, level, 7).tolist() == [16, 17, 18, 23, 24, 25, 30, 31, 32]
+    assert not len(rough(variance, flat, 100 * level, 7))
+    assert not len(rough(variance, flat, 0 * level, 7))
 
 
 def test_progress_is_told(standing):

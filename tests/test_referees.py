@@ -8,6 +8,7 @@ import warnings
 
 import numpy as np
 import pytest
+from test_panes import two_rooms
 
 import radiosity as rd
 from validation import enclosures, path_tracer, rtrace, view_factors
@@ -64,6 +65,17 @@ def test_mitsuba_and_both_equations():
     assert tracing.rms[0] < 0.03
     wrong = patchwise("", solved(patches, 50_000 * SEEDS, method="random-walk", replicates=4), theirs)
     assert not wrong.agrees  # patches of a metre are too large for discrete walks, and it is seen
+
+
+@pytest.mark.slow
+def test_mitsuba_sees_through_panes():
+    """The lamp stands in one room, and what falls on the other room came through the pane."""
+    patches = rd.subdivide(two_rooms(np.arange(11) == 0), cells=1)
+    theirs = path_tracer.irradiance(patches, 4096)[:, 1:10].mean(axis=0)
+    ours = rd.solve(patches, "random-walk", equation="continuous", rays=400_000).irradiance[1:10]
+    np.testing.assert_allclose(theirs, ours, rtol=0.03)
+    with pytest.raises(ValueError, match="surface 'pane', face 10"):
+        path_tracer.irradiance(rd.subdivide(two_rooms(np.arange(11) == 10), cells=1), 1)
 
 
 def test_radiance():

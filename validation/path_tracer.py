@@ -85,7 +85,7 @@ def _arriving(mi, dr, world, integrator, sampler, origin, normal):
 
 
 def world_of(mi, scene: rd.Scene, upload, types, *, merged: bool = False):
-    """Return a scene of Mitsuba's: a sheet for each radiating or absorbing side.
+    """Return a scene of Mitsuba's: a sheet for each radiating or absorbing side, and one for both sides of a clear pane.
 
     Args:
         merged: sides of equal reflectance and emission are one mesh, for scenes of many faces.
@@ -95,24 +95,51 @@ def world_of(mi, scene: rd.Scene, upload, types, *, merged: bool = False):
     together: dict = {}
     for face in range(scene.n_faces):
         corners = scene.vertices[scene.faces[face][: 4 if scene.is_quad[face] else 3]]
+        if scene.panes[face]:
+            surface = _pane(scene, face)
+            together.setdefault(str(surface) if merged else f"pane{face}", ([], surface, np.zeros(1)))[0].append(corners)
+            continue
         sides = [("front", corners, scene.reflectance[face], scene.emission[face])]
         if scene.back[face] == rd.Back.RADIATES:  # a sheet for each side, since an emitter has one
             back = corners[::-1] - apart * scene.normal[face]
             sides.insert(0, ("back", back, scene.back_reflectance[face], scene.back_emission[face]))
         for side, points, reflectance, emission in sides:
             key = (reflectance.tobytes(), emission.tobytes()) if merged else f"{side}{face}"
-            together.setdefault(key, ([], reflectance, emission))[0].append(points)
-    for number, (key, (polygons, reflectance, emission)) in enumerate(together.items()):
+            together.setdefault(key, ([], _diffuse(reflectance), emission))[0].append(points)
+    for number, (key, (polygons, surface, emission)) in enumerate(together.items()):
         name = f"side{number}" if merged else key
-        parts[name] = _sheet(mi, polygons, reflectance, emission, upload, types)
+        parts[name] = _sheet(mi, polygons, surface, emission, upload, types)
     return mi.load_dict(parts)
 
 
-def _sheet(mi, polygons: list, reflectance: np.ndarray, emission: np.ndarray, upload, types):
-    """One-sided: black from behind. ``polygons`` hold the corners of triangles and quadrilaterals, (3 or 4, 3) each."""
+def _diffuse(reflectance: np.ndarray) -> dict:
+    """Return a one-sided surface, black from behind."""
+    return {"type": "diffuse", "reflectance": {"type": "rgb", "value": np.broadcast_to(reflectance, 3).tolist()}}
+
+
+def _pane(scene: rd.Scene, face: int) -> dict:
+    """Return the surface of a clear pane, which passes the same share of light at all angles.
+
+    Raises:
+        ValueError: the pane is glass, whose share depends on the angle, or it emits: Mitsuba's scene would be another one.
+    """
+    radiates, through = scene.back[face] == rd.Back.RADIATES, scene.transmittance
+    emits = scene.emission[face].any() or (radiates and scene.back_emission[face].any())
+    if through is None or emits or (scene.refractive_index is not None and scene.refractive_index[face] > 0):
+        name = scene.names[scene.surface[face]]
+        raise ValueError(
+            f"{scene.source}, surface '{name}', face {face}: it is glass by angle, or emits; give a pane that does neither"
+        )
+    solid = 1 - through[face]  # of its area; what the pane reflects comes from there
+    front, back = scene.reflectance[face] / solid, scene.back_reflectance[face] / solid * radiates
+    both = {"type": "twosided", "front": _diffuse(front), "back": _diffuse(back)}
+    return {"type": "mask", "opacity": float(solid), "solid": both}
+
+
+def _sheet(mi, polygons: list, surface: dict, emission: np.ndarray, upload, types):
+    """Return a mesh. ``polygons`` hold the corners of triangles and quadrilaterals, (3 or 4, 3) each."""
     properties = mi.Properties()
-    colour = {"type": "rgb", "value": np.broadcast_to(reflectance, 3).tolist()}
-    properties["bsdf"] = mi.load_dict({"type": "diffuse", "reflectance": colour})
+    properties["bsdf"] = mi.load_dict(surface)
     if emission.any():
         radiance = {"type": "rgb", "value": np.broadcast_to(emission / np.pi, 3).tolist()}
         properties["emitter"] = mi.load_dict({"type": "area", "radiance": radiance})

@@ -7,6 +7,7 @@ import numpy as np
 from ..errors import OutputError
 from ..scene import Back, Camera
 from . import tone
+from .edges import AT_EDGES, rough
 from .fit import fitted
 from .flat import planes
 from .gathered import Gathered
@@ -50,6 +51,8 @@ class Picture:
 def take(solution, shown: Quantity, camera: View, *, look: Lookup | Gathered | None = None, samples=4, hits=None) -> Picture:
     """Take a picture with ``samples`` lines of sight a pixel, at the points of a Hammersley set (each row and column once).
 
+    With a final gather, pixels on edges of very unlike brightness get `AT_EDGES`, see `radiosity.image.edges`.
+
     Args:
         look: finds values from hits; by default those that are shown, smoothed.
     """
@@ -58,27 +61,33 @@ def take(solution, shown: Quantity, camera: View, *, look: Lookup | Gathered | N
     look = look or Lookup(solution.patches, shown.values, light=shown.light)
     sight = Sight(solution.patches.scene, look, hits, shown.adds)
     width, n = int(camera.width), int(camera.width) * int(camera.height)
-    total, count, own = np.zeros((n, shown.values.shape[1])), np.zeros(n), np.zeros(n)
+    total, count, own = np.zeros((n, shown.values.shape[1])), np.zeros(n), np.zeros(n, bool)
     variance, flat, plane = np.full(total.shape, np.nan), np.full(n, -1), np.append(planes(solution.patches), -1)
-    offsets = np.stack([(np.arange(samples) + 0.5) / samples, _bits_reversed(samples)], axis=1)
-    step = max(1, CHUNK // samples)
-    for begin in range(0, n, step):
-        pixel = np.arange(begin, min(begin + step, n))
-        x, y = (pixel % width)[:, None] + offsets[:, 0], (pixel // width)[:, None] + offsets[:, 1]
-        values, patch, lamps = sight(*lines_of_sight(camera, x.ravel(), y.ravel()), shown.own_light)
-        values, seen = values.reshape(len(pixel), samples, -1), plane[patch].reshape(len(pixel), samples)
-        total[pixel] = values.sum(axis=1)
-        count[pixel] = (seen >= 0).sum(axis=1)
-        if samples > 1:
-            variance[pixel] = values.var(axis=1, ddof=1) / samples
-        flat[pixel] = np.where((seen == seen[:, :1]).all(axis=1), seen[:, 0], -1)
-        own[pixel] = lamps.reshape(len(pixel), samples).sum(axis=1)
+
+    def sample(pixels: np.ndarray, each: int) -> None:
+        offsets = np.stack([(np.arange(each) + 0.5) / each, _bits_reversed(each)], axis=1)
+        step = max(1, CHUNK // each)
+        for begin in range(0, len(pixels), step):
+            pixel = pixels[begin : begin + step]
+            x, y = (pixel % width)[:, None] + offsets[:, 0], (pixel // width)[:, None] + offsets[:, 1]
+            values, patch, lamps = sight(*lines_of_sight(camera, x.ravel(), y.ravel()), shown.own_light)
+            values, seen = values.reshape(len(pixel), each, -1), plane[patch].reshape(len(pixel), each)
+            total[pixel] = values.sum(axis=1) * (samples / each)
+            count[pixel] = (seen >= 0).sum(axis=1) * (samples / each)
+            if each > 1:
+                variance[pixel] = values.var(axis=1, ddof=1) / each
+            flat[pixel] = np.where((seen == seen[:, :1]).all(axis=1), seen[:, 0], -1)
+            own[pixel] |= lamps.reshape(len(pixel), each).any(axis=1)
+
+    sample(np.arange(n), samples)
+    if isinstance(look, Gathered) and 1 < samples < AT_EDGES:
+        sample(rough(variance.max(axis=1), flat, total.mean(axis=1) / samples, width), AT_EDGES)
     shape = (int(camera.height), width)
-    values = total / np.maximum(count, 1)[:, None]
+    values = total / np.where(count > 0, count, 1)[:, None]
     return Picture(
         values.reshape(*shape, -1),
         (count / samples).reshape(shape),
-        (own > 0).reshape(shape),
+        own.reshape(shape),
         variance.reshape(*shape, -1),
         flat.reshape(shape),
         camera,
