@@ -220,6 +220,12 @@ def test_values_out_of_range_are_refused(one, wrong):
         rd.compare(one, one, **wrong)
 
 
+def test_a_missing_library_is_named_before_any_work(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr("radiosity.image.output.find_spec", lambda name: None if name == "PIL" else name)
+    assert main(["compare", "a.npz", "b.npz", "-o", str(tmp_path / "d.png")]) == 2
+    assert "d.png: writing PNG needs 'PIL', which is not installed" in capsys.readouterr().err
+
+
 def test_the_command_writes_files_and_tells_by_its_status(one, brighter, tmp_path, capsys):
     one.save(tmp_path / "one.npz")
     brighter.save(tmp_path / "brighter.npz")

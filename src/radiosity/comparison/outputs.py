@@ -41,6 +41,8 @@ def check(paths) -> None:
             seen.add(file.resolve())
         if path.suffix.lower() not in (".json", ".csv"):
             require("matplotlib", f"{path}: false colours and histograms")
+        if path.suffix.lower() == ".png":
+            require("PIL", f"{path}: writing PNG")
 
 
 def write(found, path: Path, *, camera=None, width=None, height=None, limit: float | None = None) -> None:
