@@ -2033,7 +2033,7 @@ MISTAKES = (
     ),
     Mistake(
         "image/display_mesh.py",
-        "weight = np.where(known[:, None], self.angle, 0.0)",
+        "weight = np.where(known, self.angle, 0.0)",
         "weight = self.angle",
         ("test_image_mesh.py", "test_image_pieces.py"),
         "unknown patches darken the vertices about them",
@@ -2304,8 +2304,8 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/iterations/control.py",
-        "        self.missed += [seen % LINE, seen >> BITS]\n        self._kept = None",
-        "        self.missed += [seen % LINE, seen >> BITS]",
+        "        self._kept = None\n        self.probed +=",
+        "        self.probed +=",
         ("test_iteration.py", "test_iteration_bits.py", "test_iteration_unbiased.py"),
         "the share of missed lines stays that of the first probing lines",
     ),
@@ -2746,8 +2746,8 @@ MISTAKES = (
     ),
     Mistake(
         "sensors/bright.py",
-        "np.where(bright[:, None], 0.0, np.nan_to_num(mean_reflected(solution, changed)))",
-        "np.nan_to_num(mean_reflected(solution, changed))",
+        "    read[bright, ::size] = 0.0",
+        "    pass",
         ("test_bright.py",),
         "the light of bright reflectors counts twice in final gathers",
     ),
