@@ -245,7 +245,7 @@ def test_runs_at_once_give_the_bits_of_runs_alone():
     assert [found for _, found in threads] == [{"result": 0}, {"result": 0}]
 
 
-def test_walks_that_stop_within_a_stage_go_on_with_another_number_of_threads(monkeypatch):
+def test_walks_that_stop_within_a_stage_go_on_with_another_number_of_threads(monkeypatch, tmp_path):
     """A state counts its launches in chunks, and not in launches, whose size depends on the threads."""
     monkeypatch.setattr(lanes, "CHUNK", 1 << 10)
     monkeypatch.setattr(lanes, "CORE_CHUNK", 1 << 8)
@@ -256,8 +256,9 @@ def test_walks_that_stop_within_a_stage_go_on_with_another_number_of_threads(mon
             signal.raise_signal(signal.SIGINT)
 
     whole = rd.solve(patches, "particle-tracing", **options)
-    with device.threads(16):
-        stopped = rd.solve(patches, "particle-tracing", **options, progress=stop, checkpoint=None)
+    with device.threads(16), pytest.raises(KeyboardInterrupt):  # no stage is complete
+        rd.solve(patches, "particle-tracing", **options, progress=stop, checkpoint=tmp_path / "run.npz")
+    stopped = rd.load_solution(tmp_path / "run.npz")
     assert stopped.status == "interrupted"
     assert stopped.state["launches"] == 4
     found = rd.solve(patches, "particle-tracing", **options, resume=stopped)
