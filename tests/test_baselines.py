@@ -375,18 +375,6 @@ def test_hemicubes_are_blind_for_it_and_say_so(cove):
     assert error(solution, cove[1]) > 0.05
 
 
-def test_lines_of_baselines_are_not_counted_in_32_bits(room, monkeypatch):
-    from radiosity.run import run
-
-    monkeypatch.setattr(run, "FULL", 1000.0)  # as if a replicate of counters held no more
-    patches = rd.subdivide(rd.load_scene("room"), cells=1)
-    for name in rd.BASELINES:
-        assert rd.solve(patches, name).status == "complete"
-    assert rd.solve(patches, "hierarchical", rays=10**10).status == "complete"
-    with pytest.raises(rd.MethodError, match="counters full"):
-        rd.solve(patches, "random-walk", rays=100_000)
-
-
 def test_rays_and_seconds_stop_shots_early(room):
     some = rd.solve(room[0], "progressive-refinement", rays=30_000, resolution=16)
     short = rd.solve(room[0], "progressive-refinement", seconds=1e-3, resolution=16)

@@ -103,8 +103,8 @@ def test_black_scene_has_known_radiosity_and_an_error_of_irradiance():
         ({"seconds": 0}, "seconds is 0"),
         ({"error": 1.5}, "below 1"),
         ({"error": 0.1, "replicates": 1}, "2 replicates"),
-        ({"rays": 1e11}, "32-bit counters"),
-        ({"quanta": 2**33}, "32-bit counters"),
+        ({"rays": 1e20}, "would take centuries"),
+        ({"quanta": 2**62}, "would take centuries"),
         ({"rays": 1000, "replicates": 0}, "replicates is 0"),
         ({"rays": 1000, "seed": -1}, "seed is -1"),
         ({"rays": 1000, "method": "magic"}, "'magic' does not exist; known are auto, random-walk"),
@@ -307,20 +307,6 @@ def test_nothing_received_is_no_error_to_wait_for():
     assert solution.status == "complete"
     assert "nan" not in solution.report()
     assert solution.escaped[0] == pytest.approx(1.0, rel=1e-4)
-
-
-def test_what_counters_cannot_hold_is_refused(patches, monkeypatch):
-    from radiosity.run import budget, run
-
-    monkeypatch.setattr(run, "FULL", 1e5)
-    monkeypatch.setattr(budget, "FULL", 1e5)
-    with pytest.raises(rd.MethodError, match="counters full"):
-        rd.solve(patches, "random-walk", quanta=10**6, replicates=1)
-    monkeypatch.setattr(run, "FULL", 5e6)
-    monkeypatch.setattr(budget, "FULL", 5e6)
-    stopped = rd.solve(patches, "random-walk", quanta=10**7, replicates=1)
-    assert "counters full" in stopped.status
-    assert stopped.quanta < 10**7
 
 
 def test_too_large_an_emission_is_our_error():

@@ -12,7 +12,7 @@ import pytest
 import radiosity as rd
 from radiosity.cli import main
 from radiosity.problem.model import Problem
-from radiosity.run import budget, run
+from radiosity.run import budget
 from radiosity.run.error_target import nothing_before_lights
 from radiosity.run.snapshot import Snapshot
 from radiosity.solution.errors import margin, relative_error
@@ -291,11 +291,10 @@ def test_coloured_runs_end_at_their_limit():
 
 
 @pytest.mark.usefixtures("quick")
-def test_full_counters_end_a_run_to_an_error(monkeypatch):
-    for module in (run, budget):
-        monkeypatch.setattr(module, "FULL", 5_000.0)
+def test_a_run_whose_error_stays_unknown_ends(monkeypatch):
+    monkeypatch.setattr(budget, "BLIND", 5_000.0)
     patches, _ = sensor()
-    with pytest.warns(rd.RadiosityWarning, match="counters are full: take more replicates"):
+    with pytest.warns(rd.RadiosityWarning, match="it cannot be told yet .* give more lines as its limit"):
         solution = rd.solve(patches, "random-walk", error=0.1, error_of="surface:sensor")
     assert solution.status == "not reached"
 

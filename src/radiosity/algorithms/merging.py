@@ -53,9 +53,12 @@ def _merged(records: list[Any]) -> Any:
     for one in fields(records[0])[1:]:
         found, facts = [getattr(record, one.name) for record in records], one.metadata
         there = [value is not None for value in found]
-        if not any(there):
+        upper, rule = facts.get("zeros", False), facts.get("merged")
+        if not any(there) and not (upper and rule is not None):
             continue
-        if not all(there):
+        if upper and rule is None:
+            found = [zeros_like(facts["layout"], value, record, found) for value, record in zip(found, records, strict=True)]
+        elif not upper and not all(there):
             raise MethodError(f"merge: state {there.index(False) + 1} lacks '{one.name}', and others have it; solve them alike")
         if "record" in facts:
             values[one.name] = _merged(found)
@@ -66,6 +69,15 @@ def _merged(records: list[Any]) -> Any:
         else:
             values[one.name] = side_by_side(facts["layout"], found, records)
     return type(records[0])(**values)
+
+
+def zeros_like(layout: Layout, value: np.ndarray | None, record: Record, others: list) -> np.ndarray:
+    """Return the array, or zeros of the type that other states have."""
+    if value is not None:
+        return value
+    kind = next(other.dtype for other in others if other is not None)
+    found = np.zeros(record.sizes.shape(layout.axes), kind)
+    return found.ravel() if layout.flat else found
 
 
 def _equal(name: str, values: list) -> Any:

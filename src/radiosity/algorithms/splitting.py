@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from .merge_rules import added, alike, of_first
+from .merge_rules import added, alike, fired_low, fired_upper, of_first
 from .state import AbstractState, Layout
 
 S = TypeVar("S", bound=AbstractState)
@@ -14,7 +14,7 @@ S = TypeVar("S", bound=AbstractState)
 # The rule by which a field is merged, and what each part gets of it: value, number of the part -> value.
 RULES: dict[Callable, Callable[[Any, int], Any]] = {
     alike: lambda value, at: value,
-    added: lambda value, at: value if at == 0 else value * 0,
+    **dict.fromkeys((added, fired_low, fired_upper), lambda value, at: value if at == 0 else value * 0),
     of_first: lambda value, at: value if at == 0 else value[:0],
 }
 

@@ -12,8 +12,11 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from ..solution.books import exact_sum, exact_totals
+
 Arrays = Mapping[str, np.ndarray]
 KINDS = {int: "iu", float: "fiu", bool: "b", np.ndarray: "biuf"}  # of arrays that fields are made of
+UPPER = "_upper"  # end of the names of optional arrays that hold the upper words of others, which are modulo 2^64
 
 
 @dataclass(frozen=True)
@@ -61,9 +64,13 @@ class Layout:
 Rule = Callable[[Layout | None, list, list[Any]], Any]  # layout, values of all states, and the records that have them
 
 
-def array(*axes: str | int, flat: bool = False, optional: bool = False, merged: Rule | None = None) -> Any:
-    """Return a field that holds an array. Without a rule, states are joined along the replicates."""
-    return field(**_default(optional), metadata={"layout": Layout(axes, flat), "merged": merged})
+def array(*axes: str | int, flat: bool = False, optional: bool = False, merged: Rule | None = None, zeros: bool = False) -> Any:
+    """Return a field that holds an array. Without a rule, states are joined along the replicates.
+
+    Args:
+        zeros: where the array is left out, all of it is zero.
+    """
+    return field(**_default(optional), metadata={"layout": Layout(axes, flat), "merged": merged, "zeros": zeros})
 
 
 def number(kind: type, *, optional: bool = False, merged: Rule | None = None) -> Any:
@@ -96,6 +103,25 @@ class Record:
             elif value is not None:
                 found[one.name] = np.asarray(value)
         return found
+
+    def about(self, name: str, at: Any = ...) -> np.ndarray:
+        """Return an array of words at some places: as it is, or in double precision where it has upper words."""
+        low, upper = getattr(self, name)[at], getattr(self, name + UPPER)
+        return low if upper is None else low + upper[at] * 2.0**64
+
+    def exact(self, name: str, at: Any = ...) -> int:
+        """Return the sum of an array of words at some places, without rounding."""
+        low, upper = getattr(self, name)[at], getattr(self, name + UPPER)
+        return exact_sum(low) + (0 if upper is None else exact_sum(upper[at]) << 64)
+
+    def totals(self, name: str, at: Any, weight: np.ndarray) -> tuple[int, int]:
+        """Return the sum of an array of words, and that of its products with weights, uint32, see `exact_totals`."""
+        low, upper = getattr(self, name)[at], getattr(self, name + UPPER)
+        total, weighted = exact_totals(low, weight)
+        if upper is None:
+            return total, weighted
+        more, of_more = exact_totals(upper[at], weight)
+        return total + (more << 64), weighted + (of_more << 64)
 
     @classmethod
     def read(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> Self:

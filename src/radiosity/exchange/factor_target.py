@@ -15,7 +15,7 @@ from .view_factors import ViewFactors
 
 ROW = "row:"
 FIRST = 64  # lines of a patch in the first run
-MOST = 2**34  # lines in all
+MOST, ENDLESS = 2**34, 2**60  # lines in all, where there is no limit: while the error is unknown, and when it is known
 LEAP = 4  # most doublings from a run to the next
 NORMAL = 1.645  # standard deviations that 95 % are below
 SLOPE = 0.5  # of the error against work, by which the next run is chosen
@@ -92,7 +92,7 @@ def until(target: FactorTarget, make: Callable[[int], ViewFactors], patches: int
     """
     if replicates < 2:
         raise MethodError("an error can be reached with 2 replicates or more; one alone tells none")
-    most = MOST if rays is None else int(Budget(rays=rays).rays or 0)
+    most = int(Budget(rays=ENDLESS if rays is None else rays).rays or 0)
     goal, last = min(max(FIRST * patches, 2000 * replicates), most), None
     while True:
         try:
@@ -104,9 +104,10 @@ def until(target: FactorTarget, make: Callable[[int], ViewFactors], patches: int
         bound = target.bound(found)
         if bound <= target.error or found.status != "complete":
             return found
-        if goal >= most:
+        known = np.isfinite(bound)
+        if goal >= most or (rays is None and not known and goal >= MOST):
             break
-        doublings = np.log2(bound / target.error) / SLOPE if np.isfinite(bound) else 1.0
+        doublings = np.log2(bound / target.error) / SLOPE if known else 1.0
         goal, last = min(goal * 2 ** int(np.clip(np.ceil(doublings), 1, LEAP)), most), found
     text = f"is {bound:.2%}" if np.isfinite(bound) else "cannot be judged from so few lines"
     warnings.warn(

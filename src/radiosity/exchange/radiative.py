@@ -26,7 +26,7 @@ from .tracing import trace
 RAYS = 2_000_000  # where nothing else is asked for
 PATCHES = 2_000  # of a scene that is not cut yet
 FIRST = 64  # lines of a patch in the first stage of a run to an error
-MOST = 2**34  # lines in all; counters hold no more
+MOST, ENDLESS = 2**34, 2**60  # lines in all, where there is no limit: while the error is unknown, and when it is known
 LEAP = 4  # most doublings between two looks at the error
 SLOPE = 0.6  # of the error against lines, by which the next look is chosen
 
@@ -130,7 +130,7 @@ def _until(target: Target, estimator: Estimator, rays: float | None, options: di
 
     Ctrl-C returns those of the last stage that was solved.
     """
-    patches, most = estimator.patches, int(Budget(rays=MOST if rays is None else rays).rays or 0)
+    patches, most = estimator.patches, int(Budget(rays=ENDLESS if rays is None else rays).rays or 0)
     goal = min(max(FIRST * len(patches), 2000 * options["replicates"]), most)
     last = None
     while True:
@@ -146,9 +146,9 @@ def _until(target: Target, estimator: Estimator, rays: float | None, options: di
             return lines, found, "complete"
         if lines.status == "interrupted":
             return lines, found, "interrupted"
-        if goal >= most or lines.status != "complete":
-            break
         known = np.isfinite(bound) and bound > 0
+        if goal >= most or (rays is None and not known and goal >= MOST) or lines.status != "complete":
+            break
         doublings = np.log2(bound / target.error) / SLOPE if known else 1.0
         goal = min(goal * 2 ** int(np.clip(np.floor(doublings), 1, LEAP)), most)
     text = f"is {bound:.2%}" if np.isfinite(bound) else "cannot be judged from so few lines"

@@ -41,7 +41,7 @@ class CountedPairs:
         patches: the patches that lines join; only their geometry is used.
         keys: (m,) uint64, ascending: (r n + i) 2^32 + j for lines from patch i to j in replicate r; j = n are lines that escaped,
             and j = n + 1 lines absorbed by backs.
-        counts: (m,) uint32, the number of lines of each key.
+        counts: (m,) uint32 or uint64, the number of lines of each key.
         replicates: the number of replicates.
         both_ways: each line counts at both its ends, see `solve.of_both_ways`.
         directed: a patch need not see a patch that sees it, see `Factors.sent`.

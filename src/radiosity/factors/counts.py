@@ -36,7 +36,7 @@ class PairCounts:
 
     @property
     def arrays(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return keys, (m,) uint64 ascending, and counts, (m,) uint32."""
+        """Return keys, (m,) uint64 ascending, and counts, (m,) uint32 where that suffices, else uint64."""
         self._merge()
         return self._keys, self._counts
 
@@ -52,7 +52,9 @@ def _merged(keys: np.ndarray, counts: np.ndarray | None) -> tuple[np.ndarray, np
     first = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
     if counts is None:
         return keys[first], np.diff(first, append=len(keys)).astype(np.uint32)
-    return keys[first], np.add.reduceat(counts, first, dtype=np.uint32)
+    wide = counts.dtype.itemsize > 4 or int(counts.sum(dtype=np.uint64)) >> 32 > 0
+    found = np.add.reduceat(counts, first, dtype=np.uint64 if wide else np.uint32)
+    return keys[first], found if wide and int(found.max()) >> 32 > 0 else found.astype(np.uint32, copy=False)
 
 
 def split(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

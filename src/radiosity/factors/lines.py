@@ -37,10 +37,10 @@ class LocalLines:
         self.phase = phases(seed, replicates, self.n) * 2.0**-32
 
     def targets(self, quanta: int) -> np.ndarray:
-        """Return the lines that patches have fired at N, (replicates, n_patches) uint32."""
+        """Return the lines that patches have fired at N, (replicates, n_patches) uint64."""
         if quanta == 0:
-            return np.zeros(self.phase.shape, np.uint32)
-        return np.maximum(np.floor(self.share * quanta + self.phase), FEW).astype(np.uint32)
+            return np.zeros(self.phase.shape, np.uint64)
+        return np.maximum(np.floor(self.share * quanta + self.phase), FEW).astype(np.uint64)
 
     def trace(self, begin: int, end: int, add: Add) -> None:
         """Trace the lines from N = ``begin`` to ``end``.
@@ -54,11 +54,11 @@ class LocalLines:
             add(numbers, np.where(slots < self.total, slots % self.n, missed))
 
         more = self.targets(end) - self.targets(begin)
-        self.shooter.shoot(upload(self.shooter.types.UInt32, more), pairs=pairs)
+        self.shooter.shoot(upload(self.shooter.types.UInt32, more.astype(np.uint32)), pairs=pairs)
 
     def resume(self, reached: int) -> None:
         """Prepare to go on from N = ``reached``."""
-        self.shooter.fired = upload(self.shooter.types.UInt32, self.targets(reached))
+        self.shooter.begin_after(self.targets(reached))
 
 
 class GlobalLines:

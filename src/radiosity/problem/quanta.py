@@ -18,7 +18,8 @@ from ..pieces import pieces
 from ..sampling.streams import Purpose, Seed, stream
 
 ONE = 2.0**32
-LIMIT = 2**32 - 1  # of every counter
+WORD = np.uint64(32)  # bits
+LIMIT = 2**62  # lines of a replicate: what is counted of them fits in 64 bits
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +73,11 @@ class Source:
         tau = None if through is None else Source.fixed(through)
         return Source(power / total, Source.fixed(reflectance), total, tau, None if other is None else other.astype(np.uint32))
 
+    @property
+    def least_absorbed(self) -> float:
+        """The least share of received light that rows do not send on."""
+        return 1 - int((self.rho if self.tau is None else self.rho + self.tau).max()) / ONE
+
     @staticmethod
     def fixed(reflectance: np.ndarray) -> np.ndarray:
         """Return reflectance in [0, 1) times 2^32, uint32."""
@@ -90,15 +96,22 @@ class Source:
         return rho if scatter.through is None else rho + Source.fixed(scatter.through[:, group])
 
     def sent_on(self, arrivals: np.ndarray, part: slice = slice(None)) -> np.ndarray:
-        """Return what rows send on for hit counts of all rows, (..., n_rows): of some of them, in 2^-32ths, uint64."""
+        """Return what rows send on for hit counts of all rows, (..., n_rows): of some of them, in 2^-32ths, uint64.
+
+        It is modulo 2^64 where hit counts have more than 32 bits.
+        """
         sent = self.rho[part].astype(np.uint64) * arrivals[..., part].astype(np.uint64)
         if self.tau is None or self.other is None:
             return sent
         return sent + self.tau[part].astype(np.uint64) * arrivals[..., self.other[part]].astype(np.uint64)
 
     def emitted(self, quanta: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return E_i A_i / delta at N quanta: whole lines and 2^-32ths, uint32 each. It never falls when N grows."""
-        whole, fraction = (np.empty(len(self.share), np.uint32) for _ in range(2))
+        """Return E_i A_i / delta at N quanta: whole lines and 2^-32ths, uint32 each. It never falls when N grows.
+
+        Whole lines are uint64 where 32 bits do not suffice.
+        """
+        many = float(self.share.max()) * quanta >= ONE
+        whole, fraction = np.empty(len(self.share), np.uint64 if many else np.uint32), np.empty(len(self.share), np.uint32)
         for part, *both in self._emitted(quanta):
             whole[part], fraction[part] = both
         return whole, fraction
@@ -126,5 +139,6 @@ def phases(seed: Seed | int, replicates: int, n_patches: int) -> np.ndarray:
 def target_counts(source: Source, quanta: int, arrivals: np.ndarray, phase: np.ndarray) -> np.ndarray:
     """Return the target counts of contract 2 on the host, (..., n_patches) uint64: for the energy balance and for tests."""
     whole, fraction = source.emitted(quanta)
-    low = source.sent_on(arrivals) + fraction.astype(np.uint64) + phase.astype(np.uint64)
-    return whole.astype(np.uint64) + (low >> np.uint64(32))
+    hits = np.asarray(arrivals, np.uint64)
+    low = source.sent_on(hits & np.uint64(2**32 - 1)) + fraction.astype(np.uint64) + phase.astype(np.uint64)
+    return whole.astype(np.uint64) + (low >> WORD) + source.sent_on(hits >> WORD)

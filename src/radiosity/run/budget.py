@@ -7,7 +7,7 @@ from ..errors import MethodError
 from ..problem.quanta import LIMIT
 
 FIRST_STAGE = 1 << 20  # quanta of all replicates together in the first stage
-FULL = 0.95 * LIMIT  # lines of a replicate: its counters have 32 bits
+BLIND = 0.95 * 2**32  # lines of a replicate that an error target gets while its error cannot be judged
 LEAST_QUANTA = 1024
 AIM, AIM_ONCE = 0.97, 0.9  # of an error target, at the last stage; lower where no run goes on from a stage between two rungs
 LEAST_STEP = 1.05  # times the lines so far
@@ -65,16 +65,16 @@ class Budget:
         return (self.rays is None or lines <= self.rays) and (self.seconds is None or seconds <= self.seconds)
 
     def check(self, replicates: int) -> None:
-        """Refuse what 32-bit counters could not hold, before anything is traced.
+        """Refuse what no run could do, before anything is traced.
 
         Raises:
-            MethodError: there are too many lines for a replicate.
+            MethodError: no time suffices for so many lines, or a single replicate has no error.
         """
         lines = max((self.rays or 0) / replicates, self.quanta or 0)
         if lines >= LIMIT:
             raise MethodError(
-                f"{lines:.3g} lines for each of {replicates} replicates overflow the 32-bit counters "
-                f"(fewer than {LIMIT}); take more replicates or fewer lines"
+                f"{lines:.3g} lines for each of {replicates} replicates are more than are counted (fewer than {LIMIT:.3g}), and "
+                "would take centuries; take fewer lines"
             )
         if self.error is not None and replicates < 2:
             raise MethodError("a target error needs 2 replicates or more: a single one has no error")
@@ -137,15 +137,13 @@ class Progressed:
     slope: float = 0.5
 
 
-def next_quanta(
-    budget: Budget, replicates: int, first: int, at: Progressed, most: float, *, replay: bool, exact: bool = False
-) -> int | None:
+def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, *, replay: bool, exact: bool = False) -> int | None:
     """Return N of the next stage, or None where the budget is used up.
 
     The stages of any run are the rungs of the ladder below its last N, then N. So N alone replays a run, also where bands make
     the result depend on the stages (``replay``); there a stage between two rungs is the last. Integers alone do not depend on
-    stages, and a run of them may go on from any N. A replicate counts ``most`` lines at most. A stage of a hundredth more lines
-    is left out, unless N itself was asked for (``exact``): that repeats a run.
+    stages, and a run of them may go on from any N. A stage of a hundredth more lines is left out, unless N itself was asked for
+    (``exact``): that repeats a run. A run for an error alone ends after `BLIND` lines where that error is still unknown.
     """
     if replay and not on_ladder(at.quanta, first):
         return None
@@ -154,8 +152,9 @@ def next_quanta(
     if wanted <= at.quanta * (1.0 if exact else 1.01):
         return None
     target = min(rung, wanted)
-    if at.lines / replicates * target / at.quanta > most:
-        return None  # 32-bit counters hold no more
+    blind = budget.error is not None and budget.rays is None and budget.seconds is None and math.isnan(at.error)
+    if blind and at.lines / replicates * target / at.quanta > BLIND:
+        return None
     return target
 
 

@@ -25,7 +25,7 @@ from ..tally import unmet
 from ..tracing.geometry import Geometry
 from . import memory_estimate
 from .baseline_budget import warn_of_missing
-from .budget import FULL, Budget, Progressed, next_quanta, on_ladder, rung_after
+from .budget import Budget, Progressed, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .choice import Choice
 from .error_target import DARK, Target, nothing_before_lights
@@ -40,7 +40,6 @@ from .shortfall import warn_of_few_ends, warn_of_more, warn_of_target
 from .snapshot import Snapshot
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
-COUNTERS_FULL = "counters full before the end; take more replicates"
 LARGE = 1 << 19  # counters: before results are read, memory of wavefronts is given back, which takes some milliseconds
 AT_ONCE = 1 << 24  # lines: a run of fewer, whose N is known beforehand, is one stage
 PATIENCE = 1.2  # times the seconds asked for: after that a stage is left unfinished
@@ -89,7 +88,6 @@ class Run(Generic[R]):
             )
         lines = memory_estimate.lines_of(method, budget, part.replicates)
         memory_estimate.check(method, patches, bands, part.replicates, lines)
-        self.most = FULL if isinstance(method, Method) else math.inf  # lines of a replicate; baselines count none in 32 bits
         self.rung = part.rung(method.order, self.problem.source.share)
         part.check(method, budget, self.rung)
         self.teller, self.stop = Teller(budget, listener, 0.0 if choice is None else choice.seconds), Stop()
@@ -171,18 +169,16 @@ class Run(Generic[R]):
                 target = steps[-1]
                 continue
             exact = self.budget.quanta is not None
-            target = next_quanta(self.ladder, self.replicates, self.rung, at, self.most, replay=replay, exact=exact)
+            target = next_quanta(self.ladder, self.replicates, self.rung, at, replay=replay, exact=exact)
             steps = [target] if target else []
             if target and large and self.replicates > 1:
                 snapshot.settle()
                 give_back_memory()
-        if status == COUNTERS_FULL and self.snapshot is None and not self._had_results:
-            raise MethodError(f"{status}, or cut the scene into fewer patches: the first stage alone was too long")
         if self.snapshot is None:
             solution = self._so_far(status, pending or algorithm.capture())
         else:
-            if status in ("complete", COUNTERS_FULL) and not self._reached(self.snapshot):
-                status = COUNTERS_FULL if self.budget.error is None else NOT_REACHED
+            if status == "complete" and self.budget.error is not None and not self._reached(self.snapshot):
+                status = NOT_REACHED
             solution = self._solution(self.snapshot, status, pending)
         if self.checkpoint is not None:
             self.checkpoint.end(solution)
@@ -250,10 +246,6 @@ class Run(Generic[R]):
         with aside():
             watch(solution)
 
-    @property
-    def _had_results(self) -> bool:
-        return self.resume is not None and self.resume.quanta > 0
-
     def _so_far(self, status: str, state: AbstractState) -> R:
         """Results of the last complete stage, if any, and a state to go on from."""
         seconds = self.teller.elapsed + self.seconds_before
@@ -279,14 +271,8 @@ class Run(Generic[R]):
         return rungs
 
     def _reached(self, snapshot: Snapshot) -> bool:
-        """Return whether the error was reached, or another budget used up; otherwise the counters were full."""
-        if snapshot.done or self._no_light(snapshot):
-            return True
-        if self.budget.error is not None:
-            return self.teller.bound <= self.budget.error
-        if self.budget.quanta is not None:
-            return snapshot.quanta >= self.budget.quanta
-        return self.budget.rays is None or snapshot.lines >= 0.5 * self.budget.rays
+        """Return whether the error was reached, or is as small as it gets."""
+        return snapshot.done or self._no_light(snapshot) or self.teller.bound <= (self.budget.error or 0)
 
     def _margin(self, snapshot: Snapshot) -> float:
         """Return how many times the stated error the true one may be, where there is an error target; NaN with too few hits."""
@@ -319,8 +305,6 @@ class Run(Generic[R]):
         self.teller.tell("tracing")
         if self.stop.asked:
             raise Interrupted("interrupted")
-        if self.teller.lines / self.replicates > self.most:
-            raise Interrupted(COUNTERS_FULL)
         seconds = self.budget.seconds
         if seconds is not None and self.teller.stage and self.teller.elapsed > PATIENCE * seconds + 1:
             raise Interrupted("complete")
@@ -354,9 +338,7 @@ class Run(Generic[R]):
             if self.resume is None:
                 warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
             if status == NOT_REACHED:
-                # a stage that full counters forbid would have doubled the lines
-                full = snapshot.lines / self.replicates >= self.most / 2
-                warn_of_target(snapshot, self.budget, self.target, self.teller.bound, self.error_of, full=full)
+                warn_of_target(snapshot, self.budget, self.target, self.teller.bound, self.error_of)
             if isinstance(snapshot.tally, AbstractMeanTally):
                 unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
             warn_of_few_ends(self.method, snapshot.lines / self.replicates / len(self.patches))

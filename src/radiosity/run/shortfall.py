@@ -26,13 +26,12 @@ def warn_of_more(lines: int, budget: Budget, replicates: int, patches: Patches) 
         )
 
 
-def warn_of_target(snapshot: Snapshot, budget: Budget, target: Target, bound: float, error_of: str | None, *, full: bool) -> None:
+def warn_of_target(snapshot: Snapshot, budget: Budget, target: Target, bound: float, error_of: str | None) -> None:
     """Warn of an error that was not reached: say what is known of it, and what ended the run.
 
     Args:
         bound: the true error is below this in 95 % of runs; NaN where that is not known.
         error_of: the error target as it was asked for.
-        full: the counters are full.
     """
     if math.isnan(bound):
         landed = int(snapshot.arrivals[target.rows].sum())
@@ -40,7 +39,7 @@ def warn_of_target(snapshot: Snapshot, budget: Budget, target: Target, bound: fl
     else:
         known = f"after {snapshot.lines:,} lines it is {bound:.2%} or less in 95 % of runs"
     limits = [f"{name}={value:g}" for name, value in (("rays", budget.rays), ("seconds", budget.seconds)) if value is not None]
-    why = f"the limit was {', '.join(limits)}" if limits and not full else "counters are full: take more replicates"
+    why = f"the limit was {', '.join(limits)}" if limits else "to go on all the same, give more lines as its limit (rays)"
     warnings.warn(
         f"the error {100 * (budget.error or 0):.3g}% of {error_of or 'the scene'} was not reached: {known}; {why}",
         RadiosityWarning,

@@ -10,9 +10,11 @@ from ..algorithms.gather.beams import Beams
 from ..algorithms.gather.chances import Chances
 from ..algorithms.gather.lamps import Lamps
 from ..algorithms.gather.lines import UNITS, Lines
+from ..algorithms.gather.sums import Sums
 from ..device.backend import upload
 from ..method.presets import PRESETS
 from ..problem.model import Problem
+from ..sampling.blocks import BLOCK
 from ..sampling.streams import Purpose, Seed
 from ..tracing.geometry import Geometry
 from .model import Sensors
@@ -33,7 +35,7 @@ class Tracing:
         read: what cosine lines read, of each group, or each of its coefficients.
         shares: (2, count) float64, lines of both kinds of each packet, one in the mean over planes and both kinds together.
         counts: (2, count) int64, lines so far.
-        brought, met: sums, of each group.
+        brought, met: sums.
         missed: lines that escaped and were lost.
     """
 
@@ -42,8 +44,8 @@ class Tracing:
     read: list
     shares: np.ndarray
     counts: np.ndarray
-    brought: list
-    met: list
+    brought: Sums
+    met: Sums
     missed: list
     traced: int = field(default=0)
 
@@ -88,8 +90,8 @@ class Tracing:
         whole = np.broadcast_to(reflected, (replicates, *reflected.shape[1:]))
         read = [upload(types.Float, whole[..., column].astype(np.float32)) for column in range(whole.shape[2])]
         kinds: tuple[Any, ...] = (types.UInt64, types.Int64)
-        brought, met = ([dr.zeros(kind, receivers.lanes) for _ in range(lines.groups)] for kind in kinds)
-        missed = [dr.zeros(types.UInt32, receivers.lanes) for _ in range(2)]
+        brought, met = (Sums(receivers, kind, lines.groups) for kind in kinds)
+        missed = [dr.zeros(types.UInt64, receivers.lanes) for _ in range(2)]
         traced = 2 * pilot * one.receivers
         return Tracing(receivers, lines, read, shares, np.zeros((2, one.count), np.int64), brought, met, missed, traced)
 
@@ -99,20 +101,22 @@ class Tracing:
         more = np.maximum(wanted - self.counts, 0)
         if more[0].any():
             met, missed = self.lines.cosine(self.counts[0], more[0], read=self.read)
-            self.met = [total + one for total, one in zip(self.met, met, strict=True)]
-            self.missed = [total + one for total, one in zip(self.missed, missed, strict=True)]
+            self.met.add(met)
+            self.missed = [total + type(total)(one) for total, one in zip(self.missed, missed, strict=True)]
         if more[1].any():
-            brought = self.lines.shadow(self.counts[1], more[1])
-            self.brought = [total + one for total, one in zip(self.brought, brought, strict=True)]
-        dr.eval(self.met, self.brought, self.missed)
+            self.brought.add(self.lines.shadow(self.counts[1], more[1]))
+        dr.eval(self.met.low, self.brought.low, self.missed)
         self.counts = self.counts + more
+        if int(self.counts.max()) >= BLOCK:
+            self.met.set_apart()
+            self.brought.set_apart()
         self.traced += int((more * self.receivers.sizes).sum()) * self.receivers.replicates
 
     def values(self) -> np.ndarray:
         """Return the irradiance of each sensor in each replicate, (replicates, n_sensors, n_groups), in shares of the unit."""
         cosine, rays = (np.maximum(self._of_planes(count), 1) for count in self.counts)
         found = []
-        for brought, met in zip(self.brought, self.met, strict=True):
+        for brought, met in zip(self.brought.about(), self.met.about(), strict=True):
             here = self._planes(brought) / (rays * UNITS) + self._planes(met) / (cosine * self.lines.unit)
             found.append(self._sensors(here))
         return np.stack(found, axis=-1)

@@ -52,11 +52,17 @@ class FarSides:
             numbers: of rows; None for all.
             arrivals: hit counts of all numbers.
         """
-        u32, wide = self.tracer.types.UInt32, self.tracer.types.UInt64
+        wide = self.tracer.types.UInt64
+        tau, hits, _ = self.across(numbers, arrivals)
+        return wide(tau) * wide(hits)
+
+    def across(self, numbers, arrivals):
+        """Return rows' transmittance, the hits of their other sides, and the numbers of these, UInt32; called in a kernel."""
+        u32 = self.tracer.types.UInt32
         number = dr.arange(u32, self.tracer.total) if numbers is None else numbers
         patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
-        tau = dr.gather(u32, self.tau, patch)
-        return wide(tau) * wide(dr.gather(u32, arrivals, self.beyond(number), tau > 0))
+        tau, beyond = dr.gather(u32, self.tau, patch), self.beyond(number)
+        return tau, dr.gather(u32, arrivals, beyond, tau > 0), beyond
 
     def with_others(self, numbers: np.ndarray) -> np.ndarray:
         """Return numbers on the host, sorted, with those on the other sides of diffusing panes among them."""

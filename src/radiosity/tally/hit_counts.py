@@ -8,6 +8,7 @@ import numpy as np
 from ..device.backend import frozen, upload
 from ..tracing.line_tracer import LineTracer
 from .bands import BandTally
+from .wraps import Wraps
 
 
 class HitCounts:
@@ -15,7 +16,8 @@ class HitCounts:
 
     Attributes:
         tracer: the line tracer that numbers the slots.
-        arrivals: UInt32 (slots,), the hit count of each slot.
+        arrivals: UInt32 (slots,), the hit count of each slot, modulo 2^32.
+        upper: upper words of the rows' hit counts; `missed_upper` has those of lines that escaped and were lost.
         bands: powers of bands that lines carry, or None.
         touched: Bool (slots,), whether a line hit the slot since `forget_touched`; written only where flags are asked for.
     """
@@ -24,6 +26,24 @@ class HitCounts:
         self.tracer, self.bands = tracer, bands
         self.arrivals: Any = dr.opaque(tracer.types.UInt32, 0, tracer.slots)
         self.touched: Any = None
+        self.upper, self.missed_upper = Wraps(tracer.types), Wraps(tracer.types)
+
+    @property
+    def rows(self):
+        """The part of ``arrivals`` that counts hits of rows; not copied."""
+        return dr.reshape(self.tracer.types.UInt32, self.arrivals, self.tracer.total, shrink=True)
+
+    @property
+    def missed(self):
+        """The part of ``arrivals`` that counts lines that escaped and were lost."""
+        types, tracer = self.tracer.types, self.tracer
+        at = dr.arange(types.UInt32, 2 * tracer.replicates) + dr.opaque(types.UInt32, tracer.total)
+        return dr.gather(types.UInt32, self.arrivals, at)
+
+    def look(self) -> None:
+        """Note which counts wrapped around; called every `PERIOD` lines or more often."""
+        self.upper.look(self.rows)
+        self.missed_upper.look(self.missed)
 
     def forget_touched(self) -> None:
         """Set all flags of ``touched`` back to false."""
@@ -34,10 +54,15 @@ class HitCounts:
         dr.scatter_add(self.arrivals, self.tracer.types.UInt32(1), slot, active=active, mode=mode)
 
     def read(self) -> tuple[np.ndarray, np.ndarray]:
-        """Copy the counts to the host: arrivals, (replicates, n) uint32, and escaped and lost lines, (2, replicates)."""
+        """Copy the counts to the host: arrivals, (replicates, n), and escaped and lost lines, (2, replicates).
+
+        They are uint32 where that suffices, else uint64.
+        """
         flat, tracer = frozen(self.arrivals), self.tracer
-        return flat[: tracer.total].reshape(tracer.replicates, tracer.n), flat[tracer.total :].reshape(2, tracer.replicates)
+        rows = flat[: tracer.total] if self.upper.halves is None else self.upper.values(self.rows)
+        missed = flat[tracer.total :] if self.missed_upper.halves is None else self.missed_upper.values(self.missed)
+        return rows.reshape(tracer.replicates, tracer.n), missed.reshape(2, tracer.replicates)
 
     def write(self, arrivals: np.ndarray, missed: np.ndarray) -> None:
         """Set the counts to what `read` returned."""
-        self.arrivals = upload(self.tracer.types.UInt32, np.concatenate([arrivals.ravel(), missed.ravel()]))
+        self.arrivals = upload(self.tracer.types.UInt32, np.concatenate([self.upper.of(arrivals), self.missed_upper.of(missed)]))

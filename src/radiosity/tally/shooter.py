@@ -16,7 +16,8 @@ from ..device.backend import frozen, upload
 from ..device.launches import shared
 from ..method import Method
 from ..patches.bases import CONSTANT, Basis
-from ..sampling.streams import Purpose, Seed, stream
+from ..sampling.blocks import BLOCK
+from ..sampling.streams import Purpose, Seed
 from ..tracing.geometry import Geometry
 from ..tracing.lanes import Batch, Launch
 from ..tracing.line_tracer import LineTracer
@@ -24,6 +25,7 @@ from ..tracing.spots import traced
 from .hit_counts import HitCounts
 from .hit_tally import DENSE
 from .moments import Moments
+from .wraps import PERIOD, Wraps
 
 FEW = 1 << 13  # batches of at most this many lines share one kernel
 
@@ -53,7 +55,7 @@ class Shooter:
     Attributes:
         tracer: lines of the patches, with the numbers of the sequence that is taken now.
         hits: the hit counts.
-        fired: UInt32 (total,), lines of each patch in that sequence.
+        fired: UInt32 (total,), lines of each patch in that sequence, modulo 2^32; ``upper`` has the upper words.
         basis: of the light on patches.
         received: (slots * n_columns,) Int64, power of the last shot. A slot has a column for each group of bands, or with a basis
             of K functions K columns for each: the power times each function, summed.
@@ -72,14 +74,12 @@ class Shooter:
         self.tracer = tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates)
         self.types, self.total, self.slots, self.groups = tracer.types, tracer.total, tracer.slots, n_groups
         self.hits, self.basis = HitCounts(tracer), basis
-        self.fired = dr.opaque(self.types.UInt32, 0, self.total)
         self.received = dr.opaque(self.types.Int64, 0, self.slots * n_groups * basis.size) if n_groups else None
-        self.sequence, self._tracers, self._fired = 0, [tracer], [self.fired]
-        for more in range(1, sequences):
-            streams = [stream(seed, r, Purpose.SEQUENCE, more) for r in range(replicates)]
-            drawn = [tracer.numbers.randomisation(one) for one in streams]
-            self._tracers.append(tracer.moved_by(upload(self.types.UInt32, np.array(drawn, np.uint32))))
-            self._fired.append(dr.opaque(self.types.UInt32, 0, self.total))
+        self.sequence, self.unseen = 0, 0  # unseen: lines since counters were looked at
+        self._tracers = [tracer, *(tracer.of_stream(Purpose.SEQUENCE, more) for more in range(1, sequences))]
+        self._fired = [dr.opaque(self.types.UInt32, 0, self.total) for _ in range(sequences)]
+        self._upper = [Wraps(self.types) for _ in range(sequences)]
+        self.fired = self._fired[0]
 
     @property
     def sequences(self) -> int:
@@ -92,6 +92,19 @@ class Shooter:
         self.fired, self.tracer = self._fired[sequence], self._tracers[sequence]
         self.sequence = sequence
 
+    @property
+    def upper(self) -> Wraps:
+        """Upper words of ``fired``."""
+        return self._upper[self.sequence]
+
+    def _look(self) -> None:
+        """Note which counters wrapped around."""
+        self.hits.look()
+        self.take(self.sequence)
+        for upper, fired in zip(self._upper, self._fired, strict=True):
+            upper.look(fired)
+        self.unseen = 0
+
     def shoot(self, counts, weights=None, ends: Ends | None = None, pairs: Pairs | None = None) -> int:
         """Fire lines, and return their number.
 
@@ -103,34 +116,58 @@ class Shooter:
             pairs: called for every launch with patch numbers and the slots that their lines hit, (m,) uint32 each; the
                 arrays are valid until it returns.
         """
-        types, tracer = self.types, self.tracer
         if self.groups:
             groups = self.groups if ends is None or ends.groups is None else ends.groups
-            self.received = dr.opaque(types.Int64, 0, self.slots * groups * self.basis.size)
+            self.received = dr.opaque(self.types.Int64, 0, self.slots * groups * self.basis.size)
+        total, left = 0, counts
+        while left is not None:
+            lines, left = self._shoot(left, weights, ends, pairs)
+            total += lines
+        return total
+
+    def _shoot(self, counts, weights, ends: Ends | None, pairs: Pairs | None) -> tuple[int, Any]:
+        """Fire lines of each patch that lie in one block. Return their number, and the counts of those that are left, or None."""
+        types, tracer = self.types, self.tracer
         dr.eval(counts, weights)
         rows: Any = dr.compress(counts > 0)
         if dr.width(rows) == 0:
-            return 0
-        columns = dr.gather(types.UInt32, counts, rows), dr.gather(types.UInt32, self.fired, rows)
-        largest = dr.max(columns[0] + columns[1])
-        batch = Batch.of(types, rows, *columns, tracer.record)
+            return 0, None
+        now, fired = dr.gather(types.UInt32, counts, rows), dr.gather(types.UInt32, self.fired, rows)
+        largest, blocks, left = dr.max(now + fired), None, None
+        if self.upper.halves is not None:
+            first = fired + 1
+            blocks = self.upper.upper(fired, rows) + dr.select(first == 0, types.UInt32(1), types.UInt32(0))
+            now = dr.minimum(now, dr.select(first == 0, types.UInt32(PERIOD), dr.minimum(0 - first, PERIOD)))
+            left, largest = counts - self._spread(now, rows), dr.full(types.UInt32, BLOCK - 1, 2)
+            tracer.blocks.prepare(self.upper.largest + 1)
+        batch = Batch.of(types, rows, now, fired, tracer.record, blocks=blocks)
         # read after the batch, whose size the host has waited for; batches of few lines share one kernel, whatever their indices
         bits = tracer.numbers.bits_for(int(largest[0]))
         mode = dr.ReduceMode.Expand if batch.total > DENSE * self.total else dr.ReduceMode.Direct
         for launch in batch.launches(types):
             self._fire(launch, 32 if batch.total <= FEW else bits, weights, ends, pairs, mode)
+            self.unseen += launch.lanes
+            if self.unseen > PERIOD:
+                self._look()
         dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
-        dr.eval(self.fired)
-        return batch.total
+        dr.eval(self.fired, left)
+        return batch.total, left if left is not None and dr.any(left > 0) else None
+
+    def _spread(self, values, rows):
+        """Return values of some patch numbers as an array of all."""
+        found = dr.zeros(self.types.UInt32, self.total)
+        dr.scatter(found, values, rows)
+        dr.eval(found)
+        return found
 
     def _fire(self, launch: Launch, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode) -> None:
         types, tracer = self.types, self.tracer
-        number, index, record = launch.read(types)
+        (number, index, record), block = launch.read(types), launch.block(types)
         real = launch.mask(types)
         if self.basis.size > 1:
-            landed = self._fire_moments(number, index, record, bits, weights, ends, real, mode)
+            landed = self._fire_moments(traced(tracer, number, index, record, bits, block), number, weights, ends, real, mode)
         else:
-            landed = tracer.trace(number, index, record, bits)
+            landed = tracer.trace(number, index, record, bits, block)
         self.hits.add(landed, real, mode)
         for g in range(self.groups if self.basis.size == 1 else 0):
             here, there = number * self.groups + g, landed * self.groups + g
@@ -148,9 +185,9 @@ class Shooter:
         if pairs is not None:
             pairs(frozen(number)[: launch.lanes], frozen(landed)[: launch.lanes])
 
-    def _fire_moments(self, number, index, record, bits: int, weights, ends: Ends | None, real, mode):
-        """Add what lines bring to moments, and return the slots that they hit."""
-        landed, begin, end = traced(self.tracer, number, index, record, bits)
+    def _fire_moments(self, lines, number, weights, ends: Ends | None, real, mode):
+        """Add what lines (see `traced`) bring to moments, and return the slots that they hit."""
+        landed, begin, end = lines
         groups = self.groups if ends is None or ends.groups is None else ends.groups
         moments = Moments(self.basis, groups, self.total, self.types)
 
@@ -170,19 +207,26 @@ class Shooter:
         """Copy the counts to the host.
 
         Returns:
-            Arrivals and fired, (replicates, n_patches) uint32; missed, (2, replicates); and where there are several sequences,
-            lines fired in each, (sequences, replicates, n_patches), else None. ``fired`` is the sum over sequences.
+            Arrivals and fired, (replicates, n_patches); missed, (2, replicates); and where there are several sequences,
+            lines fired in each, (sequences, replicates, n_patches), else None. ``fired`` is the sum over sequences. All are
+            uint32 where that suffices, else uint64.
         """
         arrivals, missed = self.hits.read()
-        fired = frozen(self.fired).reshape(arrivals.shape)
-        if len(self._fired) == 1:
-            return arrivals, fired, missed, None
         self.take(self.sequence)
-        apart = np.stack([np.array(column).reshape(fired.shape) for column in self._fired])
-        return arrivals, apart.sum(axis=0, dtype=np.uint32), missed, apart
+        columns = [upper.values(low).reshape(arrivals.shape) for upper, low in zip(self._upper, self._fired, strict=True)]
+        if len(columns) == 1:
+            return arrivals, columns[0], missed, None
+        apart = np.stack(columns)
+        fired = apart.sum(axis=0, dtype=np.uint64)
+        return arrivals, fired if int(fired.max()) >= BLOCK else fired.astype(np.uint32), missed, apart
 
     def write(self, arrivals: np.ndarray, fired: np.ndarray, missed: np.ndarray, apart: np.ndarray | None) -> None:
         """Set the counts to what `read` returned."""
         self.hits.write(arrivals, missed)
-        self._fired = [upload(self.types.UInt32, column) for column in (fired[None] if apart is None else apart)]
+        columns = fired[None] if apart is None else apart
+        self._fired = [upload(self.types.UInt32, upper.of(x)) for upper, x in zip(self._upper, columns, strict=True)]
         self.fired = self._fired[self.sequence]
+
+    def begin_after(self, fired: np.ndarray) -> None:
+        """Let the next lines follow the first ``fired`` ones of each patch, (replicates, n_patches)."""
+        self.fired = self._fired[self.sequence] = upload(self.types.UInt32, self.upper.of(fired))

@@ -1,6 +1,6 @@
 """The lanes of launches: which patch fires in which lane, and which of its lines. A lane has one line, or a few."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +24,7 @@ class Wavefront:
         low, size: the first patch number, and how many patches there are.
         total: lines of all patches.
         counts: UInt32, lines of each patch; None where bands keep what they follow from, see `FiringCounters.batches`.
+        blocks: gives the block of the lines that patch numbers fire next (`sampling.blocks`); None where that is the first.
     """
 
     numbers: Any
@@ -31,6 +32,7 @@ class Wavefront:
     size: int
     total: int
     counts: Any = None
+    blocks: Callable[[Any], Any] | None = None
 
     def batches(self, types, target_counts, fired, records, shifts: tuple[int, ...] = ()) -> "Iterator[Batch]":
         """Yield a batch at a time, of 2^shift lines a lane: the largest of ``shifts`` that leaves few lanes half empty, else one
@@ -59,7 +61,8 @@ class Wavefront:
             if not lines:
                 continue
             shift, total = fullest(lines, {0: lines, **dict(zip(shifts, lanes, strict=True))})
-            yield Batch.of(types, numbers, counts, before, records, first, shift, total)
+            blocks = None if self.blocks is None else self.blocks(numbers)
+            yield Batch.of(types, numbers, counts, before, records, first, shift, total, blocks)
 
 
 @dataclass(frozen=True)
@@ -71,13 +74,14 @@ class Batch:
         counts: UInt32, lines that each patch fires now; may be zero.
         lanes: UInt32, lanes of each patch.
         begins: UInt64, lanes of all patches before it.
-        fired: UInt32, lines that each patch has fired before.
+        fired: UInt32, lines that each patch has fired before, modulo 2^32.
         entries: UInt32, four words a patch, all that a lane reads: the number; the offset that maps a lane to its first line of
             the patch (fired + 1 - begins * each; 32-bit arithmetic wraps around, and the sum is right); and the patch's
             record, see `Geometry.patch_records`.
         start: where the piece begins in its wavefront, on the device.
         total: lanes of all patches.
         each: lines of a lane; the last lane of a patch takes what is left. 1, or UInt32, which gives one kernel for all sizes.
+        blocks: UInt32, the block that holds all the lines which each patch fires now; None where that is the first.
     """
 
     numbers: Any
@@ -89,13 +93,16 @@ class Batch:
     start: Any
     total: int
     each: Any
+    blocks: Any = None
 
     @staticmethod
-    def of(types, numbers, counts, fired, records, start=0, shift: int = 0, total: int | None = None) -> "Batch":
+    def of(
+        types, numbers, counts, fired, records, start=0, shift: int = 0, total: int | None = None, blocks: Any = None
+    ) -> "Batch":
         """Make a batch of one or more patches.
 
         Args:
-            counts, fired: UInt32, lines that each patch fires now, and has fired before.
+            counts, fired, blocks: UInt32, lines that each patch fires now, and has fired before, and their block.
             records: gives two words for patch numbers.
             shift: a lane has 2^shift lines.
             total: lanes of all patches, where it is known.
@@ -103,31 +110,34 @@ class Batch:
         if dr.width(numbers) == 1:
             both = paired(types, dr.arange(types.UInt32, 1))
             numbers, counts, fired = (dr.gather(types.UInt32, column, both) for column in (numbers, counts, fired))
+            blocks = None if blocks is None else dr.gather(types.UInt32, blocks, both)
             counts = dr.select(dr.arange(types.UInt32, 2) == 0, counts, 0)
         lanes = lanes_of(counts, dr.opaque(types.UInt32, shift)) if shift else counts
         each = dr.opaque(types.UInt32, 1 << shift) if shift else 1
-        dr.eval(counts, lanes, fired)
+        dr.eval(counts, lanes, fired, blocks)
         begins = dr.prefix_sum(types.UInt64(lanes))
         face, place = records(numbers)
         entries = dr.ravel(types.Array4u(numbers, fired + 1 - types.UInt32(begins) * each, face, place))
         dr.eval(begins, entries)
         last = dr.width(counts) - 1
         total = int(begins[last]) + int(lanes[last]) if total is None else total
-        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each)
+        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each, blocks)
 
     @property
     def several(self) -> bool:
         """True where a lane has more than one line."""
         return not isinstance(self.each, int)
 
-    def launches(self, types, begin: int = 0, end: int | None = None) -> "Iterator[Launch]":
+    def launches(self, types, begin: int = 0, end: int | None = None, limit: int | None = None) -> "Iterator[Launch]":
         """Yield launches of a bounded number of lanes: a multiple of `chunk`, whatever the number of threads.
 
         Args:
             begin, end: the first lane, and the one after the last; all by default.
+            limit: most lanes of a launch; fewer than a chunk where that is a power of two.
         """
         whole, cuda = chunk(types), dr.backend_v(types.UInt32) is dr.JitBackend.CUDA
         most = whole if cuda else max(1, CORE_CHUNK * dr.thread_count() // whole) * whole
+        most = most if limit is None else min(most, limit)
         stop = self.total if end is None else min(end, self.total)
         for start in range(begin, stop, most):
             width = min(most, stop - start)
@@ -193,7 +203,9 @@ class Launch:
         return types.UInt64(dr.arange(types.UInt32, self.width)) + self.first < self.end
 
     def read(self, types, boxes: "Boxes | None" = None):
-        """Return patch number, index (from 1) of the first line, and patch record of each lane; called in a kernel of this width.
+        """Return patch number, index of the first line, and patch record of each lane; called in a kernel of this width.
+
+        Indices are counted from 1 on, modulo 2^32, see `block`.
 
         Args:
             boxes: an order of lines for coherent firing; only where lanes have one line.
@@ -206,6 +218,10 @@ class Launch:
         base = dr.gather(types.UInt32, batch.fired, self.rank) + 1
         count = dr.gather(types.UInt32, batch.counts, self.rank)
         return number, base + by_boxes(types, base, index - base, count, boxes), (face, place)
+
+    def block(self, types):
+        """Return the block of each lane's lines; None where all are in the first one. Called in a kernel."""
+        return None if self.batch.blocks is None else dr.gather(types.UInt32, self.batch.blocks, self.rank)
 
     def mask(self, types, *, always: bool = False):
         """Return which lanes hold lines, or True where all do, unless ``always``; called in a kernel."""

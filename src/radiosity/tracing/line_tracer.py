@@ -11,9 +11,9 @@ import numpy as np
 from ..device.backend import upload
 from ..errors import MethodError
 from ..problem.lights import AbstractLights
-from ..problem.quanta import LIMIT
+from ..sampling.blocks import BLOCK, Blocks
 from ..sampling.numbers import AbstractNumbers, ready
-from ..sampling.streams import Purpose, Seed, stream
+from ..sampling.streams import Purpose, Seed
 from .geometry import Geometry
 from .hits import first_hit, patch_of
 from .ray_generation import BACK, local_lines, place_number
@@ -34,7 +34,8 @@ class LineTracer:
     Attributes:
         geometry: the scene on a device.
         numbers: the points of the unit cube, their tables on the device.
-        randomisation: UInt32, eight words a replicate that move the points.
+        blocks: randomisations of the points, a new one every 2^32 lines of a row.
+        randomisation: UInt32, eight words a replicate that move the points of the first block.
         by_patch: each row moves the points by a shift of its own, too.
         seed, replicates: as in a run.
         lights: rows after those of the patches, or None.
@@ -42,6 +43,7 @@ class LineTracer:
 
     geometry: Geometry
     numbers: AbstractNumbers
+    blocks: Blocks
     randomisation: Any
     by_patch: bool
     seed: Seed | int
@@ -63,9 +65,8 @@ class LineTracer:
             MethodError: there are more rows than 32 bits count.
         """
         points, types = ready(numbers, geometry.device.types), geometry.device.types
-        drawn = [points.randomisation(stream(seed, r, Purpose.NUMBERS)) for r in range(replicates)]
-        words = upload(types.UInt32, np.array(drawn, np.uint32))
-        tracer = LineTracer(geometry, points, words, randomisation == "by-patch", seed, replicates, lights)
+        blocks = Blocks(points, types, seed, replicates, Purpose.NUMBERS)
+        tracer = LineTracer(geometry, points, blocks, blocks.words(), randomisation == "by-patch", seed, replicates, lights)
         tracer.prepare()
         return tracer
 
@@ -75,11 +76,18 @@ class LineTracer:
             raise MethodError(f"{self.n} patches times {self.replicates} replicates are too many to count; take fewer of either")
         if self.lights is not None:
             self.lights.prepare(self.geometry)
-        _ = self.n_opaque, self._magic, self._own_lines, self._records
+        _ = self.n_opaque, self._magic, self._own_lines, self._records, self._replicates
 
-    def moved_by(self, randomisation) -> "LineTracer":
-        """Return a tracer of the same rows with other numbers: ``randomisation`` has eight words a replicate."""
-        return replace(self, randomisation=randomisation)
+    def of_stream(self, purpose: Purpose, *child: int) -> "LineTracer":
+        """Return a tracer of the same rows with the randomisation of another stream."""
+        blocks = replace(self.blocks, purpose=purpose, child=child)
+        return replace(self, blocks=blocks, randomisation=blocks.words())
+
+    def of_block(self, block: int) -> "LineTracer":
+        """Return a tracer whose lines are all in one block: their index is taken modulo 2^32."""
+        if block == 0:
+            return self
+        return replace(self, randomisation=self.blocks.words(block), by_patch=False)
 
     @property
     def types(self) -> Any:
@@ -108,6 +116,10 @@ class LineTracer:
     def n_opaque(self):
         """``n`` on the device, UInt32."""
         return dr.opaque(self.types.UInt32, self.n)
+
+    @cached_property
+    def _replicates(self):
+        return dr.opaque(self.types.UInt32, self.replicates)
 
     @cached_property
     def _magic(self):
@@ -163,19 +175,23 @@ class LineTracer:
 
         return line
 
-    def points(self, number, index, replicate, record, bits: int):
-        """Return the numbers of the ``index``-th line (from 1) of each row, from the row's number and record."""
-        row, randomisation = self._stream(number, replicate, record)
+    def points(self, number, index, replicate, record, bits: int, block: Any = None):
+        """Return the numbers of the ``index``-th line (from 1) of each row, from the row's number and record.
+
+        Args:
+            block: UInt32 of each row, which then takes the ``index``-th line of that block; None: the first one.
+        """
+        row, randomisation = self._stream(number, replicate, record, block)
         return self.numbers.points(index, row, randomisation(index), bits)
 
-    def points_in_turn(self, first, number, replicate, record, bits: int, turns: int):
+    def points_in_turn(self, first, number, replicate, record, bits: int, turns: int, block: Any = None):
         """Return the numbers of ``turns`` lines of each row from the ``first``-th on, see `AbstractNumbers.in_turn`."""
-        return self.numbers.in_turn(first, *self._stream(number, replicate, record), bits, turns)
+        return self.numbers.in_turn(first, *self._stream(number, replicate, record, block), bits, turns)
 
-    def trace(self, number, index, record, bits: int):
-        """Return the slot in which the ``index``-th line (from 1) of each row ends."""
+    def trace(self, number, index, record, bits: int, block: Any = None):
+        """Return the slot in which the ``index``-th line (from 1) of each row ends, in its block (see `points`)."""
         replicate = self.replicate_or_none(number)
-        return self.land_in(self.leave(record)(self.points(number, index, replicate, record, bits)), replicate)
+        return self.land_in(self.leave(record)(self.points(number, index, replicate, record, bits, block)), replicate)
 
     def land_in(self, line, replicate, coherent: bool = False, active: Any = True):
         """Return the slot in which lines end, from their origins and directions."""
@@ -187,16 +203,19 @@ class LineTracer:
         missed = dr.select(patch == ESCAPED, UInt32(self.total), UInt32(self.total + self.replicates)) + replicate
         return dr.select(patch >= LOST, missed, patch + replicate * self.n_opaque)
 
-    def _stream(self, number, replicate, record):
+    def _stream(self, number, replicate, record, block):
         """Return the row, and a function from the index to its randomisation: its own for its first lines, then that of all."""
         types = self.types
         row = number if self.replicates == 1 else number - replicate * self.n_opaque
-        halves = [dr.gather(types.Array4u, self.randomisation, replicate * 2 + half) for half in (0, 1)]
+        table, at, own = self.randomisation, replicate, True
+        if block is not None:
+            table, at, own = self.blocks.known, replicate + block * self._replicates, block == 0
+        halves = [dr.gather(types.Array4u, table, at * 2 + half) for half in (0, 1)]
         words = [word for half in halves for word in half]
         if not self.by_patch:
             return row, lambda index: words
         place = place_number(record)
-        return row, lambda index: self.numbers.of_patch(words, dr.select(index <= self._own_lines, place, 0))
+        return row, lambda index: self.numbers.of_patch(words, dr.select(own & (index <= self._own_lines), place, 0))
 
 
 def own_lines(n: int) -> int:
@@ -204,4 +223,4 @@ def own_lines(n: int) -> int:
 
     Beyond that, one randomisation for all rows is as good for means over surfaces, and better for patches.
     """
-    return min(1 << (4 * n).bit_length() - 1, LIMIT)
+    return min(1 << (4 * n).bit_length() - 1, BLOCK - 1)

@@ -32,13 +32,13 @@ class Spot:
         return dr.select(self.quad, type(self.a)(quad), type(self.a)(triangle))
 
 
-def traced(tracer: LineTracer, number, index, record, bits: int) -> tuple[Any, Spot, Spot]:
+def traced(tracer: LineTracer, number, index, record, bits: int, block: Any = None) -> tuple[Any, Spot, Spot]:
     """Return the slot in which the ``index``-th line of each patch ends, where the line begins, and where it ends.
 
     The line is the same as that of `LineTracer.trace`.
     """
     geometry, replicate = tracer.geometry, tracer.replicate_or_none(number)
-    numbers = tracer.points(number, index, replicate, record, bits)
+    numbers = tracer.points(number, index, replicate, record, bits, block)
     hit = first_hit(geometry, *tracer.leave(record)(numbers))
     slot = tracer.slot(hit, replicate)
     begin = spot(geometry, record[1], *position(geometry, record[1], numbers[2], numbers[3]))

@@ -7,7 +7,7 @@ import numpy as np
 from ...problem.bands import QUANTUM
 from ...problem.model import Problem
 from ...problem.quanta import Source
-from ...solution.books import Books, exact_sum, signed_totals
+from ...solution.books import Books, exact_sum
 from ..base import AbstractAlgorithm, AbstractTally, Swept
 from ..state import Arrays, Sizes
 from . import state as firing_state
@@ -110,14 +110,15 @@ class Arrivals(AbstractTally[FiringState]):
         source, rows, quanta = problem.source, problem.rows, state.quanta
         replicates, sent, bands = len(state.arrivals), self.sent(state), state.bands
         if bands is None:
-            missed, fired, unit = state.missed, exact_sum(state.fired), QUANTUM
+            missed, fired, unit = [exact_sum(lines) for lines in state.missed], exact_sum(state.fired), QUANTUM
             emitted = source.emitted_in_all(quanta) * replicates * QUANTUM
         else:
-            missed, fired, unit = bands.received_missed[..., group], exact_sum(bands.fired_power[group]), 1
+            missed = [bands.exact("received_missed", (kind, slice(None), group)) for kind in range(2)]
+            fired, unit = bands.exact("fired_power", group), 1
             share = rows.emission[:, group] * rows.area / source.power
             emitted = round(float(share.sum()) * quanta * QUANTUM) * replicates << 32
-        arrived, reflected = signed_totals(sent.received[..., group], Source.fixed_albedo(rows.scatter, group))
-        escaped, lost = (exact_sum(x) * unit + int(y.sum()) << 32 for x, y in zip(missed, sent.missed[..., group], strict=True))
+        arrived, reflected = sent.totals(state, group, Source.fixed_albedo(rows.scatter, group))
+        escaped, lost = (count * unit + int(y.sum()) << 32 for count, y in zip(missed, sent.missed[..., group], strict=True))
         fired = fired * unit + sent.fired[group]
         watts = source.power / quanta / QUANTUM / 2**32 / replicates
         return Books(emitted, fired << 32, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()

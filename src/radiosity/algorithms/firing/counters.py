@@ -1,6 +1,10 @@
 """The firing engine's integers: hit and fired counts of every source row and replicate, and the kernels that change them.
 
 Rows, their numbers and slots are those of `LineTracer`. An order (`orders`) decides which row fires when.
+
+Counters have 32 bits until one of them comes near their end. From then on the engine is wide: counters have upper words
+(`tally.wraps`), target counts have 64 bits, and the lines that a row fires in a wavefront lie in one block of its numbers
+(`sampling.blocks`). The integers are the same as they would be with wide counters from the start.
 """
 
 from collections.abc import Iterator
@@ -14,12 +18,14 @@ from ...device.recorded import loop
 from ...errors import MethodError
 from ...method.model import Method
 from ...problem.model import Problem
-from ...problem.quanta import phases
+from ...problem.quanta import WORD, phases
+from ...sampling.blocks import BLOCK
 from ...sampling.streams import Seed
 from ...tally.bands import BandTally
 from ...tally.far_sides import FarSides
 from ...tally.hit_counts import HitCounts
 from ...tally.hit_tally import AbstractHitTally, hit_tally
+from ...tally.wraps import PERIOD, Wraps
 from ...tracing.geometry import Geometry
 from ...tracing.lanes import PIECE, Batch, Launch, Wavefront, boxes_for, sums
 from ...tracing.line_tracer import LineTracer
@@ -39,12 +45,14 @@ class FiringCounters:
         tracer: lines of the rows.
         problem: its ``rows`` and the scalar problem ``source``.
         hits: the hit counts.
-        fired: UInt32 (total,), the fired count of each row.
+        fired: UInt32 (total,), the fired count of each row, modulo 2^32; ``fired_upper`` has the upper words.
         phase: UInt32 (total,), the rounding offset of each row.
         panes: the far sides of diffusing panes, or None.
         quanta: N of the stage that began last.
         has_due: True where some row may still have to fire a line.
         firer: fires wavefronts elsewhere; None: here.
+        wide: True where 32 bits may be too few for the next wavefront.
+        unseen: at least the number of lines since counters were looked at.
     """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
@@ -55,15 +63,16 @@ class FiringCounters:
         self.rho = upload(u32, self.source.rho)
         self.panes = FarSides.of(self.tracer, self.source)
         self.phase = upload(u32, phases(seed, replicates, self.tracer.n))
-        self.fired = dr.opaque(u32, 0, self.total)
+        self.fired, self.fired_upper = dr.opaque(u32, 0, self.total), Wraps(self.types)
         rows = problem.rows
         self.bands = BandTally(self.tracer, rows, self.source) if rows.weighed else None
         self.hits = HitCounts(self.tracer, self.bands)
         self.hits.forget_touched()
         self.landed = None
         self.quanta = 0
-        self.everywhere, self.has_due = True, False
-        self.swept = 0  # lines of the wavefronts so far
+        self.everywhere, self.has_due, self.wide = True, False, False
+        self.swept = self.unseen = 0  # swept: lines of the wavefronts so far
+        self.emits_much, self.whole_upper = False, None
         self.firer: AbstractFirer | None = None  # where lines are fired elsewhere
 
     def set_quanta(self, quanta: int) -> None:
@@ -71,18 +80,40 @@ class FiringCounters:
         if quanta < self.quanta:
             raise MethodError(f"quanta may only grow within a run ({self.quanta} to {quanta})")
         whole, fraction = self.source.emitted(quanta)
-        self.whole, self.fraction = (upload(self.types.UInt32, a) for a in (whole, fraction))
+        self.whole, self.fraction = (upload(self.types.UInt32, a.astype(np.uint32, copy=False)) for a in (whole, fraction))
+        much = whole.dtype.itemsize > 4
+        self.whole_upper = upload(self.types.UInt32, (whole >> WORD).astype(np.uint32)) if much else None
         self.quanta, self.everywhere, self.has_due = quanta, True, True
+        self.emits_much = much or int(whole.max()) >> 31 > 0
+        self._widen()
+
+    def look(self) -> None:
+        """Note which counters wrapped around, and whether 32 bits suffice for the next wavefront."""
+        self.hits.look()
+        self.fired_upper.look(self.fired)
+        if self.bands is not None:
+            self.bands.look()
+        self.unseen = 0
+        self._widen()
+
+    def _widen(self) -> None:
+        grown = self.fired_upper.halves is not None or self.hits.upper.halves is not None
+        self.wide = self.emits_much or grown
+        if self.wide:
+            self.tracer.blocks.prepare(self.fired_upper.largest + 1)
 
     def counters(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return hit and fired counts, (replicates, n) uint32, and escaped and lost lines, (2, replicates)."""
+        """Return hit and fired counts, (replicates, n), and escaped and lost lines, (2, replicates): uint32, or uint64."""
         arrivals, missed = self.hits.read()
-        return arrivals, frozen(self.fired).reshape(arrivals.shape), missed
+        return arrivals, self.fired_upper.values(self.fired).reshape(arrivals.shape), missed
 
     @property
     def lines(self) -> int:
         """The number of lines fired so far."""
-        return sums(self.types, self.fired)[0]
+        lines = sums(self.types, self.fired)[0]
+        if self.fired_upper.halves is None:
+            return lines
+        return lines + (sums(self.types, self.fired_upper.upper(self.fired))[0] << 32)
 
     # ---- lines that are due ----------------------------------------------------------------------------------------
 
@@ -109,6 +140,8 @@ class FiringCounters:
     def target_counts(self, numbers, arrivals, hits=None):
         """Return the target counts of patch numbers (None: of all patches) after ``arrivals`` hits, UInt32.
 
+        They are modulo 2^32, see `_wide_target_counts`.
+
         Args:
             hits: the hits of all numbers, from which those of the other sides of diffusing panes are taken; None: those of now.
         """
@@ -123,6 +156,37 @@ class FiringCounters:
         if self.panes is not None:
             low += self.panes.sent_on(numbers, self.hits.arrivals if hits is None else hits)
         return whole + u32(low >> 32)
+
+    def _wide_target_counts(self, number, arrivals):
+        """Return the target counts of patch numbers after ``arrivals`` hits, UInt64; in a kernel.
+
+        A hit count of two words sends on rho times its upper word in whole lines.
+        """
+        u32, wide = self.types.UInt32, self.types.UInt64
+        patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
+        whole, rho, fraction = (dr.gather(u32, column, patch) for column in (self.whole, self.rho, self.fraction))
+        low = wide(rho) * wide(arrivals) + wide(fraction) + wide(self._read(self.phase, number))
+        lines = wide(whole) + wide(rho) * wide(self.hits.upper.upper(arrivals, number))
+        if self.whole_upper is not None:
+            lines += wide(dr.gather(u32, self.whole_upper, patch)) << 32
+        if self.panes is not None:
+            tau, hits, beyond = self.panes.across(number, self.hits.arrivals)
+            low += wide(tau) * wide(hits)
+            lines += wide(tau) * wide(self.hits.upper.upper(hits, beyond))
+        return lines + (low >> 32)
+
+    def _wide_counts(self, number, arrivals):
+        """Return how many lines patch numbers fire in a wide wavefront: `PERIOD` at most, all in one block; in a kernel."""
+        u32, wide = self.types.UInt32, self.types.UInt64
+        fired = self.fired_upper.whole(self._read(self.fired, number), number)
+        left = wide(BLOCK) - ((fired + 1) & wide(BLOCK - 1))
+        due = self._wide_target_counts(number, arrivals) - fired
+        return u32(dr.minimum(dr.minimum(due, left), wide(PERIOD)))
+
+    def blocks(self, numbers):
+        """Return the blocks of the lines that patch numbers fire next; in a kernel."""
+        u32, fired = self.types.UInt32, self._read(self.fired, numbers)
+        return self.fired_upper.upper(fired, numbers) + dr.select(fired == u32(BLOCK - 1), u32(1), u32(0))
 
     def is_due_after(self, number, before, active):
         """Return whether one hit after ``before`` others raises the target count of a patch by one; called in a kernel.
@@ -168,27 +232,34 @@ class FiringCounters:
 
         With bands, all patches are taken in pieces, to save memory, and hit counts are kept in place of counts of lines.
         """
-        u32, counts = self.types.UInt32, None
+        u32, counts, wide = self.types.UInt32, None, self.wide
         total, largest = dr.opaque(self.types.UInt64, 0, 2), dr.opaque(u32, 0, 2)
-        step = PIECE if numbers is None and self.bands is not None else max(size, 1)
-        keep = self.bands is None or size <= PIECE
+        keep = self.bands is None or size <= PIECE or wide
+        step = PIECE if numbers is None and self.bands is not None and not wide else max(size, 1)
         for start in range(0, size, step):
             width = min(step, size - start)
             places = dr.arange(u32, width) + dr.opaque(u32, start)
             piece = places + dr.opaque(u32, low) if numbers is None else numbers
-            read = None if numbers is None and width == self.total else piece
+            read = None if numbers is None and width == self.total and not wide else piece
             arrivals = self._read(self.hits.arrivals, read)
             counts = self._count(read, arrivals, total, largest)
             dr.eval(total, largest, *([counts] if keep else []), *([arrivals] if self.bands is not None else []))
             if self.bands is not None:
                 self.bands.weigh(self, piece, places, arrivals, counts)
         lines = int(total[0])
-        return (Wavefront(numbers, low, size, lines, counts if keep else None), int(largest[0])) if lines else (None, 0)
+        if not lines:
+            return None, 0
+        blocks = self.blocks if wide else None
+        return Wavefront(numbers, low, size, lines, counts if keep else None, blocks), int(largest[0])
 
     def _count(self, numbers, arrivals, total, largest):
         """Return how many lines patch numbers must fire now, and update their sum and the largest line number; in a kernel."""
-        types, target_counts = self.types, self.target_counts(numbers, arrivals)
-        counts, none = target_counts - self._read(self.fired, numbers), dr.zeros(types.UInt32, dr.width(arrivals))
+        types, none = self.types, dr.zeros(self.types.UInt32, dr.width(arrivals))
+        if self.wide:
+            counts, target_counts = self._wide_counts(numbers, arrivals), dr.full(types.UInt32, BLOCK - 1, dr.width(arrivals))
+        else:
+            target_counts = self.target_counts(numbers, arrivals)
+            counts = target_counts - self._read(self.fired, numbers)
         dr.scatter_add(total, types.UInt64(counts), none, mode=dr.ReduceMode.Expand)
         dr.scatter_reduce(dr.ReduceOp.Max, largest, target_counts, none, mode=dr.ReduceMode.Expand)
         return counts
@@ -208,8 +279,8 @@ class FiringCounters:
             return
         types = self.types
         bits = self.tracer.numbers.bits_for(largest)
-        few = wavefront.total <= FEW
-        everywhere = not few and MANY * wavefront.total >= self.total
+        few = wavefront.total <= FEW and wavefront.blocks is None
+        everywhere = wavefront.blocks is not None or (not few and MANY * wavefront.total >= self.total)
         tally, landed = hit_tally(self.hits, wavefront.total, flags=not few and not everywhere), []
         for batch in self.batches(wavefront, () if few else self._shifts(wavefront)):
             boxes = boxes_for(types, batch.counts) if self.coherent else None
@@ -217,6 +288,11 @@ class FiringCounters:
                 places = self._fire(launch, 32 if few else bits, boxes, few, tally)
                 if few:
                     landed.append(frozen(places)[: launch.lanes])
+                self.unseen += launch.lanes << (max(SHIFTS) if batch.several else 0)
+                if self.unseen > PERIOD:
+                    tally.settle()
+                    self.look()
+                    tally = hit_tally(self.hits, wavefront.total, flags=not few and not everywhere)
             dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
             if self.bands is not None:
                 self.bands.count_fired(self, batch)
@@ -255,6 +331,7 @@ class FiringCounters:
         replicate = tracer.replicate_or_none(number)
         lines = tracer.leave(record)
         powers = [] if self.bands is None else self.bands.carried(types, launch)
+        block = launch.block(types)
 
         def fire(numbers, active):
             landed = tracer.land_in(lines(numbers), replicate, boxes is not None, active)
@@ -267,9 +344,9 @@ class FiringCounters:
 
         landed = None
         if not launch.batch.several:
-            landed = fire(tracer.points(number, first, replicate, record, bits), launch.mask(types, always=few))
+            landed = fire(tracer.points(number, first, replicate, record, bits, block), launch.mask(types, always=few))
         else:
-            points = tracer.points_in_turn(first, number, replicate, record, bits, 1 << max(SHIFTS))
+            points = tracer.points_in_turn(first, number, replicate, record, bits, 1 << max(SHIFTS), block)
             count = launch.lines(types, first)
             loop((types.UInt32(0),), lambda turn: turn < count, turn_by_turn)
         if few:

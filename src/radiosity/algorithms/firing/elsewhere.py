@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...device.backend import frozen, upload
+from ...solution.books import exact_sum
+from ...tally.wraps import PERIOD
 from ...tracing.lanes import Wavefront
 
 if TYPE_CHECKING:
@@ -28,6 +30,7 @@ class Lines:
         fired, counts: (k,) whole numbers, lines that each row has fired before, and fires now.
         weights: (k, groups) uint32, the power that its lines carry, see `BandTally`; None where there is one group.
         largest: the largest line number of the wavefront.
+        wide: True where line numbers may have more than 32 bits; those of a row then lie in one block of its numbers.
     """
 
     replicate: int
@@ -36,6 +39,7 @@ class Lines:
     counts: np.ndarray
     weights: np.ndarray | None
     largest: int
+    wide: bool = False
 
     @property
     def total(self) -> int:
@@ -77,38 +81,72 @@ def fire_elsewhere(counters: "FiringCounters", wavefront: Wavefront, largest: in
     """Fire a wavefront, and add its hits to the counters."""
     tracer, bands = counters.tracer, counters.bands
     numbers, counts = _on_host(counters, wavefront)
-    fired, some = frozen(counters.fired).copy(), counts > 0
+    fired, some = counters.fired_upper.values(counters.fired).astype(np.uint64), counts > 0
     weights = None if bands is None else frozen(bands.weights).reshape(-1, bands.n)[: wavefront.size][some]
     numbers, counts = numbers[some], counts[some]
     order = np.argsort(numbers, kind="stable")
     numbers, counts, weights = numbers[order], counts[order], None if weights is None else weights[order]
     ends, found = np.searchsorted(numbers, np.arange(1, tracer.replicates + 1) * tracer.n), []
+    wide = wavefront.blocks is not None
     for replicate, (low, high) in enumerate(zip([0, *ends[:-1]], ends, strict=True)):
         part, rows = slice(low, high), numbers[low:high] - np.uint32(replicate * tracer.n)
         powers = None if weights is None else weights[part]
         if high > low:
-            found.append(Lines(replicate, rows.astype(np.uint32), fired[numbers[part]], counts[part], powers, largest))
-    arrivals, missed = (column.copy() for column in counters.hits.read())
-    received = None if bands is None else frozen(bands.received).reshape(-1, bands.n).copy()
+            found.append(Lines(replicate, rows.astype(np.uint32), fired[numbers[part]], counts[part], powers, largest, wide))
+    sums = _Sums.of(counters)
     for hits in firer.fire(found):
-        arrivals[hits.replicate] += hits.arrivals
-        missed[:, hits.replicate] += hits.missed
-        if received is not None:
-            first = hits.replicate * tracer.n
-            received[first : first + tracer.n] += hits.received
-            received[tracer.total + hits.replicate :: tracer.replicates] += hits.received_missed
-    fired[numbers] += counts.astype(fired.dtype)
-    counters.hits.write(arrivals, missed)
-    counters.fired = upload(type(counters.fired), fired)
-    if bands is not None and received is not None and weights is not None:
-        bands.received = upload(type(bands.received), received)
-        sent = frozen(bands.fired).reshape(bands.n, tracer.replicates).copy()
+        sums = sums.after(counters, hits)
+    sums.put_back(counters)
+    fired[numbers] += counts
+    counters.fired = upload(type(counters.fired), counters.fired_upper.of(fired))
+    if bands is not None and weights is not None:
         for replicate in range(tracer.replicates):
             own = numbers // tracer.n == replicate
-            sent[:, replicate] += (weights[own] * counts[own, None].astype(np.uint64)).sum(axis=0, dtype=np.uint64)
-        bands.fired = upload(type(bands.fired), sent)
+            power = weights[own] * counts[own, None].astype(np.uint64)
+            for group, column in enumerate(power.T):
+                bands.fired_before[group * tracer.replicates + replicate] += exact_sum(column)
     counters.swept += wavefront.total
+    counters.look()
     counters.look_everywhere()
+
+
+@dataclass(eq=False)
+class _Sums:
+    """The counters of a run on the host, while hits come back; they are put back before any could wrap around unseen."""
+
+    arrivals: np.ndarray
+    missed: np.ndarray
+    received: np.ndarray | None
+    lines: int = 0
+
+    @staticmethod
+    def of(counters: "FiringCounters") -> "_Sums":
+        bands = counters.bands
+        arrivals, missed = (column.astype(np.uint64) for column in counters.hits.read())
+        return _Sums(arrivals, missed, None if bands is None else frozen(bands.received).reshape(-1, bands.n).copy())
+
+    def after(self, counters: "FiringCounters", hits: Hits) -> "_Sums":
+        """Return the sums with what lines brought."""
+        lines, tracer = int(hits.arrivals.sum(dtype=np.int64)) + int(hits.missed.sum(dtype=np.int64)), counters.tracer
+        sums = self
+        if self.received is not None and self.lines + lines > PERIOD:
+            self.put_back(counters)
+            counters.look()
+            sums = _Sums.of(counters)
+        sums.lines += lines
+        sums.arrivals[hits.replicate] += hits.arrivals
+        sums.missed[:, hits.replicate] += hits.missed
+        if sums.received is not None:
+            first = hits.replicate * tracer.n
+            sums.received[first : first + tracer.n] += hits.received
+            sums.received[tracer.total + hits.replicate :: tracer.replicates] += hits.received_missed
+        return sums
+
+    def put_back(self, counters: "FiringCounters") -> None:
+        """Set the counters to the sums."""
+        counters.hits.write(self.arrivals, self.missed)
+        if counters.bands is not None and self.received is not None:
+            counters.bands.received = upload(counters.types.UInt64, self.received)
 
 
 def fire_here(counters: "FiringCounters", lines: Lines) -> Hits:
@@ -116,14 +154,19 @@ def fire_here(counters: "FiringCounters", lines: Lines) -> Hits:
     types, tracer, bands, n = counters.types, counters.tracer, counters.bands, counters.tracer.n
     zero = np.zeros((1, n), np.uint32)
     counters.hits.write(zero, np.zeros((2, 1), np.uint32))
-    fired = frozen(counters.fired).copy()
+    fired = np.zeros(n, np.uint64)
     fired[lines.rows] = lines.fired
-    counters.fired = upload(type(counters.fired), fired)
+    counters.fired = upload(types.UInt32, counters.fired_upper.of(fired))
     if bands is not None and lines.weights is not None:
         bands.weights = upload(types.UInt32, lines.weights)
         bands.received = upload(types.UInt64, np.zeros(tracer.slots * bands.n, np.uint64))
+        bands.upper["received"].halves = bands.upper["missed"].halves = None
+    blocks = None
+    if lines.wide:
+        tracer.blocks.prepare(counters.fired_upper.largest + 1)
+        blocks = counters.blocks
     numbers, counts = upload(types.UInt32, lines.rows), upload(type(counters.fired), lines.counts)
-    counters.fire(Wavefront(numbers, 0, len(lines.rows), lines.total, counts), lines.largest)
+    counters.fire(Wavefront(numbers, 0, len(lines.rows), lines.total, counts, blocks), lines.largest)
     arrivals, missed = counters.hits.read()
     received = None if bands is None else frozen(bands.received).reshape(-1, bands.n).copy()
     return Hits(

@@ -30,6 +30,7 @@ SHARE = 0.025  # largest share of a replicate's quanta that lines caused by nois
 MOST = 512  # most patches of a group
 TYPICAL = math.sqrt(1 / (3 * math.pi))  # mean size of a normal variable of the variance 1/6, which residues have
 ONE = np.uint64(1 << 32)
+MUCH = 1 << 30  # lines: sums of two patches' then still have less than 32 bits
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,9 +76,10 @@ class Residue:
     Attributes:
         problem: the problem to solve.
         quanta: N.
-        emitted: (n_patches,) uint64, E_i A_i / delta times 2^32.
+        emitted: (n_patches,) uint64, E_i A_i / delta times 2^32, modulo 2^64.
         state: the state of the algorithm.
         phase: (replicates, n_patches) uint32.
+        much: (n_patches,) bool, where ``emitted`` is many lines; None where neither it nor hits are many anywhere.
     """
 
     problem: Problem
@@ -85,30 +87,38 @@ class Residue:
     emitted: np.ndarray
     state: FiringState
     phase: np.ndarray
+    much: np.ndarray | None = None
 
     @staticmethod
     def of(problem: Problem, state: FiringState, phase: np.ndarray) -> "Residue":
         """Return the residue of an algorithm's state."""
         quanta = state.quanta
         whole, fraction = problem.source.emitted(quanta)
-        return Residue(problem, quanta, (whole.astype(np.uint64) << np.uint64(32)) | fraction, state, phase)
+        much = whole >= MUCH if int(whole.max()) >= MUCH or int(state.arrivals.max()) >= MUCH else None
+        return Residue(problem, quanta, (whole.astype(np.uint64) << np.uint64(32)) | fraction, state, phase, much)
 
     def read(self, replicate: int, part: slice) -> tuple[np.ndarray, np.ndarray]:
         """Return what some patches should have sent, and what is left, both in 2^-32 of a quantum.
 
-        The first is of the scalar problem, (k,) uint64, the second of each group, (k, n_groups) int64.
+        The first is of the scalar problem, (k,) uint64; where it is more than 2^30 lines, all but one of them are left out. The
+        second is of each group, (k, n_groups) int64.
         """
         phase = self.phase[replicate, part]
-        target_counts = self.problem.source.sent_on(self.state.arrivals[replicate], part) + self.emitted[part]
+        source, arrivals = self.problem.source, self.state.arrivals[replicate]
+        target_counts = source.sent_on(arrivals, part) + self.emitted[part]
+        if self.much is not None:  # of so many lines the low words are all that matters
+            many = self.much[part] | (source.rho[part] * arrivals[part].astype(np.float64) >= MUCH * float(ONE))
+            target_counts = np.where(many, target_counts % ONE + ONE, target_counts)
         bands = self.state.bands
         if bands is None:
             return target_counts, (((target_counts + phase) % ONE).astype(np.int64) - phase)[:, None]
-        rows, received = self.problem.rows, bands.received[replicate, part]
+        rows, received = self.problem.rows, bands.about("received", (replicate, part))
         share = rows.emission[part] * (rows.area[part] / self.problem.source.power)[:, None]
         owed_of_each = share * (self.quanta * QUANTUM) + Source.fixed(rows.reflectance[part]) * 2.0**-32 * received
         if rows.through is not None and rows.other is not None:
-            owed_of_each += Source.fixed(rows.through[part]) * 2.0**-32 * bands.received[replicate, rows.other[part]]
-        return target_counts, 2 * np.round(owed_of_each - bands.sent[replicate, part]).astype(np.int64)
+            beyond = bands.about("received", (replicate, rows.other[part]))
+            owed_of_each += Source.fixed(rows.through[part]) * 2.0**-32 * beyond
+        return target_counts, 2 * np.round(owed_of_each - bands.about("sent", (replicate, part))).astype(np.int64)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,7 @@ this weight or ends. Absorption by chance alone would add noise to what the scen
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -18,6 +19,7 @@ from ...problem.model import Problem
 from ...sampling.numbers import WORDS
 from ...sampling.numbers.random import philox
 from ...sampling.streams import Purpose, stream
+from ...solution.books import exact_totals, signed_totals
 from .counters import FiringCounters
 from .residue import Starts
 from .state import FiringState
@@ -31,16 +33,30 @@ class Sent:
     """The power that residues add to the received power, in 64-bit fixed point, `QUANTUM` to a quantum. It may be negative.
 
     Attributes:
-        received: (replicates, n_patches, n_groups) int64, received power with that of the residue.
+        received: (replicates, n_patches, n_groups) int64, received power with that of the residue; float64 where it may have more
+            than 63 bits.
         missed: (2, replicates, n_groups) int64, escaped and lost power of the residue alone.
         fired: n_groups whole numbers, power of the residue that left patches along lines, of all replicates.
         lines: lines of the residue, of all replicates.
+        residue: (replicates, n_patches, n_groups) int64, received power of the residue alone, where ``received`` is rounded.
     """
 
     received: np.ndarray
     missed: np.ndarray
     fired: list[int]
     lines: int
+    residue: np.ndarray | None = None
+
+    def totals(self, state: FiringState, group: int, albedo: np.ndarray) -> tuple[int, int]:
+        """Return the sum of the received power of a group, and of its products with (n_patches,) uint32, without rounding."""
+        if self.residue is None:
+            return signed_totals(self.received[..., group], albedo)
+        total, weighted = signed_totals(self.residue[..., group], albedo)
+        if state.bands is None:
+            more, of_more = (x * QUANTUM for x in exact_totals(state.arrivals, albedo))
+        else:
+            more, of_more = state.bands.totals("received", (..., group), albedo)
+        return total + more, weighted + of_more
 
 
 def starts(counters: FiringCounters, problem: Problem, state: FiringState) -> Starts:
@@ -63,14 +79,25 @@ def send(counters: FiringCounters, problem: Problem, state: FiringState, begun: 
     dr.eval(tally)
     fired, lines = _walk(counters, begun, tally) if len(begun.line) else ([0] * n_groups, 0)
     flat = frozen(tally).reshape(-1, n_groups)  # there is no other reference: hits are added in place, without a copy
-    received = flat[: tracer.total].reshape(tracer.replicates, tracer.n, n_groups)
+    received = residue = flat[: tracer.total].reshape(tracer.replicates, tracer.n, n_groups)
+    rounded = _beyond(state)
+    if rounded:
+        received = residue.astype(np.float64)
     for replicate, row in enumerate(received):
         for part in pieces(tracer.n):
             if state.bands is not None:
-                row[part] += state.bands.received[replicate, part].astype(np.int64)
+                row[part] += state.bands.about("received", (replicate, part)).astype(received.dtype)
             else:
-                row[part] += (state.arrivals[replicate, part] * np.int64(QUANTUM))[:, None]
-    return Sent(received, flat[tracer.total :].reshape(2, tracer.replicates, n_groups), fired, lines)
+                row[part] += (state.arrivals[replicate, part] * received.dtype.type(QUANTUM))[:, None]
+    missed = flat[tracer.total :].reshape(2, tracer.replicates, n_groups)
+    return Sent(received, missed, fired, lines, residue if rounded else None)
+
+
+def _beyond(state: FiringState) -> bool:
+    """Return whether received power may have more than 62 bits."""
+    if state.bands is not None:
+        return state.bands.received_upper is not None or int(state.bands.received.max()) >> 62 > 0
+    return int(state.arrivals.max()) * QUANTUM >> 62 > 0
 
 
 def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], int]:
@@ -150,6 +177,7 @@ def _reflected(counters: FiringCounters, powers: list, patch, here, left, after,
 def _numbers(types, words, line, turn, replicate):
     """Return five numbers of the ``turn``-th line of a walk, a word that decides whether it goes on, and one for the side."""
     first, second = (list(dr.gather(types.Array4u, words, replicate * 2 + half)) for half in (0, 1))
-    drawn = philox([line, turn, *first[2:]], first[:2])
-    choice, fifth, side, _ = philox([line, turn, *second[2:]], second[:2])
+    drawn: Any = philox([line, turn, *first[2:]], first[:2])
+    more: Any = philox([line, turn, *second[2:]], second[:2])
+    choice, fifth, side, _ = more
     return [types.Float(word >> 8) * 2.0**-24 for word in (*drawn, fifth)], choice, side

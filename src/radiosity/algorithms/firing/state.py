@@ -1,11 +1,13 @@
 """The integers of a run between two wavefronts: all that is needed to continue, on this or a similar machine (contract 6)."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ...device.backend import frozen, upload
 from ...errors import MethodError
+from ...tally.bands import BandTally
 from ..state import AbstractState, Arrays, Record, Sizes, array, number, part
 from .counters import FiringCounters
 
@@ -15,9 +17,11 @@ class BandState(Record):
     """Powers of bands, where they differ, uint64 in fixed point (`BandTally`).
 
     Attributes:
-        received, sent: (replicates, n_rows, groups), received and sent power.
-        received_missed: (2, replicates, groups), escaped and lost power.
-        fired_power: (groups, replicates), power that left along lines.
+        received, sent: (replicates, n_rows, groups), received and sent power, modulo 2^64.
+        received_missed: (2, replicates, groups), escaped and lost power, modulo 2^64.
+        fired_power: (groups, replicates), power that left along lines, modulo 2^64.
+        received_upper, received_missed_upper, sent_upper, fired_power_upper: uint32, the upper words of these, where some are not
+            zero.
         within: True within a stage.
     """
 
@@ -25,6 +29,10 @@ class BandState(Record):
     received_missed: np.ndarray = array(2, "replicates", "groups")
     sent: np.ndarray = array("replicates", "rows", "groups")
     fired_power: np.ndarray = array("groups", "replicates")
+    received_upper: np.ndarray | None = array("replicates", "rows", "groups", optional=True, zeros=True)
+    received_missed_upper: np.ndarray | None = array(2, "replicates", "groups", optional=True, zeros=True)
+    sent_upper: np.ndarray | None = array("replicates", "rows", "groups", optional=True, zeros=True)
+    fired_power_upper: np.ndarray | None = array("groups", "replicates", optional=True, zeros=True)
     within: bool | None = number(bool, optional=True)
 
 
@@ -33,8 +41,8 @@ class FiringState(AbstractState):
     """The counters on the host.
 
     Attributes:
-        arrivals, fired: (replicates, n_rows) uint32, hit and fired counts.
-        missed: (2, replicates) uint32, lines that escaped and were lost.
+        arrivals, fired: (replicates, n_rows), hit and fired counts, uint32 where that suffices, else uint64.
+        missed: (2, replicates), lines that escaped and were lost, uint32 or uint64.
         bands: powers, where bands differ.
     """
 
@@ -58,16 +66,24 @@ def capture(counters: FiringCounters) -> FiringState:
     sizes = Sizes(tracer.replicates, tracer.n, 1 if bands is None else bands.n)
     powers = None
     if bands is not None:
-        received, split = frozen(bands.received), counters.total * bands.n
-        powers = BandState(
-            sizes=sizes,
-            received=received[:split].reshape(*arrivals.shape, bands.n),
-            received_missed=received[split:].reshape(2, tracer.replicates, bands.n),
-            sent=frozen(bands.sent).reshape(*arrivals.shape, bands.n),
-            fired_power=frozen(bands.fired).reshape(bands.n, tracer.replicates),
-            within=True if counters.has_due else None,
-        )
+        powers = BandState(sizes=sizes, within=True if counters.has_due else None, **_powers(bands, sizes))
     return FiringState(sizes=sizes, quanta=counters.quanta, arrivals=arrivals, fired=fired, missed=missed, bands=powers)
+
+
+def _powers(bands: BandTally, sizes: Sizes) -> dict[str, Any]:
+    """Return the powers of bands by the names that a state has."""
+    replicates, rows, n = sizes.replicates, sizes.rows, sizes.groups
+    shapes = {"received": (replicates, rows, n), "received_missed": (2, replicates, n), "sent": (replicates, rows, n)}
+    flat, split, columns = frozen(bands.received), replicates * rows * n, bands.columns
+    low = {"received": flat[:split], "received_missed": flat[split:], "sent": frozen(bands.sent)}
+    found: dict[str, Any] = {}
+    for name, key in zip(shapes, ("received", "missed", "sent"), strict=True):
+        upper = bands.upper[key].read(columns[key])
+        found[name] = low[name].reshape(shapes[name])
+        found[f"{name}_upper"] = None if upper is None else upper.reshape(shapes[name])
+    fired = bands.fired_in_all
+    words = [np.array([(power >> shift) % 2**64 for power in fired], np.uint64).reshape(n, replicates) for shift in (0, 64)]
+    return found | {"fired_power": words[0], "fired_power_upper": words[1].astype(np.uint32) if words[1].any() else None}
 
 
 def read(arrays: Arrays, sizes: Sizes, weighed: bool) -> FiringState:
@@ -83,11 +99,13 @@ def restore(counters: FiringCounters, state: FiringState) -> None:
     """Set the counters to those of a state, at its number of quanta."""
     types, bands = counters.types, counters.bands
     counters.hits.write(state.arrivals, state.missed)
-    counters.fired = upload(types.UInt32, state.fired)
+    counters.fired = upload(types.UInt32, counters.fired_upper.of(state.fired))
     if bands is not None:
         powers = state.bands
         assert powers is not None
-        bands.received = upload(types.UInt64, np.concatenate([powers.received.ravel(), powers.received_missed.ravel()]))
-        bands.sent = upload(types.UInt64, powers.sent)
-        bands.fired = upload(types.UInt64, powers.fired_power)
+        rows = bands.upper["received"].of(powers.received, powers.received_upper)
+        missed = bands.upper["missed"].of(powers.received_missed, powers.received_missed_upper)
+        bands.received = upload(types.UInt64, np.concatenate([rows, missed]))
+        bands.sent = upload(types.UInt64, bands.upper["sent"].of(powers.sent, powers.sent_upper))
+        bands.set_fired(np.ravel(powers.fired_power), powers.fired_power_upper)
     counters.set_quanta(state.quanta)

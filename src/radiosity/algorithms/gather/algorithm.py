@@ -13,7 +13,9 @@ import numpy as np
 
 from ...device.backend import frozen, upload
 from ...errors import MethodError
+from ...sampling.blocks import BITS, BLOCK
 from ...sampling.streams import Purpose
+from ...tally.wraps import Wraps
 from ..base import AbstractAlgorithm, Swept
 from ..state import Arrays, Sizes
 from .chances import Chances
@@ -27,9 +29,11 @@ from .rows import Rows
 from .shares import Shares
 from .smooth import SmoothTally
 from .state import GatherState
+from .sums import Sums
 from .tally import GatherTally
 
 SLICE = 1 << 22  # lines of a slice: between slices a run can be interrupted
+APART = 1 << 24  # lines of a patch between two looks at sums, where they are very many
 TOLERANCE = 3e-3  # of the mean irradiance, in the first correction; later ones take less, as errors do
 
 
@@ -81,11 +85,10 @@ class Gather(AbstractAlgorithm[GatherState]):
         purposes = (Purpose.NUMBERS, Purpose.SHADOW_RAYS)
         self._lines = Lines.of(self.packets, self.chances, self.problem, method, self.seed, purposes)
         self._scatter = LaneScatter.of_lanes(self.packets, self.problem.groups.scatter)
-        self._brought, self._met = (
-            [dr.zeros(kind, self.packets.lanes) for _ in range(self.groups)] for kind in (types.UInt64, types.Int64)
-        )
+        self._brought, self._met = (Sums(self.packets, kind, self.groups) for kind in (types.UInt64, types.Int64))
         self._reading = Reading.nothing(types.Float, self.packets.lanes, self.groups, self.replicates)
         self._missed = [dr.zeros(types.UInt32, self.packets.lanes) for _ in range(2)]
+        self._missed_upper, self._unseen = [Wraps(types) for _ in range(2)], 0
         self._hits, self._stored = dr.zeros(types.UInt32, self.packets.lanes), 0
 
     def advance(self, quanta: int, swept: Swept) -> None:
@@ -114,21 +117,29 @@ class Gather(AbstractAlgorithm[GatherState]):
         before = shares.counts(self._done) if self._done else np.zeros_like(shares.counts(0))
         more = shares.counts(quanta) - before
         if more[1].any():
-            self._add(self._brought, lines.shadow(before[1], more[1]))
+            self._brought.add(lines.shadow(before[1], more[1]))
         if more[0].any():
             storing = self._done < shares.stored_quanta
             if storing:
                 self._make_room(int((before + more)[0].max()))
             read = None if storing else self._reading.reflected
             met, missed = lines.cosine(before[0], more[0], read, self._hits if storing else None)
-            self._add(self._met, met)
-            self._add(self._missed, missed)
-        dr.eval(self._brought, self._met, self._missed)
+            self._met.add(met)
+            self._missed = [total + more for total, more in zip(self._missed, missed, strict=True)]
+        dr.eval(self._brought.low, self._met.low, self._missed)
+        self._unseen += int(more.max())
+        if self._unseen > APART:
+            self._look(int((before + more).max()))
         return int((more * self.packets.sizes).sum()) * self.replicates
 
-    def _add(self, sums: list, more: list) -> None:
-        for group, value in enumerate(more):
-            sums[group] = sums[group] + type(sums[group])(value)
+    def _look(self, most: int) -> None:
+        """Set apart what sums cannot hold much longer, where a patch has ``most`` lines."""
+        self._unseen = 0
+        for upper, missed in zip(self._missed_upper, self._missed, strict=True):
+            upper.look(missed)
+        if most >= BLOCK:
+            self._brought.set_apart()
+            self._met.set_apart()
 
     def _make_room(self, stored: int) -> None:
         """Make room for the hits of as many stored lines of each patch."""
@@ -148,15 +159,15 @@ class Gather(AbstractAlgorithm[GatherState]):
         """Correct the radiosity that lines read."""
         self._met, self._reading = self._corrected(shares)
 
-    def _corrected(self, shares: Shares) -> tuple[list, Reading]:
+    def _corrected(self, shares: Shares) -> tuple[Sums, Reading]:
         """Return sums of cosine lines, and what they read, corrected."""
         types, lines = self.types, self._lines
         assert lines is not None
         _, _, place, _ = self.packets.read()
-        cosine, rays = (types.Float64(self.packets.of_packets(each, place)) for each in shares.counts(self._done))
+        cosine, rays = (self._of_packets(each, place) for each in shares.counts(self._done))
         irradiance = [
-            types.Float(types.Float64(brought) / (rays * UNITS) + types.Float64(met) / (cosine * lines.unit))
-            for brought, met in zip(self._brought, self._met, strict=True)
+            types.Float(brought / (rays * UNITS) + met / (cosine * lines.unit))
+            for brought, met in zip(self._brought.about(), self._met.about(), strict=True)
         ]
         irradiance = [dr.select(cosine > 0, value, 0) for value in irradiance]
         dr.eval(irradiance)
@@ -164,12 +175,17 @@ class Gather(AbstractAlgorithm[GatherState]):
         grown = max(self._done / shares.stored_quanta, 1.0)
         tolerance = TOLERANCE * np.max([self._mean(value) for value in irradiance], axis=0) / grown**0.5
         reading, means = self._reading.corrected(rows, irradiance, np.maximum(tolerance, 1e-12), first=grown == 1.0)
-        met = [
-            total + types.Int64(dr.round(types.Float64(mean) * cosine * lines.unit))
-            for total, mean in zip(self._met, means, strict=True)
-        ]
-        dr.eval(met)
+        met = self._met.copy()
+        met.add([types.Int64(dr.round(types.Float64(mean) * cosine * lines.unit)) for mean in means])
+        dr.eval(met.low)
         return met, reading
+
+    def _of_packets(self, counts: np.ndarray, place):
+        """Return whole numbers of packets for each lane, Float64."""
+        kind, low = self.types.Float64, self.packets.of_packets(counts & (BLOCK - 1), place)
+        if int(counts.max()) < BLOCK:
+            return kind(low)
+        return kind(low) + kind(self.packets.of_packets(counts >> BITS, place)) * float(BLOCK)
 
     def _mean(self, values) -> np.ndarray:
         """Return the mean of positive values of each replicate, (replicates,), from whole numbers, so that no order matters."""
@@ -185,9 +201,12 @@ class Gather(AbstractAlgorithm[GatherState]):
         met, reading = self._met, self._reading
         if self._done < shares.stored_quanta and self._done == self._quanta:
             met, reading = self._corrected(shares)
-        missed = np.stack([packets.patch_values(frozen(count)) for count in self._missed])
+        counts = [upper.values(count) for upper, count in zip(self._missed_upper, self._missed, strict=True)]
+        missed = np.stack([packets.patch_values(count) for count in counts])
         of_packets = (*shares.counts(self._done), shares.stored(self._done))
-        cosine, rays, stored = (np.repeat(count, packets.sizes)[packets.place].astype(np.uint32) for count in of_packets)
+        kind = np.uint64 if max(int(count.max()) for count in of_packets) >= BLOCK else np.uint32
+        cosine, rays, stored = (np.repeat(count, packets.sizes)[packets.place].astype(kind) for count in of_packets)
+        (brought, brought_upper), (met_words, met_upper) = self._brought.read(), met.read()
         by_patch = self._by_patch
         halves = np.stack([by_patch(reading.halves[at : at + self.groups]) for at in (0, self.groups)])
         return GatherState(
@@ -197,8 +216,10 @@ class Gather(AbstractAlgorithm[GatherState]):
             cosine=cosine,
             rays=rays,
             stored=stored,
-            brought=by_patch(self._brought),
-            met=by_patch(met),
+            brought=brought,
+            met=met_words,
+            brought_upper=brought_upper,
+            met_upper=met_upper,
             reflected=by_patch(reading.reflected),
             halves=halves,
             first_bias=by_patch(reading.first),
@@ -231,12 +252,13 @@ class Gather(AbstractAlgorithm[GatherState]):
         stored = shares.stored(state.done)
         self._make_room(int(stored.max()))
         again, missed = lines.cosine(np.zeros_like(stored), stored, keep=self._hits)
-        self._brought = self._by_lane(types.UInt64, state.brought)
+        self._brought.write(state.brought, state.brought_upper)
         if state.done < shares.stored_quanta:  # lines read nothing yet; what `capture` added is found again
-            self._met, self._missed = [types.Int64(value) for value in again], missed
+            self._met.low, self._missed = [types.Int64(value) for value in again], missed
             return
-        self._met = self._by_lane(types.Int64, state.met)
+        self._met.write(state.met, state.met_upper)
         halves = [value for half in state.halves for value in self._by_lane(types.Float, half)]
         reflected, first, left = (self._by_lane(types.Float, x) for x in (state.reflected, state.first_bias, state.bias_left))
-        self._missed = [upload(types.UInt32, self.packets.lane_values(count)) for count in state.missed]
+        lanes = [self.packets.lane_values(count) for count in state.missed]
+        self._missed = [upload(types.UInt32, upper.of(x)) for upper, x in zip(self._missed_upper, lanes, strict=True)]
         self._reading = Reading(reflected, halves, first, left, state.unsolved)

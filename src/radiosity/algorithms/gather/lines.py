@@ -1,5 +1,7 @@
 """The two kinds of lines of a gather: cosine lines and shadow rays. What they find is in `targets`."""
 
+import functools
+import operator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,8 +13,9 @@ from ...device.recorded import loop
 from ...method import Method
 from ...patches.bases import of_size
 from ...problem.model import Problem
+from ...sampling.blocks import BLOCK, Blocks, parts
 from ...sampling.numbers import AbstractNumbers, ready
-from ...sampling.streams import Seed, stream
+from ...sampling.streams import Seed
 from ...tracing.against import light_along, sends
 from ...tracing.hits import Hit, first_hit, patch_of
 from ...tracing.ray_generation import before, place_number
@@ -35,7 +38,8 @@ class Lines:
         targets: what they find.
         numbers: the points of the unit cube.
         by_patch: each patch moves them by a shift of its own.
-        keys: randomisation of the replicates, for cosine lines and for shadow rays.
+        streams: randomisations of the replicates, for cosine lines and for shadow rays.
+        keys: those of the first block of each.
         most: the largest value that a cosine line may read, for fixed point.
     """
 
@@ -43,6 +47,7 @@ class Lines:
     targets: Targets
     numbers: AbstractNumbers
     by_patch: bool
+    streams: tuple[Blocks, Blocks]
     keys: tuple[Any, Any]
     most: float
 
@@ -56,16 +61,14 @@ class Lines:
         """
         types, emission, lights = packets.types, problem.groups.emission, problem.lights
         numbers = ready(method.points, types)
-        keys = []
-        for purpose in purposes:
-            drawn = [numbers.randomisation(stream(seed, r, purpose)) for r in range(packets.replicates)]
-            keys.append(upload(types.UInt32, np.array(drawn, np.uint32)))
+        one, other = (Blocks(numbers, types, seed, packets.replicates, purpose) for purpose in purposes)
         shares = emission / np.maximum(problem.unit, 1e-300)
         columns = [upload(types.Float, np.append(column, [0, 0]).astype(np.float32)) for column in shares.T]
         chances.prepare()
-        by_patch, both = method.randomisation == "by-patch", (keys[0], keys[1])
+        by_patch, keys = method.randomisation == "by-patch", (one.words(), other.words())
         sky = None if lights is None or lights.sky is None else Glow.of(lights.sky, packets.geometry, problem)
-        return Lines(packets, Targets(packets, chances, columns, sky), numbers, by_patch, both, most_read(problem))
+        targets = Targets(packets, chances, columns, sky)
+        return Lines(packets, targets, numbers, by_patch, (one, other), keys, most_read(problem))
 
     @property
     def groups(self) -> int:
@@ -95,12 +98,17 @@ class Lines:
                 `packets.ESCAPED` or `LOST`.
             bins: ``bins(lane, direction, value)`` is called with what each line brings of the first group, in fixed point.
         """
+        found = [self._cosine(*part, read, keep, bins, squares=squares) for part in self._parts(0, done, counts)]
+        return _added([sums for sums, _ in found]), _added([missed for _, missed in found])
+
+    def _cosine(self, keys, done, counts, read, keep, bins, *, squares: bool) -> tuple[list, list]:
+        """Trace the lines of one block, whose randomisation is ``keys``."""
         packets, chances, types = self.packets, self.targets.chances, self.types
         geometry, UInt32, Float = packets.geometry, types.UInt32, types.Float
         lane, replicate, place, patch = packets.read()
         start, count = packets.of_packets(done, place), packets.of_packets(counts, place)
         record = packets.record(patch)
-        points = self.points_of(self.keys[0], replicate, record, patch, start, int((done + counts).max()))
+        points = self.points_of(keys, replicate, record, patch, start, _largest(done, counts))
         frame, position_of = packets.frame(record)
         normal, row = frame.normal * frame.side, chances.row(place)
         base, lanes, scale = replicate * packets.read_width, dr.opaque(UInt32, packets.lanes), dr.opaque(Float, self.unit)
@@ -172,11 +180,14 @@ class Lines:
 
         Args: see `cosine`.
         """
+        return _added([self._shadow(*part, bins, squares=squares) for part in self._parts(1, done, counts)])
+
+    def _shadow(self, keys, done, counts, bins, *, squares: bool) -> list:
         packets, chances, types, Float = self.packets, self.targets.chances, self.types, self.types.Float
         lane, replicate, place, patch = packets.read()
         start, count = packets.of_packets(done, place), packets.of_packets(counts, place)
         record = packets.record(patch)
-        points = self.points_of(self.keys[1], replicate, record, patch, start, int((done + counts).max()))
+        points = self.points_of(keys, replicate, record, patch, start, _largest(done, counts))
         frame, position_of = packets.frame(record)
         normal, row = frame.normal * frame.side, chances.row(place)
         kind = Float if squares else types.UInt64
@@ -203,6 +214,14 @@ class Lines:
 
     # ---- both ------------------------------------------------------------------------------------------------------
 
+    def _parts(self, kind: int, done, counts) -> list[tuple[Any, Any, Any]]:
+        """Return randomisation, lines so far and lines now of each block; one part where all are in the first block."""
+        if int((done + counts).max()) < BLOCK:
+            return [(self.keys[kind], done, counts)]
+        stream = self.streams[kind]
+        found = parts(done, counts)
+        return [(self.keys[kind] if block == 0 else stream.words(block), begin, more) for block, begin, more in found]
+
     def _fixed(self, kind, value):
         """Return whole numbers of 64 bits."""
         return kind(self.types.Int(value)) if self.targets.small else kind(value)
@@ -223,6 +242,16 @@ class Lines:
             words = numbers.of_patch(words, place_number(record))
         bits = numbers.bits_for(largest)
         return lambda number: numbers.points(start + number + 1, patch, words, bits)
+
+
+def _largest(done: np.ndarray, counts: np.ndarray) -> int:
+    """Return the largest index of a block."""
+    return min(int((done + counts).max()), BLOCK - 1)
+
+
+def _added(found: list[list]) -> list:
+    """Return the sums of columns."""
+    return [functools.reduce(operator.add, columns) for columns in zip(*found, strict=True)]
 
 
 def most_read(problem: Problem) -> float:

@@ -32,7 +32,7 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         return len(problem.patches) * LINES + (exact_sum(state.cosine) + exact_sum(state.rays)) * state.sizes.replicates
 
     def arrivals(self, problem: Problem, state: GatherState) -> np.ndarray:
-        lines = state.cosine.astype(np.int64) + state.rays
+        lines = state.cosine.astype(np.int64) + state.rays.astype(np.int64)
         return lines * state.sizes.replicates  # a patch is measured by the lines that leave it
 
     def parts(self, problem: Problem, state: GatherState, group: int) -> tuple[np.ndarray, np.ndarray, float]:
@@ -41,8 +41,8 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         In each replicate all of it is multiplied so that the power of the scene balances, see `balance.factors`.
         """
         rays, lines = (np.maximum(count, 1).astype(np.float64) for count in (state.rays, state.cosine))
-        brought = state.brought[..., group] * (problem.patches.area / (rays * UNITS))
-        met = state.met[..., group] * (problem.patches.area * most_read(problem) / (lines * UNITS))
+        brought = state.about("brought", (..., group)) * (problem.patches.area / (rays * UNITS))
+        met = state.about("met", (..., group)) * (problem.patches.area * most_read(problem) / (lines * UNITS))
         unit = float(problem.unit[group])
         if unit > 0 and problem.lights is None:  # what lights without area send past all patches is not known
             own = problem.groups.emission[:, group] * problem.patches.area / unit

@@ -16,6 +16,7 @@ import numpy as np
 
 from ...device.backend import frozen, upload
 from ...device.recorded import loop
+from ...tally.wraps import Wraps
 from ...tracing.global_lines.crossing import CODES, ESCAPED, ONE_WAY
 
 LEDGER = ("fired", "reflected", "escaped", "lost")
@@ -31,7 +32,7 @@ class Exchange:
         rho: UInt32 (n_patches,), reflectance times 2^32.
         source: UInt64 (replicates * n_patches), what a patch emits along each span.
         unshot: UInt64, the same size: what it has reflected since its last span.
-        landed: UInt64, the same size: all that arrived.
+        landed: UInt64, the same size: all that arrived, modulo 2^64; ``upper`` has the upper words.
     """
 
     types: Any
@@ -40,6 +41,7 @@ class Exchange:
     source: Any
     unshot: Any
     landed: Any
+    upper: Wraps
 
     def run(self, one: Any, other: Any, lengths: np.ndarray, n_patches: int) -> np.ndarray:
         """Go through the spans of each replicate.

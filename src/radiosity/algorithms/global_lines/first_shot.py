@@ -14,6 +14,7 @@ from ...method.model import Method
 from ...problem.bands import QUANTUM
 from ...problem.model import Problem
 from ...sampling.streams import Seed
+from ...solution.books import exact_sum
 from ...tracing.geometry import Geometry
 from ..base import Swept
 from ..firing import state as firing_state
@@ -76,7 +77,7 @@ def read(kind: type[Kind], arrays: Arrays, sizes: Sizes, *, shot: bool, lacks: s
 
 def fired(shot: FiringState | None) -> int:
     """Return the lines of all replicates; 0 where there was no first shot."""
-    return 0 if shot is None else int(shot.fired.sum(dtype=np.uint64))
+    return 0 if shot is None else exact_sum(shot.fired)
 
 
 def arrivals(shot: FiringState | None) -> np.ndarray | int:
@@ -89,7 +90,8 @@ def landed(problem: Problem, shot: FiringState, group: int) -> tuple[np.ndarray,
     unit = problem.source.power / shot.quanta
     if shot.bands is not None:
         unit /= QUANTUM
-        return shot.bands.received[..., group] * unit, shot.bands.received_missed[..., group] * unit
+        at = (..., group)
+        return shot.bands.about("received", at) * unit, shot.bands.about("received_missed", at) * unit
     return shot.arrivals * unit, shot.missed * unit
 
 

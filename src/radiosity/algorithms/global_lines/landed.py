@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...problem.model import Problem
-from ...solution.books import Books, by_difference, exact_sum
+from ...solution.books import Books, by_difference
 from ..base import AbstractTally
 from . import first_shot
 from .state import MultipathState
@@ -32,9 +32,10 @@ class Landed(AbstractTally[MultipathState]):
 
     def irradiance(self, problem: Problem, state: MultipathState, group: int) -> tuple[np.ndarray, float]:
         watts = unit(problem, state.ends_per_line, group) / state.lines_done
+        power = state.about("landed", group)
         if state.shot is None:
-            return state.landed[group], watts
-        return state.landed[group] * watts + first_shot.landed(problem, state.shot, group)[0], 1.0
+            return power, watts
+        return power * watts + first_shot.landed(problem, state.shot, group)[0], 1.0
 
     def line(self, problem: Problem, state: MultipathState, group: int) -> np.ndarray | float:
         """Return the power that the brightest light sends along a span."""
@@ -42,8 +43,8 @@ class Landed(AbstractTally[MultipathState]):
         return float(emitted.max()) / max(state.lines_done, 1)
 
     def books(self, problem: Problem, state: MultipathState, group: int) -> dict:
-        counts, lines = state.landed[group], state.lines_done
-        replicates = len(counts)
+        arrived, lines = state.exact("landed", group), state.lines_done
+        replicates = len(state.landed[group])
         fired, reflected, escaped, lost = (
             sum((int(high) << 32) + int(low) for high, low in rows) for rows in state.ledger[group]
         )
@@ -52,7 +53,7 @@ class Landed(AbstractTally[MultipathState]):
         if state.shot is not None:
             power, missed = first_shot.landed(problem, state.shot, group)
             rho = problem.groups.reflectance[:, group]
-            absorbed = (exact_sum(counts) - reflected) * watts + float((power * (1 - rho)).sum()) / replicates
+            absorbed = (arrived - reflected) * watts + float((power * (1 - rho)).sum()) / replicates
             escaped, lost = (x * watts + float(m.sum()) / replicates for x, m in zip((escaped, lost), missed, strict=True))
             return by_difference(float(emission.sum()), absorbed, escaped, lost)
         emitted = round(float(emission.sum()) / watts)
@@ -60,7 +61,7 @@ class Landed(AbstractTally[MultipathState]):
             emitted << 32,
             fired << 32,
             reflected << 32,
-            (exact_sum(counts) - reflected) << 32,
+            (arrived - reflected) << 32,
             escaped << 32,
             lost << 32,
             watts / 2**32,

@@ -11,19 +11,19 @@ from math import ceil
 import numpy as np
 
 from ...device.backend import frozen, upload
-from ...errors import MethodError
 from ...problem.quanta import Source
+from ...tally.wraps import Wraps
 from ...tracing.global_lines.spans import ONE_WAY, Spans
 from ..base import AbstractAlgorithm, Swept
 from ..state import Arrays, Sizes
 from . import first_shot
 from .exchange import LEDGER, Exchange
 from .first_shot import FirstShot
-from .landed import HIGHEST, Landed, unit
+from .landed import Landed, unit
 from .mixing import Mixed
 from .state import MultipathState
 
-FULLEST = 63  # most bits of a sum
+SPANS = 1 << 27  # between two looks at sums: each brings 2^HIGHEST units at most
 WARM_UP, MOST_WARM_UP = 4, 64  # span ends of a mean patch, the first times 1 / (1 - mean reflectance)
 BATCH = 1 << 21  # spans of all replicates between two looks at the clock
 
@@ -48,7 +48,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
         if self.method.first_shot:
             self.shot = FirstShot(self.geometry, self.problem, self.method, self.seed, self.replicates)
         self.n, self.total = len(patches), len(patches) * self.replicates
-        self._quanta, self.done = 0, 0
+        self._quanta, self.done, self.unseen = 0, 0, 0
         self.ends = np.zeros((self.replicates, self.n), np.int64)
         self.ledger = [{name: [0] * self.replicates for name in LEDGER} for _ in range(groups.n_groups)]
         emitted = [self._fixed(groups.emission[:, g] * patches.area, g) for g in range(groups.n_groups)]
@@ -60,6 +60,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
                 upload(types.UInt64, np.tile(emitted[g], self.replicates)),
                 dr_zeros(types, self.total),
                 dr_zeros(types, self.total),
+                Wraps(types, 64),
             )
             for g in range(groups.n_groups)
         ]
@@ -73,12 +74,6 @@ class Multipath(AbstractAlgorithm[MultipathState]):
         return self.shot is None
 
     def advance(self, quanta: int, swept: Swept) -> None:
-        most = float(self.spans.ends_per_line.max()) * quanta
-        if most > 2.0 ** (FULLEST - HIGHEST):
-            raise MethodError(
-                f"{quanta} lines a replicate cross a patch {most:.3g} times, more than its 64-bit sums hold; "
-                "take fewer lines a replicate and more replicates, or smaller patches"
-            )
         self._quanta = quanta
         if self.shot is not None:
             self._shoot(quanta, swept)
@@ -113,7 +108,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
             self._carry(min(self._batch, lines - self.done))
         self.done, self.ends[:] = 0, 0
         for exchange, ledger in zip(self.exchanges, self.ledger, strict=True):
-            exchange.landed = dr_zeros(types, self.total)
+            exchange.landed, exchange.upper = dr_zeros(types, self.total), Wraps(types, 64)
             ledger.update({name: [0] * self.replicates for name in LEDGER})
 
     def _shoot(self, quanta: int, swept: Swept) -> None:
@@ -142,6 +137,11 @@ class Multipath(AbstractAlgorithm[MultipathState]):
             for exchange, ledger in zip(self.exchanges, self.ledger, strict=True):
                 for name, sums in zip(LEDGER, exchange.run(one, other, lengths, self.n), strict=True):
                     ledger[name] = [old + int(new) for old, new in zip(ledger[name], sums, strict=True)]
+            self.unseen += len(one)
+            if self.unseen > SPANS:
+                self.unseen = 0
+                for exchange in self.exchanges:
+                    exchange.upper.look(exchange.landed)
         self.done += count
         return int(self.ends.sum()) - before
 
@@ -152,6 +152,11 @@ class Multipath(AbstractAlgorithm[MultipathState]):
     def capture(self) -> MultipathState:
         shape = (len(self.exchanges), self.replicates, self.n)
         limbs = [[[divmod(x, 2**32) for x in ledger[name]] for name in LEDGER] for ledger in self.ledger]
+        upper = [x.upper.read(x.landed) for x in self.exchanges]
+        if any(one is not None for one in upper):
+            above = np.stack([np.zeros(self.total, np.uint32) if one is None else one for one in upper]).reshape(shape)
+        else:
+            above = None
         return MultipathState(
             sizes=self.sizes,
             quanta=self._quanta,
@@ -161,6 +166,7 @@ class Multipath(AbstractAlgorithm[MultipathState]):
             ledger=np.array(limbs, np.uint64),
             unshot=np.stack([frozen(x.unshot) for x in self.exchanges]).reshape(shape),
             landed=np.stack([frozen(x.landed) for x in self.exchanges]).reshape(shape),
+            landed_upper=above,
             shot=None if self.shot is None else self.shot.capture(),
         )
 
@@ -171,7 +177,9 @@ class Multipath(AbstractAlgorithm[MultipathState]):
         UInt64 = self.geometry.device.types.UInt64
         self._quanta, self.done, self.ends = state.quanta, state.lines_done, state.ends.astype(np.int64)
         for g, exchange in enumerate(self.exchanges):
-            exchange.unshot, exchange.landed = upload(UInt64, state.unshot[g]), upload(UInt64, state.landed[g])
+            exchange.unshot = upload(UInt64, state.unshot[g])
+            upper = None if state.landed_upper is None else state.landed_upper[g]
+            exchange.landed = upload(UInt64, exchange.upper.of(state.landed[g], upper))
             self.ledger[g] = {
                 name: [(int(high) << 32) + int(low) for high, low in rows]
                 for name, rows in zip(LEDGER, state.ledger[g], strict=True)

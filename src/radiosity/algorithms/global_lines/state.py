@@ -21,7 +21,8 @@ class MultipathState(AbstractState):
         ends: (replicates, n_patches) int64, span ends on each patch.
         ends_per_line: (n_patches,) float64, the expected number of ends for each line.
         ledger: (groups, 4, replicates, 2) uint64, sums of `exchange.LEDGER`, upper and lower 32 bits.
-        unshot, landed: (groups, replicates, n_patches) uint64, in fixed point.
+        unshot, landed: (groups, replicates, n_patches) uint64, in fixed point; ``landed`` is modulo 2^64.
+        landed_upper: uint32, the upper words of ``landed``, where some are not zero.
         shot: the lines of the first shot, where there is one.
     """
 
@@ -31,6 +32,7 @@ class MultipathState(AbstractState):
     ledger: np.ndarray = array("groups", 4, "replicates", 2)
     unshot: np.ndarray = array("groups", "replicates", "rows")
     landed: np.ndarray = array("groups", "replicates", "rows")
+    landed_upper: np.ndarray | None = array("groups", "replicates", "rows", optional=True, zeros=True)
     shot: FiringState | None = part(FiringState, "shot_", optional=True)
 
     @property

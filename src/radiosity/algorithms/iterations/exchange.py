@@ -23,6 +23,7 @@ from ..state import Sizes
 
 BITS = 30
 LINE = 2**BITS  # fixed point units of one expected line
+MOST = 1 << 29  # lines of a replicate in one iteration, or of its probing lines: what they carry fits in 64 bits
 TURNS = 2  # sequences that steps take in turn where both ends of a line score (docs/iterations.md)
 
 

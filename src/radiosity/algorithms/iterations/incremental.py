@@ -4,9 +4,14 @@ With N quanta a patch must send E_i A_i N / Phi + rho_i (what it received) quant
 not sent yet, in one expected line a quantum. When N grows, emission grows and the same counters continue: what a stage adds is an
 independent solution with its share of the lines, merged in proportion to them (Feda and Purgathofer 1993).
 
+A stage sends `MOST` quanta at a time, and beyond `EXACT` quanta sums are kept in double precision: whole numbers of 64 bits hold
+no more.
+
 Rounding ends the iterations: when less than a line is left it is sent with its probability, in full or not at all. So what is cut
 off has no bias, and no threshold is needed.
 """
+
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -19,20 +24,24 @@ from .exchange import LINE, Exchange
 from .polynomials import end_of_polynomials
 from .state import IncrementalState
 
+MOST = 1 << 31  # quanta whose power is sent at once
+EXACT = 1 << 32  # quanta up to which all that arrives on a patch is a whole number
+
 
 class Incremental:
     """Power received and unsent of all replicates, in units of a quantum / LINE.
 
     Attributes:
-        received: (slots * columns,) Int64, all that arrived.
+        quanta, begun: N of the stage, and how much of it has been emitted.
+        received: (slots * columns,) Int64, all that arrived; Float64 beyond `EXACT` quanta.
         unsent: (total * columns,) Float64, whole numbers.
         emitted, fired: (replicates, columns) int64, the power that sources gave and that left along lines.
     """
 
     def __init__(self, exchange: Exchange, problem: Problem, control: Control | None):
-        self.exchange, self.control, self.quanta = exchange, control, 0
+        self.exchange, self.control, self.quanta, self.begun = exchange, control, 0, 0
         types = exchange.types
-        self.received = upload(types.Int64, np.zeros(exchange.shooter.slots * exchange.columns, np.int64))
+        self.received: Any = upload(types.Int64, np.zeros(exchange.shooter.slots * exchange.columns, np.int64))
         self.unsent = upload(types.Float64, np.zeros(exchange.total * exchange.columns))
         self.emitted, self.fired = (np.zeros((exchange.replicates, exchange.columns), np.int64) for _ in range(2))
         self.probing = 0
@@ -45,13 +54,31 @@ class Incremental:
         """Send all power that patches must send at N quanta."""
         if quanta > self.quanta:
             self.begin(quanta)
-        while lines := self.step():
-            swept(lines)
+        while True:
+            while lines := self.step():
+                swept(lines)
+            if self.begun == self.quanta:
+                return
+            self._emit()
 
     def begin(self, quanta: int) -> None:
-        """Add the emission of a stage of N quanta."""
+        """Begin a stage of N quanta."""
+        self.quanta = quanta
+        self._emit()
+
+    @property
+    def exact(self) -> bool:
+        """True where power is carried in whole numbers from its source to its end."""
+        exchange = self.exchange
+        return not exchange.two_ended and self.control is None and exchange.basis.size == 1 and self.quanta <= EXACT
+
+    def _emit(self) -> None:
+        """Add emission, up to that of the stage."""
         exchange, types = self.exchange, self.exchange.types
-        more, self.quanta = quanta - self.quanta, quanta
+        more = min(self.quanta - self.begun, MOST)
+        self.begun += more
+        if self.quanta > EXACT:
+            self.received = types.Float64(self.received)
         source = np.array(exchange.emitted)
         if self.control is not None and self.control.beta.any():
             self.probing = self.control.probe(max(more // SHARE, 1))
@@ -59,7 +86,8 @@ class Incremental:
             source += np.array(exchange.scattered(self.control.received()) - self.control.constant())
         new = np.rint(source * (float(more) * LINE))
         self.unsent = upload(types.Float64, np.array(self.unsent) + new)
-        self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.columns).sum(axis=1)
+        if self.quanta <= EXACT:
+            self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.columns).sum(axis=1)
 
     def step(self) -> int:
         """Make one iteration, and return its number of lines; 0 when all is sent."""
@@ -73,8 +101,8 @@ class Incremental:
         if exchange.basis.size > 1:
             self.unsent, expected = end_of_polynomials(exchange, self.unsent, self.quanta)
         lines, fired = exchange.send(self.unsent, expected)
-        self.fired += 0 if fired is None else fired()
-        self.received += exchange.shooter.received
+        self.fired += 0 if fired is None or not self.exact else fired()
+        self.received += type(self.received)(exchange.shooter.received)
         self.unsent = dr.round(exchange.scattered(types.Float64(exchange.patches(exchange.shooter.received))))
         dr.eval(self.received, self.unsent)
         return lines
@@ -86,22 +114,23 @@ class Incremental:
 
     def capture(self) -> IncrementalState:
         """Return copies of the power."""
-        whole = not self.exchange.two_ended and self.control is None and self.exchange.basis.size == 1
+        progress = [self.quanta, self.probing, *([self.begun] if self.begun < self.quanta else [])]
         return IncrementalState(
             sizes=self.exchange.sizes,
             received=np.array(self.received),
             unsent=np.array(self.unsent),
             scale=self.scale,
-            progress=np.array([self.quanta, self.probing]),
-            emitted=self.emitted.copy() if whole else None,
-            left=self.fired.copy() if whole else None,
+            progress=np.array(progress),
+            emitted=self.emitted.copy() if self.exact else None,
+            left=self.fired.copy() if self.exact else None,
         )
 
     def restore(self, state: IncrementalState) -> None:
         """Set the power to a captured one."""
         types = self.exchange.types
-        self.received = upload(types.Int64, state.received)
+        self.received = upload(types.Float64 if state.received.dtype.kind == "f" else types.Int64, state.received)
         self.unsent = upload(types.Float64, state.unsent)
-        self.quanta, self.probing = (int(x) for x in state.progress)
+        self.quanta, self.probing, *begun = (int(x) for x in state.progress)
+        self.begun = begun[0] if begun else self.quanta
         if state.emitted is not None and state.left is not None:
             self.emitted, self.fired = state.emitted.copy(), state.left.copy()

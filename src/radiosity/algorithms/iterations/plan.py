@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from .control import SHARE
+from .exchange import MOST
 
 START = 4  # one line in 4 of the first stage is for the start
 DARK = 1e-4  # share of the light that may be missing when the start-up ends
@@ -45,7 +46,7 @@ class Plan:
         """
         if self.starting:
             return self.start_lines
-        wanted = max(self.n, FEWEST, self.summed // min(max(8, round(4 / (1 - self.mean))), 128))
+        wanted = min(max(self.n, FEWEST, self.summed // min(max(8, round(4 / (1 - self.mean))), 128)), MOST)
         left = self.quanta - self.done
         if left <= 0:  # the start took the whole first stage
             return max(self.quanta - self.quanta // START, 1)

@@ -20,24 +20,24 @@ class IncrementalState(Record):
     """The state of `Incremental`; arrays over slots are flat.
 
     Attributes:
-        received: (slots * groups,) int64, all that arrived.
+        received: (slots * groups,) int64, all that arrived; float64 in stages of very many quanta.
         unsent: (replicates * n_patches * groups,) float64.
         scale: the factor from received power to shares of Phi.
-        progress: quanta, and lines of probes that are not reported yet.
+        progress: quanta, lines of probes that are not reported yet, and within long stages the quanta that have been emitted.
         emitted, left: (replicates, groups) int64, where power is carried in whole numbers.
     """
 
     received: np.ndarray = array("slots", "groups", flat=True)
     unsent: np.ndarray = array("replicates", "rows", "groups", flat=True)
     scale: float = number(float)
-    progress: np.ndarray = array(2, merged=alike)
+    progress: np.ndarray = array("any", merged=alike)
     emitted: np.ndarray | None = array("replicates", "groups", optional=True)
     left: np.ndarray | None = array("replicates", "groups", optional=True)
 
     @property
     def unfinished(self) -> bool:
         """True where power is left to send."""
-        return bool(self.unsent.any())
+        return bool(self.unsent.any()) or len(self.progress) > 2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -105,9 +105,10 @@ class IterationState(AbstractState):
     """Counters of lines, and one of the two schemes.
 
     Attributes:
-        arrivals, fired: (replicates, n_patches) uint32, hit counts and fired counts.
-        missed: (2, replicates) uint32, lines that escaped and were lost.
-        fired_apart: (sequences, replicates, n_patches) uint32, where several sequences are taken in turn; ``fired`` is the sum.
+        arrivals, fired: (replicates, n_patches), hit counts and fired counts, uint32 where that suffices, else uint64.
+        missed: (2, replicates), lines that escaped and were lost, uint32 or uint64.
+        fired_apart: (sequences, replicates, n_patches), uint32 or uint64, where several sequences are taken in turn; ``fired`` is
+            the sum.
         step: the number of steps so far.
     """
 

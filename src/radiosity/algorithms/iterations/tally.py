@@ -25,7 +25,7 @@ class IterationTally(AbstractTally[IterationState]):
     basis: Basis = CONSTANT
 
     def lines(self, problem: Problem, state: IterationState) -> int:
-        return int(state.fired.sum(dtype=np.uint64))
+        return exact_sum(state.fired)
 
     def arrivals(self, problem: Problem, state: IterationState) -> np.ndarray:
         return state.arrivals.sum(axis=0, dtype=np.int64)

@@ -26,7 +26,7 @@ class MatrixState(AbstractState):
         reached: lines of each replicate so far.
         replicates: the number of independent runs.
         keys: (m,) uint64, ascending: row, r n + i, times 2^32 plus column.
-        counts: (m,) uint32, lines of each pair.
+        counts: (m,) uint32 where that suffices, else uint64, lines of each pair.
     """
 
     reached: int = number(int)

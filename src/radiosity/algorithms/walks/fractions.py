@@ -6,6 +6,7 @@ patch i multiplies the power by rho_i c_k / c_(k+1), where c_k walks go on k tim
 the order of 1 / M.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,8 +15,10 @@ import numpy as np
 
 from ...device.backend import upload
 from ...problem.model import Problem
+from ...sampling.blocks import BLOCK, parts
 from ...tracing.lanes import Batch
 from ...tracing.line_tracer import LineTracer
+from .source_sampling import Begun
 
 MIX = 0x9E3779B1  # low bits of the choice, of which a number in single precision has only 24
 
@@ -48,16 +51,21 @@ class Fractions:
         cumulative[lit:] = 2**32 - 1
         return Fractions(tracer, upload(tracer.types.UInt32, cumulative), float(area @ rho / area.sum()))
 
-    def batch(self, begun: int, quanta: int) -> tuple[Batch, int]:
-        """Return walks begun + 1 to quanta of each replicate; the kernel chooses their patches."""
-        tracer, new = self.tracer, quanta - begun
-        self.begun, self.counts = begun, [new]
-        while self.counts[-1]:
-            self.counts.append(int(new * self.mean ** len(self.counts)))
-        u32 = tracer.types.UInt32
-        numbers = upload(u32, np.arange(tracer.replicates, dtype=np.uint32) * tracer.n)
-        counts, fired = (dr.opaque(u32, value, tracer.replicates) for value in (new, begun))
-        return Batch.of(tracer.types, numbers, counts, fired, tracer.record), quanta
+    def batches(self, before: int, quanta: int) -> Iterator[Begun]:
+        """Yield walks before + 1 to quanta of each replicate, block by block; the kernel chooses their patches.
+
+        Of the walks of a block the same shares go on as of those of a stage.
+        """
+        tracer, u32 = self.tracer, self.tracer.types.UInt32
+        for block, begun, more in parts(np.array([before]), np.array([quanta - before])):
+            self.begun, new = int(begun[0]), int(more[0])
+            self.counts = [new]
+            while self.counts[-1]:
+                self.counts.append(int(new * self.mean ** len(self.counts)))
+            numbers = upload(u32, np.arange(tracer.replicates, dtype=np.uint32) * tracer.n)
+            counts, fired = (dr.opaque(u32, value, tracer.replicates) for value in (new, self.begun))
+            largest = BLOCK - 1 if block else quanta
+            yield Begun(block, Batch.of(tracer.types, numbers, counts, fired, tracer.record), min(largest, BLOCK - 1))
 
     def birthplace(self, number, index, bits: int):
         """Return the patch number where a walk begins, and its record; called in a kernel. ``number`` gives the replicate."""

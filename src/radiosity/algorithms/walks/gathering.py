@@ -7,6 +7,7 @@ correlated, so the mean has a bias of the order of one over the walks of a repli
 reflectance 0.5, 0.2 % at 27.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,13 +21,14 @@ from ...solution.books import by_difference, exact_sum
 from ...tally.far_sides import FarSides
 from ...tally.hit_counts import HitCounts
 from ...tally.unmet import bias, means, sides
-from ...tracing.lanes import Batch, Launch
+from ...tally.wraps import Wraps
+from ...tracing.lanes import Launch
 from ...tracing.line_tracer import LineTracer
 from ..base import AbstractMeanTally
 from ..state import Arrays, Sizes
 from .launches import AbstractWalks
 from .particles import ParticleBank, PathSegments
-from .source_sampling import SourceSampling
+from .source_sampling import Begun, SourceSampling
 from .state import GatheringState
 
 UNIT = 2.0**24  # fixed point units of the largest emission of a group
@@ -70,13 +72,26 @@ class Gathering(AbstractWalks[GatheringState]):
             [upload(types.Float, c.astype(np.float32)) for c in x.T] for x in (emission, ratio, far)
         )
         self.met = dr.opaque(types.UInt64, 0, self.tracer.total * self.n)
+        self.fired_upper, self.met_upper = Wraps(types), Wraps(types, 64)
+        self._of_block = {0: (self.tracer, self.segments)}
+
+    def _enter(self, block: int) -> None:
+        if block not in self._of_block:
+            tracer, segments = self._of_block[0]
+            self._of_block = {0: (tracer, segments), block: (tracer.of_block(block), segments.in_block(block))}
+        self.tracer, self.segments = self._of_block[block]
+
+    def _look(self) -> None:
+        self.hits.look()
+        self.fired_upper.look(self.fired)
+        self.met_upper.look(self.met)
 
     @property
     def stage_independent(self) -> bool:
         return True
 
-    def _sources(self, before: int, quanta: int) -> tuple[Batch | None, int]:
-        return self.source_sampling.batch(self.tracer, before, quanta)
+    def _sources(self, before: int, quanta: int) -> Iterator[Begun]:
+        return self.source_sampling.batches(self.tracer, before, quanta)
 
     def _follow(self, launch: Launch, largest: int) -> int:
         types, visits = self.types, []
@@ -137,9 +152,10 @@ class Gathering(AbstractWalks[GatheringState]):
 
     def _state(self, **progress: Any) -> GatheringState:
         arrivals, missed = self.hits.read()
-        fired = frozen(self.fired).reshape(arrivals.shape)
-        met = frozen(self.met).reshape(self.replicates, self.tracer.n, self.n)
-        return GatheringState(arrivals=arrivals, fired=fired, missed=missed, met=met, **progress)
+        fired, upper = self.fired_upper.values(self.fired).reshape(arrivals.shape), self.met_upper.read(self.met)
+        shape = (self.replicates, self.tracer.n, self.n)
+        met, upper = frozen(self.met).reshape(shape), None if upper is None else upper.reshape(shape)
+        return GatheringState(arrivals=arrivals, fired=fired, missed=missed, met=met, met_upper=upper, **progress)
 
     def read(self, arrays: Arrays, sizes: Sizes) -> GatheringState:
         if GatheringState.lacking(arrays, sizes):
@@ -148,8 +164,8 @@ class Gathering(AbstractWalks[GatheringState]):
 
     def _put_back(self, state: GatheringState) -> None:
         self.hits.write(state.arrivals, state.missed)
-        self.fired = upload(self.types.UInt32, state.fired)
-        self.met = upload(self.types.UInt64, state.met)
+        self.fired = upload(self.types.UInt32, self.fired_upper.of(state.fired))
+        self.met = upload(self.types.UInt64, self.met_upper.of(state.met, state.met_upper))
 
     @property
     def tally(self) -> "GatheringTally":
@@ -166,7 +182,7 @@ class GatheringTally(AbstractMeanTally[GatheringState]):
         return state.fired.sum(axis=0, dtype=np.int64)  # a patch is measured by the lines that leave it
 
     def irradiance(self, problem: Problem, state: GatheringState, group: int) -> tuple[np.ndarray, float]:
-        mean = means(state.met[..., group], self.measured(problem, state), sides(problem.patches))
+        mean = means(state.about("met", (..., group)), self.measured(problem, state), sides(problem.patches))
         return mean * problem.patches.area, float(problem.groups.emission[:, group].max()) / UNIT
 
     def line(self, problem: Problem, state: GatheringState, group: int) -> np.ndarray | float:

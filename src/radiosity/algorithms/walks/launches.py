@@ -1,10 +1,13 @@
 """Algorithms that follow walks until they end, in launches of up to a million; between launches their state is whole."""
 
 from abc import abstractmethod
+from collections.abc import Iterator
 from typing import Any, TypeVar
 
-from ...tracing.lanes import Batch, Launch, chunk
+from ...tally.wraps import PERIOD
+from ...tracing.lanes import Launch, chunk
 from ..base import AbstractAlgorithm, Swept
+from .source_sampling import Begun
 from .state import AbstractLaunchState
 
 S = TypeVar("S", bound=AbstractLaunchState)
@@ -16,6 +19,7 @@ class AbstractWalks(AbstractAlgorithm[S]):
     def __init__(self, *arguments):
         super().__init__(*arguments)
         self._quanta, self._before, self._done, self._finished = 0, 0, 0, True
+        self._unseen = 0  # lines since counters were looked at
         self._prepare()
 
     @abstractmethod
@@ -23,8 +27,16 @@ class AbstractWalks(AbstractAlgorithm[S]):
         """Make the counters."""
 
     @abstractmethod
-    def _sources(self, before: int, quanta: int) -> tuple[Batch | None, int]:
-        """Return the walks of a stage, and the largest index among them."""
+    def _sources(self, before: int, quanta: int) -> Iterator[Begun]:
+        """Yield the walks of a stage, block by block."""
+
+    @abstractmethod
+    def _enter(self, block: int) -> None:
+        """Take the numbers of a block for the next launches."""
+
+    @abstractmethod
+    def _look(self) -> None:
+        """Note which counters wrapped around."""
 
     @abstractmethod
     def _follow(self, launch: Launch, largest: int) -> int:
@@ -45,13 +57,25 @@ class AbstractWalks(AbstractAlgorithm[S]):
     def advance(self, quanta: int, swept: Swept) -> None:
         if quanta != self._quanta:
             self._before, self._quanta, self._done, self._finished = self._quanta, quanta, 0, False
-        batch, largest = self._sources(self._before, self._quanta)
-        if batch is not None:
-            whole = chunk(self.geometry.device.types)
-            for launch in batch.launches(self.geometry.device.types, self._done * whole):
-                lines = self._follow(launch, largest)
-                self._done += -(-launch.lanes // whole)
+        types, passed, lines = self.geometry.device.types, 0, 0
+        whole = chunk(types)
+        # of very long walks, fewer in a launch, so that no counter wraps around between two looks
+        limit = 1 << max(int(2 * PERIOD * self.problem.source.least_absorbed), 2).bit_length() - 1
+        for begun in self._sources(self._before, self._quanta):
+            chunks = -(-begun.batch.total // whole)
+            at = min(max(self._done - passed, 0), chunks) * whole
+            for launch in begun.batch.launches(types, at, limit=limit):
+                self._enter(begun.block)
+                lines, at = lines + self._follow(launch, begun.largest), at + launch.lanes
+                if at % whole and at < begun.batch.total:
+                    continue  # within a chunk
+                self._done, self._unseen = passed + -(-at // whole), self._unseen + lines
+                if self._unseen > PERIOD:
+                    self._look()
+                    self._unseen = 0
                 swept(lines)
+                lines = 0
+            passed += chunks
         self._finished = True
 
     def capture(self) -> S:

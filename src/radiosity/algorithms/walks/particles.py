@@ -73,13 +73,20 @@ class Step:
 class PathSegments:
     """Traces segments of walks in kernels."""
 
-    def __init__(self, tracer: LineTracer, *, continuous: bool, panes: FarSides | None = None):
-        self.tracer, self.continuous, self.panes = tracer, continuous, panes
-        drawn = []
-        for replicate in range(tracer.replicates):
-            streams = stream(tracer.seed, replicate, Purpose.LATER_SEGMENTS).spawn(SEGMENTS)
-            drawn += [tracer.numbers.randomisation(stream) for stream in streams]
+    def __init__(self, tracer: LineTracer, *, continuous: bool, panes: FarSides | None = None, block: int = 0):
+        self.tracer, self.continuous, self.panes, key = tracer, continuous, panes, (block,) if block else ()
+        drawn = [
+            tracer.numbers.randomisation(stream(tracer.seed, replicate, Purpose.LATER_SEGMENTS, segment, *key))
+            for replicate in range(tracer.replicates)
+            for segment in range(SEGMENTS)
+        ]
         self.randomisations = upload(tracer.types.UInt32, np.array(drawn, np.uint32))
+
+    def in_block(self, block: int) -> "PathSegments":
+        """Return the segments of walks whose indices lie in a block; these are of the first one."""
+        if block == 0:
+            return self
+        return PathSegments(self.tracer.of_block(block), continuous=self.continuous, panes=self.panes, block=block)
 
     def first(self, number, index, record, bits: int) -> Step:
         """Trace the first segment of a walk, from a uniform point of its patch."""

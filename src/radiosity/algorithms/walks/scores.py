@@ -6,9 +6,12 @@ import numpy as np
 from ...device.backend import frozen, upload
 from ...method.model import Method
 from ...problem.model import Problem
+from ...tally.wraps import Wraps
 from ...tracing.line_tracer import LineTracer
+from ..merge_rules import words
+from .state import WalkState
 
-UNIT = 2**24  # fixed point units of a quantum: as fine as a weight in single precision, and 2^32 hits fit
+UNIT = 2**24  # fixed point units of a quantum: as fine as a weight in single precision
 
 
 class Scores:
@@ -25,7 +28,7 @@ class Scores:
         stays: Float (n_patches,), the part of p with which particles stay on their side; None where nothing diffuses light.
         carries: True where particles have powers of their own; else all carry one quantum.
         weighted: True where ``received`` is kept; else only hits are counted.
-        received: UInt64, group g of a slot at slot * n_groups + g, in `UNIT`.
+        received: UInt64, group g of a slot at slot * n_groups + g, in `UNIT`, modulo 2^64; ``upper`` has the upper words.
         fired: power that left along lines, summed from the lines' side, for each group.
     """
 
@@ -51,6 +54,7 @@ class Scores:
             )
         if self.weighted:
             self.received = dr.opaque(types.UInt64, 0, tracer.slots * self.n)
+            self.upper = Wraps(types, 64)
         self.fired = [0] * self.n
 
     def arrays(self) -> tuple:
@@ -120,21 +124,32 @@ class Scores:
             ratios = [dr.select(across, one, other) for one, other in zip(far, ratios, strict=True)]
         return tuple(w * r * (1 if factor is None else factor) for w, r in zip(weights, ratios, strict=True))
 
-    def read(self) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None]:
-        """Copy the sums to the host, uint64.
+    def look(self) -> None:
+        """Note which sums wrapped around."""
+        if self.weighted:
+            self.upper.look(self.received)
 
-        Returns fired, (n_groups,), and where weighted received, (replicates, n_patches, n_groups), and what escaped and was lost,
-        (2, replicates, n_groups).
-        """
-        tracer, fired = self.tracer, np.array(self.fired, np.uint64)
+    def read(self) -> dict[str, np.ndarray | None]:
+        """Copy the sums to the host, by the names that `WalkState` has."""
+        tracer, (low, much) = self.tracer, words(self.fired)
+        found: dict[str, np.ndarray | None] = {"fired_power": low, "fired_power_upper": much}
         if not self.weighted:
-            return fired, None, None
-        flat, split = frozen(self.received), tracer.total * self.n
-        missed = flat[split:].reshape(2, tracer.replicates, self.n)
-        return fired, flat[:split].reshape(tracer.replicates, tracer.n, self.n), missed
+            return found
+        split, upper = tracer.total * self.n, self.upper.read(self.received)
+        for flat, kind in ((frozen(self.received), ""), (upper, "_upper")):
+            if flat is not None:
+                found[f"received{kind}"] = flat[:split].reshape(tracer.replicates, tracer.n, self.n)
+                found[f"received_missed{kind}"] = flat[split:].reshape(2, tracer.replicates, self.n)
+        return found
 
-    def write(self, fired: np.ndarray, received: np.ndarray | None, missed: np.ndarray | None) -> None:
-        """Set the sums to what `read` returned."""
-        self.fired = [int(power) for power in fired]
-        if received is not None and missed is not None:
-            self.received = upload(self.tracer.types.UInt64, np.concatenate([received.ravel(), missed.ravel()]))
+    def write(self, state: WalkState) -> None:
+        """Set the sums to those of a state."""
+        self.fired, rows, missed = state.fired_in_all, state.received, state.received_missed
+        if rows is None or missed is None:
+            return
+        upper = None
+        if state.received_upper is not None or state.received_missed_upper is not None:
+            pairs = ((rows, state.received_upper), (missed, state.received_missed_upper))
+            upper = np.concatenate([np.ravel(np.zeros(low.shape, np.uint32) if x is None else x) for low, x in pairs])
+        flat = self.upper.of(np.concatenate([rows.ravel(), missed.ravel()]), upper)
+        self.received = upload(self.tracer.types.UInt64, flat)

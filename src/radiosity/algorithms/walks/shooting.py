@@ -4,6 +4,7 @@ Continuous: S. N. Pattanaik and S. P. Mudur, "Computation of global illumination
 of light", 3rd Eurographics Workshop on Rendering, 1992. Discrete: M. Sbert 1997. The estimator decides what a hit scores.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,7 +16,7 @@ from ...errors import MethodError
 from ...tally.far_sides import FarSides
 from ...tally.hit_counts import HitCounts
 from ...tally.hit_tally import DENSE, AbstractHitTally, hit_tally
-from ...tracing.lanes import Batch, Launch, sums
+from ...tracing.lanes import Launch, sums
 from ...tracing.line_tracer import LineTracer
 from ...tracing.refill import follow, lanes_for
 from ..base import AbstractTally
@@ -25,7 +26,7 @@ from .fractions import Fractions
 from .launches import AbstractWalks
 from .particles import ParticleBank, PathSegments
 from .scores import Scores
-from .source_sampling import SourceSampling
+from .source_sampling import Begun, SourceSampling
 from .state import WalkState
 from .tally import WalkTally
 
@@ -64,15 +65,28 @@ class Walks(AbstractWalks[WalkState]):
         self.source_sampling = SourceSampling.of_power(self.problem, self.seed, self.replicates)
         self.fractions = Fractions.of(self.tracer, self.problem) if self.method.absorption == "fractional" else None
         self.scores = Scores(self.tracer, self.problem, self.method)
+        self._of_block = {0: (self.tracer, self.segments)}
+
+    def _enter(self, block: int) -> None:
+        if block not in self._of_block:
+            tracer, segments = self._of_block[0]
+            self._of_block = {0: (tracer, segments), block: (tracer.of_block(block), segments.in_block(block))}
+        self.tracer, self.segments = self._of_block[block]
+        if self.fractions is not None:
+            self.fractions.tracer = self.tracer
+
+    def _look(self) -> None:
+        self.hits.look()
+        self.scores.look()
 
     @property
     def stage_independent(self) -> bool:
         return self.fractions is None
 
-    def _sources(self, before: int, quanta: int) -> tuple[Batch | None, int]:
+    def _sources(self, before: int, quanta: int) -> Iterator[Begun]:
         if self.fractions is not None:
-            return self.fractions.batch(before, quanta)
-        return self.source_sampling.batch(self.tracer, before, quanta)
+            return self.fractions.batches(before, quanta)
+        return self.source_sampling.batches(self.tracer, before, quanta)
 
     def _follow(self, launch: Launch, largest: int) -> int:
         types, segment, lines, bits = self.types, 1, launch.lanes, self.tracer.numbers.bits_for(largest)
@@ -151,9 +165,8 @@ class Walks(AbstractWalks[WalkState]):
         return took
 
     def _state(self, **progress: Any) -> WalkState:
-        (arrivals, missed), (fired, received, its_missed) = self.hits.read(), self.scores.read()
-        scores = {"fired_power": fired, "received": received, "received_missed": its_missed}
-        return WalkState(arrivals=arrivals, missed=missed, **scores, **progress)
+        arrivals, missed = self.hits.read()
+        return WalkState(arrivals=arrivals, missed=missed, **self.scores.read(), **progress)
 
     def read(self, arrays: Arrays, sizes: Sizes) -> WalkState:
         wanted = ("received", "received_missed") if self.scores.weighted else ()
@@ -163,7 +176,7 @@ class Walks(AbstractWalks[WalkState]):
 
     def _put_back(self, state: WalkState) -> None:
         self.hits.write(state.arrivals, state.missed)
-        self.scores.write(state.fired_power, state.received, state.received_missed)
+        self.scores.write(state)
 
     @property
     def tally(self) -> AbstractTally[WalkState]:

@@ -1,5 +1,6 @@
 """Source sampling: how many walks begin on each patch at N quanta."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,9 +8,19 @@ import numpy as np
 from ...device.backend import upload
 from ...problem.model import Problem
 from ...problem.quanta import Source, phases, target_counts
+from ...sampling.blocks import BLOCK, parts
 from ...sampling.streams import Seed
 from ...tracing.lanes import Batch
 from ...tracing.line_tracer import LineTracer
+
+
+@dataclass(frozen=True)
+class Begun:
+    """Walks that begin together: their block (`sampling.blocks`), a batch, and the largest index within the block."""
+
+    block: int
+    batch: Batch
+    largest: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,17 +50,20 @@ class SourceSampling:
         return SourceSampling(source, phases(seed, replicates, len(area)))
 
     def count(self, quanta: int) -> np.ndarray:
-        """Return the number of walks at N quanta, (replicates, n_patches) uint32."""
+        """Return the number of walks at N quanta, (replicates, n_patches): uint32 where that suffices, else uint64."""
         if quanta == 0:
             return np.zeros(self.phase.shape, np.uint32)
-        return target_counts(self.source, quanta, np.zeros(self.phase.shape[1], np.uint32), self.phase).astype(np.uint32)
+        found = target_counts(self.source, quanta, np.zeros(self.phase.shape[1], np.uint32), self.phase)
+        return found if int(found.max()) >= BLOCK else found.astype(np.uint32)
 
-    def batch(self, tracer: LineTracer, before: int, quanta: int) -> tuple[Batch | None, int]:
-        """Return the walks that are new at N = quanta after N = before, and the largest index among them."""
+    def batches(self, tracer: LineTracer, before: int, quanta: int) -> Iterator[Begun]:
+        """Yield the walks that are new at N = quanta after N = before, block by block."""
         old, now = self.count(before).ravel(), self.count(quanta).ravel()
-        rows = np.flatnonzero(now > old)
-        if not len(rows):
-            return None, 0
-        columns = (rows.astype(np.uint32), (now - old)[rows], old[rows])
-        numbers, counts, fired = (upload(tracer.types.UInt32, column) for column in columns)
-        return Batch.of(tracer.types, numbers, counts, fired, tracer.record), int(now.max())
+        for block, begin, more in [(0, old, now - old)] if now.dtype == np.uint32 else parts(old, now - old):
+            rows = np.flatnonzero(more)
+            if not len(rows):
+                continue
+            columns = (rows.astype(np.uint32), more[rows].astype(np.uint32), begin[rows].astype(np.uint32))
+            numbers, counts, fired = (upload(tracer.types.UInt32, column) for column in columns)
+            largest = BLOCK - 1 if block else int((begin + more).max())
+            yield Begun(block, Batch.of(tracer.types, numbers, counts, fired, tracer.record), largest)

@@ -33,27 +33,30 @@ class WalkTally(AbstractTally[WalkState]):
     def irradiance(self, problem: Problem, state: WalkState, group: int) -> tuple[np.ndarray, float]:
         quantum = problem.source.power / state.quanta
         if state.received is not None:
-            return state.received[..., group], quantum / UNIT
+            return state.about("received", (..., group)), quantum / UNIT
         return state.arrivals, quantum
 
     def books(self, problem: Problem, state: WalkState, group: int) -> dict:
         replicates, quanta = len(state.arrivals), state.quanta
-        unit, counts, missed = 1, state.arrivals, state.missed
-        if state.received is not None and state.received_missed is not None:
-            unit, counts, missed = UNIT, state.received[..., group], state.received_missed[..., group]
+        unit = 1 if state.received is None else UNIT
+        if state.received is None:
+            missed = [exact_sum(kind) for kind in state.missed]
+        else:
+            missed = [state.exact("received_missed", (kind, slice(None), group)) for kind in range(2)]
         watts = problem.source.power / quanta / unit / 2**32 / replicates
         emission = float(problem.groups.emission[:, group] @ problem.patches.area)
         if not self.collisions:
+            counts = state.arrivals if state.received is None else state.about("received", (..., group))
             received = counts.sum(axis=0, dtype=np.float64)
-            escaped, lost = (float(exact_sum(x)) * 2**32 * watts for x in missed)
+            escaped, lost = (float(x) * 2**32 * watts for x in missed)
             return by_difference(
                 emission, float(received @ (1 - problem.groups.scatter.albedo[:, group])) * 2**32 * watts, escaped, lost
             )
         rho = Source.fixed_albedo(problem.groups.scatter, group)
-        arrived, reflected = exact_totals(counts, rho)
+        arrived, reflected = exact_totals(state.arrivals, rho) if unit == 1 else state.totals("received", (..., group), rho)
         emitted = self._emitted(problem, quanta, unit, emission) * replicates
-        fired = int(state.fired_power[group]) << 32
-        escaped, lost = (exact_sum(x) << 32 for x in missed)
+        fired = state.fired_in_all[group] << 32
+        escaped, lost = (x << 32 for x in missed)
         return Books(emitted, fired, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()
 
     def _emitted(self, problem: Problem, quanta: int, unit: int, emission: float) -> int:

@@ -53,7 +53,10 @@ def _restore(arrays: dict[str, Any], meta: dict[str, Any]) -> LineSet:
         _that(isinstance(provenance[name], kind), f"the provenance has the {name} {provenance[name]!r}")
     for name, now in (("geometry", patches.scene.geometry_hash), ("cut", patches.cut_hash)):
         _that(provenance[name] == now, f"its {name} is not the one that the lines were traced in")
-    _that(keys.dtype == np.uint64 and counts.dtype == np.uint32 and keys.ndim == 1 and keys.shape == counts.shape, "other counts")
+    _that(
+        keys.dtype == np.uint64 and counts.dtype in (np.uint32, np.uint64) and keys.ndim == 1 and keys.shape == counts.shape,
+        "other counts",
+    )
     _that(bool((keys[1:] > keys[:-1]).all()) and bool((counts > 0).all()), "pairs that are not in order")
     rows, columns = split(keys)
     _that(bool((rows < replicates * n).all()) and bool((columns <= n + 1).all()), "pairs of patches that there are not")

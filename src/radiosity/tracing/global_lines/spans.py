@@ -12,14 +12,14 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from ...device.backend import upload
 from ...device.turn import turn
 from ...errors import MethodError, RadiosityWarning
 from ...method.lines import LINES
 from ...method.model import Method
+from ...sampling.blocks import BITS, BLOCK, Blocks
 from ...sampling.global_lines import by_disc, by_two_points, of_bundle
 from ...sampling.numbers import ready
-from ...sampling.streams import Purpose, Seed, stream
+from ...sampling.streams import Purpose, Seed
 from ...scene.precision import EPSILON
 from ..bvh import REACH
 from ..geometry import Geometry
@@ -99,10 +99,12 @@ class Spans:
         Raises:
             MethodError: the sequence of numbers has fewer points.
         """
-        parts = []
-        for start in range(0, count, CHUNK):
-            line, one, other = self._launch(replicate, first + start, min(CHUNK, count - start))
+        parts, start = [], 0
+        while start < count:
+            width = min(CHUNK, count - start, self._end_of_block(first + start) - first - start)
+            line, one, other = self._launch(replicate, first + start, width)
             parts.append((line + np.uint32(start) if start else line, one, other))
+            start += width
         if len(parts) != 1:
             none = np.zeros(0, np.uint32)
             parts = [[np.concatenate(column) for column in zip((none, none, none), *parts, strict=True)]]
@@ -158,24 +160,48 @@ class Spans:
         return ready(self.method.points, self.geometry.device.types)
 
     @cached_property
-    def _randomisation(self):
-        drawn = [self._numbers.randomisation(stream(self.seed, r, Purpose.NUMBERS)) for r in range(self.replicates)]
-        return upload(self.geometry.device.types.UInt32, np.array(drawn, np.uint32))
+    def _blocks(self) -> Blocks:
+        return Blocks(self._numbers, self.geometry.device.types, self.seed, self.replicates, Purpose.NUMBERS)
+
+    @property
+    def _of_a_point(self) -> int:
+        """The number of lines that share a point of the sequence."""
+        return self.bundle if self.method.lines == "bundles" else 1
+
+    def _block(self, line: int) -> int:
+        """Return the block of the point of a line, counted from 0 on; points are counted from 1 on."""
+        return (line // self._of_a_point + 1) >> BITS
+
+    def _end_of_block(self, line: int) -> int:
+        """Return the first line of the next block."""
+        return (((self._block(line) + 1) << BITS) - 1) * self._of_a_point
+
+    def _words(self, block: int):
+        """Return the randomisations of the replicates in a block; the last one is kept."""
+        if self._last.get("block") != block:
+            self._last.update(block=block, words=self._blocks.words(block))
+        return self._last["words"]
+
+    @cached_property
+    def _last(self) -> dict[str, Any]:
+        return {}
 
     def _launch(self, replicate: int, first: int, count: int):
         """Return the number of the line, one end and the other, of the spans of at most CHUNK lines."""
         types = self.geometry.device.types
         UInt32 = types.UInt32
-        begin, at = dr.opaque(UInt32, first + 1), dr.opaque(UInt32, 2 * replicate)
-        words = [*dr.gather(types.Array4u, self._randomisation, at), *dr.gather(types.Array4u, self._randomisation, at + 1)]
-        bundled = self.method.lines == "bundles"
-        last = first + count if not bundled else (first + count - 1) // self.bundle + 1
+        each, low, block = self._of_a_point, BLOCK - 1, self._block(first)
+        bundle = dr.opaque(UInt32, (first // each + 1) & low)  # the point of the first line, where lines share it
+        begin, at = dr.opaque(UInt32, (first + 1 if each == 1 else first % each + 1) & low), dr.opaque(UInt32, 2 * replicate)
+        table = self._words(block)
+        words = [*dr.gather(types.Array4u, table, at), *dr.gather(types.Array4u, table, at + 1)]
+        last = low if block else (first + count - 1) // each + 1
         points = partial(self._numbers.points, patch=UInt32(0), randomisation=words, bits=self._numbers.bits_for(last))
         lane = ordered(types, self.method.lines, self.method.points, begin, count)
         dr.eval(lane)
         if self.method.lines == "spans":
             return self.surfaces.spans(self.crossings, lambda lane: points(begin + lane), lane, count)
-        line = partial(self._line, points, begin)
+        line = partial(self._line, points, begin, bundle)
         box = [types.Array3f(*(dr.opaque(types.Float, float(x)) for x in corner)) for corner in self._box]
 
         def entering(lane):
@@ -194,8 +220,12 @@ class Spans:
         walked = walk(self.crossings, index, max(count, 2), entering, room, coherent=self.coherent)
         return walked.line, walked.one, walked.other
 
-    def _line(self, points, begin, lane):
-        """Return a point and the direction of the line with number ``begin`` + ``lane``, from 1 on."""
+    def _line(self, points, begin, bundle, lane):
+        """Return a point and the direction of the line with number ``begin`` + ``lane``, from 1 on: of a block, or of a bundle.
+
+        Args:
+            bundle: the point of the bundle in which lane 0 lies.
+        """
         types = self.geometry.device.types
         radius = dr.opaque(types.Float, self.radius)
         if self.method.lines == "global":
@@ -204,7 +234,7 @@ class Spans:
             point, direction = by_disc(points(begin + lane), radius, types.Array3f)
         else:
             number, bits = begin + lane - 1, self.bundle.bit_length() - 1
-            numbers, cell = points((number >> bits) + 1), number & (self.bundle - 1)
+            numbers, cell = points((number >> bits) + bundle), number & (self.bundle - 1)
             point, direction = of_bundle(numbers, cell, bits // 2, radius, types.Array3f)
         return point + types.Array3f(*(dr.opaque(types.Float, float(x)) for x in self.middle)), direction
 

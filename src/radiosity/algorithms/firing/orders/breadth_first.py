@@ -24,9 +24,9 @@ class BreadthFirst(AbstractOrder):
             wavefront, largest = counters.due()
             if wavefront is None:
                 return
-            if wavefront.total < tail(counters):
+            if wavefront.blocks is None and wavefront.total < tail(counters):
                 walk_all(counters, wavefront, swept)
-                if counters.panes is None:
+                if counters.panes is None and not counters.wide:
                     return
                 continue  # walks end on diffusing panes
             counters.fire(wavefront, largest)

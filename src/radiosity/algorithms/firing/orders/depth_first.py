@@ -1,13 +1,15 @@
 """Depth-first order: a lane follows its particle from patch to patch until it is absorbed, then another one (Sbert 1997).
 
 The hit that raises the target count of a patch fires the patch's next line. Which lane this is depends on timing, but every
-hit and every line number is claimed once, by an atomic counter, so the counters end as in any other order.
+hit and every line number is claimed once, by an atomic counter, so the counters end as in any other order. Such counters have 32
+bits. Where these may be too few (`FiringCounters.wide`), lines are fired in wavefronts, to the same integers.
 """
 
 from typing import Any
 
 import drjit as dr
 
+from ....tally.wraps import PERIOD
 from ....tracing.lanes import Launch, Wavefront
 from ....tracing.refill import follow
 from ...base import Swept
@@ -19,9 +21,16 @@ class DepthFirst(AbstractOrder):
     """Follows all walks until they are absorbed."""
 
     def run(self, counters: FiringCounters, swept: Swept) -> None:
-        while (wavefront := counters.due()[0]) is not None:
+        while True:
+            wavefront, largest = counters.due()
+            if wavefront is None:
+                return
+            if wavefront.blocks is not None:
+                counters.fire(wavefront, largest)
+                swept(wavefront.total)
+                continue
             walk_all(counters, wavefront, swept)
-            if counters.panes is None:  # walks end on diffusing panes, and other walks begin there
+            if counters.panes is None and not counters.wide:  # walks end on diffusing panes, and other walks begin there
                 return
 
 
@@ -29,12 +38,18 @@ def walk_all(counters: FiringCounters, wavefront: Wavefront, swept: Swept) -> No
     """Follow walks from the lines of a wavefront, one launch at a time."""
     counters.look_everywhere()  # where ``swept`` ends the work, lines of later launches are due
     before = counters.lines
+    limit = max(int(PERIOD * counters.source.least_absorbed), 2)  # so that walks of a launch have `PERIOD` lines at most
     for batch in list(counters.batches(wavefront)):  # made before walks fire lines of patches of later batches
-        for launch in batch.launches(counters.types):
+        for launch in batch.launches(counters.types, limit=limit):
             walk(counters, launch)
             after = counters.lines
+            counters.unseen += after - before
+            if counters.unseen > PERIOD:
+                counters.look()
             swept(after - before)
             before = after
+            if counters.wide:
+                return  # what is left is due in the next wavefront
 
 
 def walk(counters: FiringCounters, launch: Launch) -> None:
