@@ -1,5 +1,6 @@
 """The lines of sensors: a gather at each of them, which reads a solution."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -18,9 +19,27 @@ from ..tracing.geometry import Geometry
 from .model import Sensors
 from .receivers import Receivers
 
+Sums = tuple[list, list, list]  # see `Tracing.sums`
 PILOT = 16  # lines of each kind of each plane
 LEAST = 0.1  # of the mean: the least share of lines of a packet
 POWER = 0.435  # shares go as variance to this power, as those of patches do (`algorithms.gather.shares`)
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """What lines of sensors follow from, besides the scene: see `Tracing.of`."""
+
+    sensors: Sensors
+    reflected: np.ndarray
+    replicates: int
+    seed: Seed
+    direct: bool = True
+    faces: np.ndarray | None = None
+
+    def tracing(self, geometry: Geometry, problem: Problem) -> "Tracing":
+        """Return sums that have begun, without a pilot: for lines that somebody else shares out."""
+        given = {"direct": self.direct, "faces": self.faces, "pilot": 0}
+        return Tracing.of(geometry, problem, self.sensors, self.reflected, self.replicates, self.seed, **given)
 
 
 @dataclass(eq=False)
@@ -35,6 +54,8 @@ class Tracing:
         counts: (2, count) int64, lines so far.
         brought, met: sums, of each group.
         missed: lines that escaped and were lost.
+        setup: what it was made of.
+        elsewhere: traces lines in other places, and yields their sums in pieces; None: here.
     """
 
     receivers: Receivers
@@ -45,7 +66,9 @@ class Tracing:
     brought: list
     met: list
     missed: list
+    setup: Setup
     traced: int = field(default=0)
+    elsewhere: "Callable[[np.ndarray, np.ndarray], Iterator[Sums]] | None" = None
 
     @staticmethod
     def of(
@@ -91,22 +114,35 @@ class Tracing:
         brought, met = ([dr.zeros(kind, receivers.lanes) for _ in read] for kind in kinds)
         missed = [dr.zeros(types.UInt32, receivers.lanes) for _ in range(2)]
         traced = 2 * pilot * one.receivers
-        return Tracing(receivers, lines, read, shares, np.zeros((2, one.count), np.int64), brought, met, missed, traced)
+        counts, setup = np.zeros((2, one.count), np.int64), Setup(sensors, reflected, replicates, seed, direct, faces)
+        return Tracing(receivers, lines, read, shares, counts, brought, met, missed, setup, traced)
 
     def advance(self, each: float) -> None:
         """Trace until every plane has about ``each`` lines of both kinds together, in each replicate."""
         wanted = np.maximum(np.ceil(self.shares * each), (self.shares > 0) * 2).astype(np.int64)
         more = np.maximum(wanted - self.counts, 0)
-        if more[0].any():
-            met, missed = self.lines.cosine(self.counts[0], more[0], read=self.read)
-            self.met = [total + one for total, one in zip(self.met, met, strict=True)]
-            self.missed = [total + one for total, one in zip(self.missed, missed, strict=True)]
-        if more[1].any():
-            brought = self.lines.shadow(self.counts[1], more[1])
-            self.brought = [total + one for total, one in zip(self.brought, brought, strict=True)]
+        for met, missed, brought in (
+            [self.sums(self.counts, more)] if self.elsewhere is None else self.elsewhere(self.counts, more)
+        ):
+            self.met, self.missed, self.brought = (
+                [total + type(total)(one) for total, one in zip(totals, ones, strict=True)] if ones else totals
+                for totals, ones in ((self.met, met), (self.missed, missed), (self.brought, brought))
+            )
         dr.eval(self.met, self.brought, self.missed)
         self.counts = self.counts + more
         self.traced += int((more * self.receivers.sizes).sum()) * self.receivers.replicates
+
+    def sums(self, before: np.ndarray, more: np.ndarray) -> Sums:
+        """Trace lines of each packet, and return what they met, how many were missed, and what shadow rays brought.
+
+        All are whole numbers of each lane; a list is empty where no line was traced.
+
+        Args:
+            before, more: (2, count) int64, cosine lines and shadow rays of each packet so far, and now.
+        """
+        met, missed = self.lines.cosine(before[0], more[0], read=self.read) if more[0].any() else ([], [])
+        brought = self.lines.shadow(before[1], more[1]) if more[1].any() else []
+        return met, missed, brought
 
     def values(self) -> np.ndarray:
         """Return the irradiance of each sensor in each replicate, (replicates, n_sensors, n_groups), in shares of the unit."""
