@@ -7,15 +7,12 @@ fires now and what power they carry, can fire them. Hits are whole numbers, and 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...device.backend import frozen, upload
 from ...tracing.lanes import Wavefront
-
-if TYPE_CHECKING:
-    from .counters import FiringCounters
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +72,8 @@ class AbstractFirer(ABC):
         """Yield the hits of all lines, in any order and in any pieces."""
 
 
-def fire_elsewhere(counters: "FiringCounters", wavefront: Wavefront, largest: int, firer: AbstractFirer) -> None:
-    """Fire a wavefront, and add its hits to the counters."""
+def fire_elsewhere(counters: Any, wavefront: Wavefront, largest: int, firer: AbstractFirer) -> None:
+    """Fire a wavefront, and add its hits to the `FiringCounters`."""
     tracer, bands = counters.tracer, counters.bands
     numbers, counts = _on_host(counters, wavefront)
     fired, some = frozen(counters.fired).copy(), counts > 0
@@ -113,7 +110,7 @@ def fire_elsewhere(counters: "FiringCounters", wavefront: Wavefront, largest: in
     counters.look_everywhere()
 
 
-def fire_here(counters: "FiringCounters", lines: Lines) -> Hits:
+def fire_here(counters: Any, lines: Lines) -> Hits:
     """Fire lines with the counters of their replicate alone, which are of use for nothing else."""
     types, tracer, bands, n = counters.types, counters.tracer, counters.bands, counters.tracer.n
     zero = np.zeros((1, n), np.uint32)
@@ -160,7 +157,7 @@ def _between(lines: list[Lines], low: int, high: int) -> list[Lines]:
     return found
 
 
-def _on_host(counters: "FiringCounters", wavefront: Wavefront) -> tuple[np.ndarray, np.ndarray]:
+def _on_host(counters: Any, wavefront: Wavefront) -> tuple[np.ndarray, np.ndarray]:
     """Return the row numbers of a wavefront, and how many lines each fires."""
     size = wavefront.size
     numbers: Any = wavefront.numbers
