@@ -57,12 +57,14 @@ def _count(cluster: str) -> int:
 @contextmanager
 def _local(workers: int) -> Iterator[Any]:
     """Start processes on this machine, which share its cores."""
+    import dask.config
     from distributed import Client, LocalCluster
 
     threads = max(1, _cores() // workers)
     # no limit of Dask's own: it would stop a worker at a share of the memory; a run estimates what it takes beforehand
     options = {"memory_limit": 0, "dashboard_address": "127.0.0.1:0", "silence_logs": logging.CRITICAL}
     with (
+        dask.config.set({"distributed.worker.profile.enabled": False}),  # it would take 1.5 % of each core
         LocalCluster(n_workers=workers, threads_per_worker=threads, processes=True, **options) as cluster,
         Client(cluster) as client,
     ):

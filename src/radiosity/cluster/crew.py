@@ -178,19 +178,23 @@ class DaskCrew(AbstractCrew):
                     self._died(one)
                 continue
             self._deaths = 0
-            self.check(outcome.facts, outcome.address)
-            state = run.whole.read(owned(outcome.arrays), replace(run.sizes, replicates=one.share.count))
-            at = next(at for at, share in enumerate(shares) if share is one.share)
-            shares[at] = Share(one.share.first, one.share.count, state, outcome.done)
-            self._tokens[state] = (outcome.token, outcome.address)
+            self._take(one, outcome, run, shares)
             lines += outcome.lines
-            wall = time.monotonic() - one.begun
-            self._seconds = min(max(SECONDS, TIMES * (wall - outcome.seconds)), MOST_SECONDS)
-            for text in outcome.told:
-                self.tell(text)
-            if outcome.ended:
-                raise Interrupted(outcome.ended)
         return lines
+
+    def _take(self, one: Active, outcome: Outcome, run: InParts, shares: list[Share]) -> None:
+        """Put the state that a unit has come to in the place of the one before."""
+        self.check(outcome.facts, outcome.address)
+        state = run.whole.read(owned(outcome.arrays), replace(run.sizes, replicates=one.share.count))
+        at = next(at for at, share in enumerate(shares) if share is one.share)
+        shares[at] = Share(one.share.first, one.share.count, state, outcome.done)
+        self._tokens[state] = (outcome.token, outcome.address)
+        wall = time.monotonic() - one.begun
+        self._seconds = min(max(SECONDS, TIMES * (wall - outcome.seconds)), MOST_SECONDS)
+        for text in outcome.told:
+            self.tell(text)
+        if outcome.ended:
+            raise Interrupted(outcome.ended)
 
     def _outcome(self, future: Any, one: Active) -> Outcome | None:
         """Return what a unit has done; None where it must be handed out again."""

@@ -13,7 +13,7 @@ from ..device.turn import aside
 from .crew import AWAKE, FAILED_TO_COME, LONELY, DaskCrew
 from .worker import Fired, Missing, fire, fire_all
 
-FEWEST = 1 << 15  # lines of a unit: smaller ones are given to fewer workers
+FEWEST = 1 << 17  # lines of a unit: smaller ones are given to fewer workers, and wavefronts of fewer than two are fired here
 
 
 @dataclass(eq=False)
@@ -29,6 +29,7 @@ class DaskFirer(AbstractFirer):
 
     crew: DaskCrew
     rates: dict[str, float] = field(default_factory=dict)
+    least: int = field(default_factory=lambda: 2 * FEWEST)
     over: bool = False
 
     def fire(self, lines: list[Lines]) -> Iterator[Hits]:

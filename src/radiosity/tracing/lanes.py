@@ -141,10 +141,8 @@ class Batch:
         stop = self.total if end is None else min(end, self.total)
         for start in range(begin, stop, most):
             width = min(most, stop - start)
-            first, last = (
-                dr.opaque(types.UInt64, start),
-                dr.opaque(types.UInt64, start + width),
-            )  # no literals: one kernel for all
+            # no literals: one kernel for all
+            first, last = (dr.opaque(types.UInt64, at) for at in (start, start + width))
             # each entry writes its rank where its lanes begin; the running maximum carries it to all of them
             rank = dr.zeros(types.UInt32, few_sizes(width))
             here = (self.lanes > 0) & (self.begins < last) & (self.begins + types.UInt64(self.lanes) > first)

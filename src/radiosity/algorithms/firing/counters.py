@@ -272,7 +272,7 @@ class FiringCounters:
         Raises:
             Interrupted: they were fired elsewhere, and the run is to end; the counters are whole.
         """
-        if self.firer is not None:
+        if self.firer is not None and wavefront.total >= self.firer.least:
             fire_elsewhere(self, wavefront, largest, self.firer)
             if self.firer.over:
                 raise Interrupted("interrupted")

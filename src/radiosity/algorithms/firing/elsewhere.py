@@ -67,9 +67,11 @@ class AbstractFirer(ABC):
     """Fires lines elsewhere.
 
     Attributes:
+        least: lines of a wavefront from which it pays; smaller ones are fired here.
         over: True where the run is to end: the lines that it was given have been fired all the same.
     """
 
+    least: int = 0
     over: bool = False
 
     @abstractmethod

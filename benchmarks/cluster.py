@@ -1,0 +1,125 @@
+"""Efficiency of workers of Dask: CPU seconds of one process with two threads over those of two workers of one thread each.
+
+    python benchmarks/cluster.py --lines 1e7 3e7 1e8 --replicates 8 1 -o cluster.jsonl
+
+CPU seconds and not wall time, since other programs may run on the machine; workers of equal speed that do not wait take half of
+theirs each. Each figure is the least of some repetitions, taken in turns. The first run of each kind compiles kernels, and does
+not count.
+"""
+
+import argparse
+import json
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+
+import radiosity as rd
+from radiosity.cluster import crew, wavefronts
+from radiosity.cluster.connect import connected
+
+WORKERS = 2
+
+
+def own_seconds() -> float:
+    times = os.times()
+    return times.user + times.system
+
+
+class Counted:
+    """The units that workers were given, and the bytes that went both ways."""
+
+    def __init__(self):
+        self.units = self.sent = self.received = 0
+        for kind, taken in ((crew.DaskCrew, "_take"), (wavefronts.DaskFirer, "_note")):
+            self._count(kind, taken)
+
+    def _count(self, kind, taken) -> None:
+        submit, take = kind._submit, getattr(kind, taken)
+
+        def counted_submit(this, what, *rest):
+            self.units += 1
+            self.sent += size(what)
+            return submit(this, what, *rest)
+
+        def counted_take(this, unit, outcome, *rest):
+            self.received += size(outcome)
+            return take(this, unit, outcome, *rest)
+
+        kind._submit = counted_submit
+        setattr(kind, taken, counted_take)
+
+    def taken(self) -> dict[str, int]:
+        found = {"units": self.units, "sent": self.sent, "received": self.received}
+        self.units = self.sent = self.received = 0
+        return found
+
+
+def size(value) -> int:
+    """The bytes of all arrays within a value."""
+    if isinstance(value, np.ndarray):
+        return value.nbytes
+    if isinstance(value, dict):
+        return sum(map(size, value.values()))
+    if isinstance(value, list):
+        return sum(map(size, value))
+    return size(vars(value)) if type(value).__name__ in ("Lines", "Hits", "Fired", "Outcome", "Share", "FiringState") else 0
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--lines", type=float, nargs="+", default=[1e7, 1e8])
+    parser.add_argument("--replicates", type=int, nargs="+", default=[8, 1])
+    parser.add_argument("--scene", default="room")
+    parser.add_argument("--patches", type=int, default=20_000)
+    parser.add_argument("--repeat", type=int, default=2)
+    parser.add_argument("-o", "--output", type=Path)
+    given = parser.parse_args()
+    patches, counted = rd.subdivide(rd.load_scene(given.scene)), Counted()
+    with connected(f"local:{WORKERS}") as client:
+        for replicates in given.replicates:
+            measured(patches, client, counted, 1e6, replicates, 1)  # compiles kernels
+            for lines in given.lines:
+                row = measured(patches, client, counted, lines, replicates, given.repeat)
+                print(json.dumps(row), flush=True)
+                if given.output:
+                    with given.output.open("a") as file:
+                        file.write(json.dumps(row) + "\n")
+
+
+def measured(patches, client, counted, lines: float, replicates: int, repeat: int) -> dict:
+    alone, here, there, walls, waits = [], [], [], [], []
+    options = {"rays": lines, "replicates": replicates, "method": "random-walk"}
+    for _ in range(repeat):
+        begun, clock = own_seconds(), time.perf_counter()
+        rd.solve(patches, **options)
+        alone.append(own_seconds() - begun)
+        walls.append(time.perf_counter() - clock)
+        begun, before = own_seconds(), sum(client.run(own_seconds).values())
+        counted.taken()
+        clock = time.perf_counter()
+        rd.solve(patches, **options, cluster=client)
+        waits.append(time.perf_counter() - clock)
+        units = counted.taken()
+        here.append(own_seconds() - begun)
+        there.append(sum(client.run(own_seconds).values()) - before)
+    best = int(np.argmin(np.add(here, there)))
+    return {
+        "scene": patches.scene.source,
+        "patches": len(patches),
+        "lines": lines,
+        "replicates": replicates,
+        "alone": round(min(alone), 2),
+        "driver": round(here[best], 2),
+        "workers": round(there[best], 2),
+        "efficiency": round(min(alone) / (here[best] + there[best]), 3),
+        "efficiency of workers": round(min(alone) / there[best], 3),
+        "wall alone": round(min(walls), 1),
+        "wall": round(waits[best], 1),
+        **units,
+    }
+
+
+if __name__ == "__main__":
+    main()
