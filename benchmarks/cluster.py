@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 import radiosity as rd
-from radiosity.cluster import crew, wavefronts
+from radiosity.cluster import barrier, crew
 from radiosity.cluster.connect import connected
 
 WORKERS = 2
@@ -32,7 +32,7 @@ class Counted:
 
     def __init__(self):
         self.units = self.sent = self.received = 0
-        for kind, taken in ((crew.DaskCrew, "_take"), (wavefronts.DaskFirer, "_note")):
+        for kind, taken in ((crew.DaskCrew, "_take"), (barrier.Barrier, "_note")):
             self._count(kind, taken)
 
     def _count(self, kind, taken) -> None:
@@ -64,7 +64,7 @@ def size(value) -> int:
         return sum(map(size, value.values()))
     if isinstance(value, list):
         return sum(map(size, value))
-    return size(vars(value)) if type(value).__name__ in ("Lines", "Hits", "Fired", "Outcome", "Share", "FiringState") else 0
+    return size(vars(value)) if type(value).__name__ in ("Lines", "Hits", "Brought", "Outcome", "Share", "FiringState") else 0
 
 
 def main() -> None:

@@ -17,7 +17,7 @@ from radiosity.run import budget
 from radiosity.run.solve import prepared
 
 distributed = pytest.importorskip("distributed", reason="distributed is not installed")
-from radiosity.cluster import connect, crew, wavefronts, worker  # noqa: E402
+from radiosity.cluster import barrier, connect, crew, sensing, wavefronts, worker  # noqa: E402
 from radiosity.cluster.job import Job  # noqa: E402
 
 QUANTA = 3 << 12  # stages at 4096 (of 5 replicates), 8192 and 12288
@@ -125,14 +125,27 @@ def test_one_replicate_on_two_workers(client, name, monkeypatch):
     monkeypatch.setattr(wavefronts, "FEWEST", 64)
     monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 256})
     patches, units = rd.subdivide(rd.load_scene(scene), cells=2), []
-    submit = wavefronts.DaskFirer._submit
-    monkeypatch.setattr(wavefronts.DaskFirer, "_submit", lambda *of: (units.append(of[1]), submit(*of)))
+    submit = barrier.Barrier._submit
+    monkeypatch.setattr(barrier.Barrier, "_submit", lambda *of: (units.append(of[1]), submit(*of)))
     given = {"replicates": 1, "quanta": 20_000} | options | choices
     found = solved(patches, "random-walk", cluster=client, **given)
     assert len(units) > 10
     firsts = [one for unit in units for one in unit]
     assert any(np.isin(one.rows, other.rows).any() for one, other in pairwise(firsts))  # lines of one row went to both
     assert_same(found, solved(patches, "random-walk", **given))
+
+
+@pytest.mark.parametrize("scene", ["room"])
+def test_sensors_are_those_of_one_machine(client, scene, monkeypatch):
+    monkeypatch.setattr(sensing, "FEWEST", 64)
+    room, seen = rd.load_scene(scene), []
+    monkeypatch.setattr(sensing, "on_host", lambda sums, kept=sensing.on_host: seen.append(1) or kept(sums))
+    plane = rd.Sensors.grid(room, "floor", height=1.0, spacing=1.5) + rd.Sensors.of([[1, 1, 1]], kind="cylindrical")
+    patches, options = rd.subdivide(room, cells=2), {"rays": 60_000, "replicates": 3, "seed": 2}
+    alone, found = (rd.measure(patches, plane, **options, **more) for more in ({}, {"cluster": client}))
+    assert len(seen) > 1
+    assert np.array_equal(found.values, alone.values)
+    assert found.rays == alone.rays
 
 
 # ---- interruptions, and workers that come and go ------------------------------------------------------------------------

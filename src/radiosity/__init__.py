@@ -87,10 +87,24 @@ def _on_cluster(*of):
     return solve(*of)
 
 
+def _connected(*of):
+    from .cluster.connect import connected
+
+    return connected(*of)
+
+
+def _sensing(*of):
+    from .cluster.sensing import sensing
+
+    return sensing(*of)
+
+
 HOOKS["export"] = _export  # of `Solution.export`
 HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)` and `solve(scene, adaptive=True)`
 HOOKS["gather"] = _gather  # of pictures with a final gather
 HOOKS["cluster"] = _on_cluster  # of `solve(scene, cluster=...)`
+HOOKS["connected"] = _connected  # of what solves and traces on one cluster
+HOOKS["sensing"] = _sensing  # of `measure(scene, sensors, cluster=...)`
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {

@@ -43,9 +43,11 @@ class Running(Machine):
 
     Attributes:
         replicates: Number of independent randomised runs, from which errors are found. Default: 8, or those of the solution.
+        cluster: Trace on the workers of Dask, as of `radiosity solve`: tcp://HOST:PORT, or local:N.
     """
 
     replicates: Count = None
+    cluster: str | None = None
 
 
 TracingOptions = Annotated[Tracing, Parameter(name="*", group=Group("Lines and patches", sort_key=2))]

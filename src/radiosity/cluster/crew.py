@@ -17,7 +17,7 @@ from ..algorithms.in_parts import AbstractCrew, InParts, Share
 from ..algorithms.splitting import split
 from ..device.turn import aside
 from ..errors import DeviceError, RadiosityWarning
-from .job import Job, facts
+from .job import facts
 from .worker import Missing, Outcome, Unit, advance, owned
 
 SECONDS = 4.0  # of a unit at least: what a killed worker can lose
@@ -53,7 +53,7 @@ class DaskCrew(AbstractCrew):
     """
 
     client: Any
-    job: Job
+    job: Any  # a `Job`, or another value that has a key
     together: str = ""
     lost: str = ""
     _tokens: WeakKeyDictionary[Any, tuple[str, str]] = field(default_factory=WeakKeyDictionary)  # of states: token and worker

@@ -5,13 +5,12 @@ from typing import Any
 from distributed import WorkerPlugin
 
 from . import worker
-from .job import Job
 
 
 class JobPlugin(WorkerPlugin):
     """Keeps a job on a worker until it is taken off."""
 
-    def __init__(self, job: Job):
+    def __init__(self, job: Any):
         self.job, self.name = job, f"radiosity-{job.key}"
 
     def setup(self, worker: Any) -> None:

@@ -4,7 +4,7 @@ import time
 import uuid
 import warnings
 from collections import OrderedDict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,7 +18,7 @@ from .job import Job, facts
 
 KEPT = 2  # algorithms that stay on a worker between two units, so that their states need not be sent
 
-_jobs: dict[str, Job] = {}
+_jobs: dict[str, Any] = {}
 _live: OrderedDict[tuple[str, int, int], tuple[str, Any]] = OrderedDict()
 
 
@@ -77,7 +77,7 @@ class Outcome:
     facts: dict[str, str]
 
 
-def put(job: Job) -> None:
+def put(job: Any) -> None:
     """Keep a job for units to come."""
     _jobs[job.key] = job
 
@@ -90,17 +90,34 @@ def drop(key: str) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Fired:
-    """What lines of a wavefront brought, and the time that they took."""
+class Brought:
+    """What lines between two barriers brought, and the time that they took.
 
-    hits: list[Hits]
+    Attributes:
+        what: of lines of a wavefront `Hits`, of sensors `Sums`.
+        seconds: of work.
+        address: of the worker.
+        facts: of its packages.
+    """
+
+    what: list
     seconds: float
     address: str
     facts: dict[str, str]
 
 
-def fire(key: str, lines: list[Lines]) -> Fired:
-    """Fire lines of a wavefront.
+def fire(key: str, lines: list[Lines]) -> Brought:
+    """Fire lines of a wavefront; see `bring`."""
+    return bring(key, lambda job: list(fire_all(job, [owned_lines(one) for one in lines])))
+
+
+def sense(key: str, counts: tuple[np.ndarray, np.ndarray]) -> Brought:
+    """Trace lines of sensors; see `bring`."""
+    return bring(key, lambda job: [job.sums(*(np.array(one) for one in counts))])
+
+
+def bring(key: str, act: Callable[[Any], list]) -> Brought:
+    """Return what a job makes of a unit, on the worker's threads.
 
     Raises:
         Missing: this worker has no such job.
@@ -110,8 +127,8 @@ def fire(key: str, lines: list[Lines]) -> Fired:
         raise Missing("job")
     address, count = _here()
     with turn(), threads(count):
-        hits = list(fire_all(_jobs[key], [owned_lines(one) for one in lines]))
-    return Fired(hits, time.perf_counter() - begun, address, facts())
+        what = act(_jobs[key])
+    return Brought(what, time.perf_counter() - begun, address, facts())
 
 
 def fire_all(job: Job, lines: list[Lines]) -> Iterator[Hits]:

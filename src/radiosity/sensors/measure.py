@@ -1,13 +1,16 @@
 """`measure`, which finds the light that falls on sensors."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
 from ..device.memory import limited
 from ..device.turn import turn
 from ..errors import MethodError, shown
+from ..hooks import HOOKS
 from ..patches import Patches
 from ..run.budget import Budget
 from ..run.progress import Listener
@@ -37,6 +40,7 @@ def measure(
     device: str = "auto",
     progress: Listener | None = None,
     memory: str | float | None = None,
+    cluster: Any = None,
 ) -> Measurement:
     """Measure the irradiance or illuminance at sensors, by a final gather at each.
 
@@ -55,7 +59,7 @@ def measure(
             or patterns; what it leaves out is the group "others".
         replicates: independent randomised runs, those of the solution by default; from 2 on there are standard errors.
         seed: with the same inputs, the same bits.
-        device, progress, memory: as of `solve`.
+        device, progress, memory, cluster: as of `solve`.
 
     Returns:
         What was measured. Ctrl-C ends the run early and returns the last complete stage.
@@ -81,11 +85,12 @@ def measure(
     if rays is not None and error is not None:
         raise MethodError("give rays or an error, not both")
     number = whole(seed, "seed", 0)
-    with limited(memory), turn():
+    connected = nullcontext() if cluster is None else HOOKS["connected"](cluster)
+    with limited(memory), turn(), connected as client:
         begun = perf_counter()
 
         def one(part: Scene | Patches | Solution, budget: Budget) -> Measurement:
-            return traced(part, sensors, budget, error_of, replicates, number, device, progress)[1]
+            return traced(part, sensors, budget, error_of, replicates, number, device, progress, cluster=client)[1]
 
         if groups is False:
             found = one(scene, Budget(rays=rays, error=error))

@@ -1,5 +1,6 @@
 """The run of the lines of sensors, which read a solution."""
 
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
@@ -8,6 +9,7 @@ import numpy as np
 
 from ..device.backend import choose
 from ..errors import MethodError
+from ..hooks import HOOKS
 from ..method import Method
 from ..patches import Patches
 from ..problem.model import Problem
@@ -45,6 +47,7 @@ class Run:
         replicates: None: those of the solution.
         seed, device, progress: see `measure`.
         direct: the light of lamps, suns and the sky counts; False: only what surfaces reflect.
+        cluster: a client of workers that trace the lines; None: here.
     """
 
     solution: Solution
@@ -56,6 +59,7 @@ class Run:
     device: str
     progress: Listener | None
     direct: bool = True
+    cluster: Any = None
 
     def measured(self) -> Measurement:
         """Trace the lines; the status says whether the error was reached.
@@ -77,7 +81,10 @@ class Run:
         with stop.listening():
             light = reflected(solution, geometry, problem)
             tracing = Tracing.of(geometry, problem, self.sensors, light, count, Seed(self.seed), direct=self.direct)
-            values, status, reached = _staged(tracing, self.budget, problem, self.sensors, teller, stop, self.error_of)
+            with (
+                nullcontext() if self.cluster is None else HOOKS["sensing"](self.cluster, tracing, problem, geometry.device.name)
+            ):
+                values, status, reached = _staged(tracing, self.budget, problem, self.sensors, teller, stop, self.error_of)
         inside = tracing.behind() > BEHIND
         found = Measurement.of(solution, self.sensors, problem, values, inside, tracing.traced, perf_counter() - begun, status)
         return found if reached or status != "complete" else replace(found, status="not reached")
@@ -94,19 +101,20 @@ def traced(
     progress: Listener | None,
     *,
     direct: bool = True,
+    cluster: Any = None,
 ) -> tuple[Solution, Measurement]:
     """Solve where there is no solution yet, and trace the lines of sensors.
 
     Each sensor sees many patches, so that a rough solution is mostly enough. Where it is not, it goes on. An error that is not
     reached is told.
     """
-    options: dict[str, Any] = {"seed": seed, "device": device, "progress": progress}
+    options: dict[str, Any] = {"seed": seed, "device": device, "progress": progress, "cluster": cluster}
 
     def measured(solution: Solution) -> Measurement:
         left = (
             budget if budget.rays is None or isinstance(given, Solution) else Budget(rays=max(budget.rays - solution.rays, 1.0))
         )
-        return Run(solution, sensors, left, error_of, replicates, seed, device, progress, direct).measured()
+        return Run(solution, sensors, left, error_of, replicates, seed, device, progress, direct, cluster).measured()
 
     if isinstance(given, Solution):
         solution, found = given, measured(given)

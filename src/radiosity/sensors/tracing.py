@@ -1,5 +1,6 @@
 """The lines of sensors: a gather at each of them, which reads a solution."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -20,9 +21,27 @@ from ..tracing.geometry import Geometry
 from .model import Sensors
 from .receivers import Receivers
 
+OfLines = tuple[list, list, list]  # see `Tracing.sums`
 PILOT = 16  # lines of each kind of each plane
 LEAST = 0.1  # of the mean: the least share of lines of a packet
 POWER = 0.435  # shares go as variance to this power, as those of patches do (`algorithms.gather.shares`)
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """What lines of sensors follow from, besides the scene: see `Tracing.of`."""
+
+    sensors: Sensors
+    reflected: np.ndarray
+    replicates: int
+    seed: Seed
+    direct: bool = True
+    faces: np.ndarray | None = None
+
+    def tracing(self, geometry: Geometry, problem: Problem) -> "Tracing":
+        """Return sums that have begun, without a pilot: for lines that somebody else shares out."""
+        given = {"direct": self.direct, "faces": self.faces, "pilot": 0}
+        return Tracing.of(geometry, problem, self.sensors, self.reflected, self.replicates, self.seed, **given)
 
 
 @dataclass(eq=False)
@@ -37,6 +56,8 @@ class Tracing:
         counts: (2, count) int64, lines so far.
         brought, met: sums.
         missed: lines that escaped and were lost.
+        setup: what it was made of.
+        elsewhere: traces lines in other places, and yields their sums in pieces; None: here.
     """
 
     receivers: Receivers
@@ -47,7 +68,9 @@ class Tracing:
     brought: Sums
     met: Sums
     missed: list
+    setup: Setup
     traced: int = field(default=0)
+    elsewhere: "Callable[[np.ndarray, np.ndarray], Iterator[OfLines]] | None" = None
 
     @staticmethod
     def of(
@@ -93,24 +116,39 @@ class Tracing:
         brought, met = (Sums(receivers, kind, lines.groups) for kind in kinds)
         missed = [dr.zeros(types.UInt64, receivers.lanes) for _ in range(2)]
         traced = 2 * pilot * one.receivers
-        return Tracing(receivers, lines, read, shares, np.zeros((2, one.count), np.int64), brought, met, missed, traced)
+        counts, setup = np.zeros((2, one.count), np.int64), Setup(sensors, reflected, replicates, seed, direct, faces)
+        return Tracing(receivers, lines, read, shares, counts, brought, met, missed, setup, traced)
 
     def advance(self, each: float) -> None:
         """Trace until every plane has about ``each`` lines of both kinds together, in each replicate."""
         wanted = np.maximum(np.ceil(self.shares * each), (self.shares > 0) * 2).astype(np.int64)
         more = np.maximum(wanted - self.counts, 0)
-        if more[0].any():
-            met, missed = self.lines.cosine(self.counts[0], more[0], read=self.read)
-            self.met.add(met)
-            self.missed = [total + type(total)(one) for total, one in zip(self.missed, missed, strict=True)]
-        if more[1].any():
-            self.brought.add(self.lines.shadow(self.counts[1], more[1]))
+        trace = self.elsewhere or (lambda before, more: iter([self.sums(before, more)]))
+        for met, missed, brought in trace(self.counts, more):
+            if met:
+                self.met.add(_on_device(self.met.kind, met))
+                kind = type(self.missed[0])
+                self.missed = [total + kind(one) for total, one in zip(self.missed, _on_device(kind, missed), strict=True)]
+            if brought:
+                self.brought.add(_on_device(self.brought.kind, brought))
         dr.eval(self.met.low, self.brought.low, self.missed)
         self.counts = self.counts + more
         if int(self.counts.max()) >= BLOCK:
             self.met.set_apart()
             self.brought.set_apart()
         self.traced += int((more * self.receivers.sizes).sum()) * self.receivers.replicates
+
+    def sums(self, before: np.ndarray, more: np.ndarray) -> OfLines:
+        """Trace lines of each packet, and return what they met, how many were missed, and what shadow rays brought.
+
+        All are whole numbers of each lane; a list is empty where no line was traced.
+
+        Args:
+            before, more: (2, count) int64, cosine lines and shadow rays of each packet so far, and now.
+        """
+        met, missed = self.lines.cosine(before[0], more[0], read=self.read) if more[0].any() else ([], [])
+        brought = self.lines.shadow(before[1], more[1]) if more[1].any() else []
+        return met, missed, brought
 
     def values(self) -> np.ndarray:
         """Return the irradiance of each sensor in each replicate, (replicates, n_sensors, n_groups), in shares of the unit."""
@@ -137,6 +175,11 @@ class Tracing:
         """Return means over the planes of each sensor, (replicates, n_sensors)."""
         starts = np.flatnonzero(np.diff(self.receivers.sensor, prepend=-1))
         return np.add.reduceat(planes, starts, axis=1) / np.diff(np.append(starts, planes.shape[1]))
+
+
+def _on_device(kind: Any, columns: list) -> list:
+    """Return columns of whole numbers as device arrays; those of other machines come as numpy arrays."""
+    return [upload(kind, one) if isinstance(one, np.ndarray) else one for one in columns]
 
 
 def _without_direct(lines: Lines) -> Lines:
