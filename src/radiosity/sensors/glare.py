@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,7 +23,7 @@ from .glare_sources import Seen, photopic_of, refuse
 from .guth import position_index
 from .measure import scene_of
 from .model import Sensors
-from .run import traced
+from .run import on_cluster, traced
 from .target import half_width
 
 LARGE, SMALL = 0.1, 3e-4  # sr: beyond them the formula was not made for a source (CIE 117)
@@ -93,6 +94,7 @@ def unified_glare_rating(
     device: str = "auto",
     progress: Listener | None = None,
     memory: str | float | None = None,
+    cluster: Any = None,
 ) -> GlareRating:
     """Rate the glare of luminaires, and of surfaces that emit, for observers.
 
@@ -105,7 +107,7 @@ def unified_glare_rating(
         observer: (3,) or (n, 3) m, the eyes.
         direction: (3,) or (n, 3), lines of sight, of any length.
         rays, error: lines in all, or the relative error of the background's luminance; by default an error of 1 %.
-        replicates, seed, device, progress, memory: as of `measure`.
+        replicates, seed, device, progress, memory, cluster: as of `measure`.
 
     Returns:
         The ratings, with errors.
@@ -132,8 +134,9 @@ def unified_glare_rating(
     steep = np.linalg.norm(np.cross(observers.normals, up), axis=1) < 1e-6
     if steep.any():
         raise MethodError(f"observer {int(np.argmax(steep))} looks straight up or down; a position index needs another direction")
-    with limited(memory), turn():
-        solution, background = traced(scene, observers, budget, "worst", replicates, number, device, progress, direct=False)
+    with limited(memory), turn(), on_cluster(cluster) as client:
+        settings = (replicates, number, device, progress)
+        solution, background = traced(scene, observers, budget, "worst", *settings, direct=False, cluster=client)
         dark = photopic_of(background.values) / np.pi
         sums, rows = zip(
             *(_sum(solution.patches, *one, up, device) for one in zip(observers.points, observers.normals, strict=True)),

@@ -1,6 +1,5 @@
 """`measure`, which finds the light that falls on sensors."""
 
-from contextlib import nullcontext
 from dataclasses import replace
 from time import perf_counter
 from typing import Any
@@ -10,7 +9,6 @@ import numpy as np
 from ..device.memory import limited
 from ..device.turn import turn
 from ..errors import MethodError, shown
-from ..hooks import HOOKS
 from ..patches import Patches
 from ..run.budget import Budget
 from ..run.progress import Listener
@@ -21,7 +19,7 @@ from ..solution.model import Solution
 from .groups import parts_of
 from .model import Sensors
 from .result import Measurement
-from .run import traced
+from .run import on_cluster, traced
 from .target import OF
 
 HURRIED = 1e5  # lines of each group after one that was interrupted
@@ -85,8 +83,7 @@ def measure(
     if rays is not None and error is not None:
         raise MethodError("give rays or an error, not both")
     number = whole(seed, "seed", 0)
-    connected = nullcontext() if cluster is None else HOOKS["connected"](cluster)
-    with limited(memory), turn(), connected as client:
+    with limited(memory), turn(), on_cluster(cluster) as client:
         begun = perf_counter()
 
         def one(part: Scene | Patches | Solution, budget: Budget) -> Measurement:

@@ -1,6 +1,6 @@
 """The run of the lines of sensors, which read a solution."""
 
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
@@ -88,6 +88,11 @@ class Run:
         inside = tracing.behind() > BEHIND
         found = Measurement.of(solution, self.sensors, problem, values, inside, tracing.traced, perf_counter() - begun, status)
         return found if reached or status != "complete" else replace(found, status="not reached")
+
+
+def on_cluster(cluster: Any) -> AbstractContextManager:
+    """Return a context that gives the client of a cluster, None where there is none."""
+    return nullcontext() if cluster is None else HOOKS["connected"](cluster)
 
 
 def traced(
