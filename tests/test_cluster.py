@@ -13,6 +13,7 @@ from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.algorithms.matrix.state import MatrixState
 from radiosity.algorithms.merging import merge as merge_states
 from radiosity.algorithms.splitting import divisible, split
+from radiosity.image import render
 from radiosity.run import budget
 from radiosity.run.solve import prepared
 
@@ -146,6 +147,15 @@ def test_sensors_are_those_of_one_machine(client, scene, monkeypatch):
     assert len(seen) > 1
     assert np.array_equal(found.values, alone.values)
     assert found.rays == alone.rays
+
+
+def test_a_final_gather_is_that_of_one_machine(client, monkeypatch):
+    monkeypatch.setattr(sensing, "FEWEST", 64)
+    box = rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=1), "random-walk", quanta=2000, replicates=2)
+    given = {"width": 12, "samples": 1, "final_gather": 8}
+    alone, found = (render(box, **given, **more) for more in ({}, {"cluster": client}))
+    assert alone.any()
+    assert np.array_equal(found, alone)
 
 
 # ---- interruptions, and workers that come and go ------------------------------------------------------------------------

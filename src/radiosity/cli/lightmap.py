@@ -26,6 +26,7 @@ class Texture:
         denoise: Filter the noise within planes of surfaces.
         errors: Write the standard errors of texels, too, to NAME.error.exr.
         seed: Equal seeds give equal lightmaps.
+        cluster: Trace on the workers of Dask, as of `radiosity solve`: tcp://HOST:PORT, or local:N.
         exposure: Stops brighter than the automatic scale; +1 is twice.
         tone_map: What is done with bright light in the texture: clip, filmic, or agx. The EXR file has it as it is.
     """
@@ -39,6 +40,7 @@ class Texture:
     denoise: Flag = False
     errors: Flag = False
     seed: Seed = 0
+    cluster: str | None = None
     exposure: Stops = None
     tone_map: Literal["clip", "filmic", "agx"] = "clip"
 
@@ -86,6 +88,7 @@ def lightmap(
             errors=texture.errors,
             seed=texture.seed,
             progress=progress,
+            cluster=texture.cluster,
         )
     height, width = found.covered.shape
     tell(f"{width} x {height} texels, {found.texels_per_metre:.4g} per metre, {found.covered.mean():.0%} of them on surfaces")

@@ -58,6 +58,7 @@ class Picture:
             and others read the solution. Shadows are sharp then, whatever the size of patches. Default: no such lines.
         seed: Of the final gather. Equal seeds give equal pictures.
         denoise: Of the final gather: filter its noise within surfaces.
+        cluster: Of the final gather: trace on the workers of Dask, as of `radiosity solve`: tcp://HOST:PORT, or local:N.
         tone_map: What is done with bright light: clip it, or let it roll off as film does (filmic, or agx with less contrast).
     """
 
@@ -75,6 +76,7 @@ class Picture:
     final_gather: Count = None
     seed: Seed = 0
     denoise: Flag = False
+    cluster: str | None = None
     tone_map: Literal["clip", "filmic", "agx"] = "clip"
 
 
@@ -141,6 +143,7 @@ def render(
                 denoise=picture.denoise,
                 tone_map=picture.tone_map,
                 progress=progress if picture.final_gather else None,
+                cluster=picture.cluster,
             )
         tell(f"wrote {printable(path)}")
 

@@ -63,7 +63,7 @@ class Gathered:
         Args:
             lines: of each point.
             points: how many there are at most.
-            options: seed and progress.
+            options: seed, progress and cluster (a client).
 
         Raises:
             OutputError: the quantity is not one of light.

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError, RadiosityWarning, result_kept
+from ..run.on_cluster import on_cluster
 from . import bitmap, curves, tone
 from . import false_color as maps
 from .denoise import denoised
@@ -43,6 +44,7 @@ def render(
     denoise: bool = False,
     tone_map: str = "clip",
     progress=None,
+    cluster=None,
     hits=None,
 ) -> np.ndarray:
     """Make a picture of a solution. What radiates nothing (absorbing backs, empty space) is black.
@@ -64,7 +66,7 @@ def render(
         denoise: filter the noise of the final gather within surfaces; edges stay sharp.
         tone_map: "clip", or "filmic" or "agx", which roll bright light off; see `radiosity.image.curves`. Of PNG without false
             colours.
-        seed, progress: of the final gather; see `radiosity.solve`.
+        seed, progress, cluster: of the final gather; see `radiosity.solve`.
         hits: ``hits(scene, origins, directions)`` with the result of `radiosity.tracing.first_hits.first_hits`, the default.
 
     Returns:
@@ -94,10 +96,12 @@ def render(
     shown = choose(solution, quantity, band, single=false_color)
     view = choose_camera(solution, camera, width, height, hits)
     look: Lookup | Gathered = Lookup(solution.patches, shown.values, smooth, shown.light)
-    if lines is not None:
-        of_gather = {"lines": lines, "points": checked(view).width * view.height * samples, "seed": seed, "progress": progress}
-        look = Gathered.of(solution, look, quantity, band, single=false_color, **of_gather)
-    picture = take(solution, shown, view, look=look, samples=samples, hits=hits)
+    with on_cluster(None if lines is None else cluster) as client:
+        if lines is not None:
+            points = checked(view).width * view.height * samples
+            of_gather = {"lines": lines, "points": points, "seed": seed, "progress": progress, "cluster": client}
+            look = Gathered.of(solution, look, quantity, band, single=false_color, **of_gather)
+        picture = take(solution, shown, view, look=look, samples=samples, hits=hits)
     picture = replace(picture, values=denoised(picture)) if denoise else picture
     facts = {"quantity": shown.title, "unit": shown.unit, "bands": ", ".join(shown.bands), "camera": repr(view)}
     if final_gather is not None:

@@ -1,5 +1,7 @@
 """`bake_lightmap`, which gathers the light at each texel."""
 
+from typing import Any
+
 import numpy as np
 
 from ..device.turn import turn
@@ -10,6 +12,7 @@ from ..image.lookup import Lookup
 from ..image.output import require_results
 from ..image.picture import Picture, checked_samples
 from ..image.quantity import choose
+from ..run.on_cluster import on_cluster
 from ..run.progress import Listener
 from ..scene import Camera
 from ..tracing.first_hits import Hits
@@ -35,6 +38,7 @@ def bake_lightmap(
     errors: bool = False,
     seed: int = 0,
     progress: Listener | None = None,
+    cluster: Any = None,
 ) -> Lightmap:
     """Bake a lightmap: give each radiating side a place on a page, and gather the light at each texel there.
 
@@ -50,7 +54,7 @@ def bake_lightmap(
         denoise: filter the noise within planes of surfaces; shadows may lose contrast.
         errors: find standard errors, from four independent parts of the lines.
         seed: equal inputs and an equal seed give equal bits.
-        progress: see `solve`.
+        progress, cluster: see `solve`.
 
     Raises:
         OutputError: an option makes no sense, or xatlas is not installed.
@@ -73,8 +77,8 @@ def bake_lightmap(
     places = [texels.place] if samples == 1 else points_of(page, texels, samples)
     patch = [_patch(lookup, page, texels, place) for place in places]
     options = {"lines": each, "points": len(texels) * parts * samples, "seed": seed, "progress": progress}
-    look = Gathered.of(solution, lookup, quantity, None, single=False, **options)
-    with turn():
+    with turn(), on_cluster(cluster) as client:
+        look = Gathered.of(solution, lookup, quantity, None, single=False, **options, cluster=client)
         drawn = [[look.values(one, *place.T) for one, place in zip(patch, places, strict=True)] for _ in range(parts)]
     found = np.mean(drawn, axis=1)
     mean = found.mean(axis=0)

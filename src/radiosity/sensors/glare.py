@@ -13,6 +13,7 @@ from ..device.turn import turn
 from ..errors import MethodError, printable, shown
 from ..patches.model import Patches
 from ..run.budget import Budget
+from ..run.on_cluster import on_cluster
 from ..run.progress import Listener
 from ..run.whole_number import whole
 from ..scene.habits import warn
@@ -23,7 +24,7 @@ from .glare_sources import Seen, photopic_of, refuse
 from .guth import position_index
 from .measure import scene_of
 from .model import Sensors
-from .run import on_cluster, traced
+from .run import traced
 from .target import half_width
 
 LARGE, SMALL = 0.1, 3e-4  # sr: beyond them the formula was not made for a source (CIE 117)

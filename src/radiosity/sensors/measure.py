@@ -11,6 +11,7 @@ from ..device.turn import turn
 from ..errors import MethodError, shown
 from ..patches import Patches
 from ..run.budget import Budget
+from ..run.on_cluster import on_cluster
 from ..run.progress import Listener
 from ..run.whole_number import whole
 from ..scene.habits import warn
@@ -19,7 +20,7 @@ from ..solution.model import Solution
 from .groups import parts_of
 from .model import Sensors
 from .result import Measurement
-from .run import on_cluster, traced
+from .run import traced
 from .target import OF
 
 HURRIED = 1e5  # lines of each group after one that was interrupted

@@ -1,6 +1,7 @@
 """The light at points of surfaces that a picture shows: a final gather at each of them."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from .bright import with_bright
 from .model import Sensors
 from .reflected import mean_reflected
 from .result import in_bands
-from .run import AT_ONCE
+from .run import AT_ONCE, sensing_on
 from .tracing import PILOT, Tracing
 
 PIECE = 1 << 18  # points at once
@@ -36,6 +37,7 @@ class Gather:
         lines: of each point, both kinds together.
         seed: that all numbers follow from.
         teller: of progress.
+        cluster: a client of workers that trace the lines; None: here.
         pieces: of points so far; each has numbers of its own.
     """
 
@@ -46,17 +48,26 @@ class Gather:
     lines: float
     seed: int
     teller: Teller
+    cluster: Any = None
     pieces: int = field(default=0)
 
     @staticmethod
     def of(
-        solution: Solution, lines: float, points: int, *, seed: int = 0, device: str = "auto", progress: Listener | None = None
+        solution: Solution,
+        lines: float,
+        points: int,
+        *,
+        seed: int = 0,
+        device: str = "auto",
+        progress: Listener | None = None,
+        cluster: Any = None,
     ) -> "Gather":
         """Prepare a gather.
 
         Args:
             lines: of each point.
             points: how many there are at most; progress is told as a part of them.
+            cluster: a client of workers, see `run.on_cluster`.
 
         Raises:
             DeviceError: rays cannot be traced here.
@@ -70,7 +81,7 @@ class Gather:
         teller = Teller(Budget(rays=max(lines * points, 1)), progress)
         teller.begin(0)
         problem, light = with_bright(solution, problem, np.nan_to_num(light))
-        return Gather(solution, geometry, problem, light, lines, number, teller)
+        return Gather(solution, geometry, problem, light, lines, number, teller, cluster)
 
     def irradiance(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return what falls on points of patches, (m, n_bands) float64, W/m² or lx.
@@ -102,11 +113,12 @@ class Gather:
             pilot=pilot,
         )
         each, done, before = max(self.lines - 2 * pilot, 2.0), 0.0, self.teller.lines
-        while done < each:
-            done = min(done + max(AT_ONCE / len(patch), 1.0), each)
-            tracing.advance(done)
-            self.teller.lines = before + tracing.traced
-            self.teller.tell("gathering")
+        with sensing_on(self.cluster, tracing, self.problem, self.geometry.device.name):
+            while done < each:
+                done = min(done + max(AT_ONCE / len(patch), 1.0), each)
+                tracing.advance(done)
+                self.teller.lines = before + tracing.traced
+                self.teller.tell("gathering")
         self.pieces += 1
         return in_bands(self.problem, tracing.values()[0])
 

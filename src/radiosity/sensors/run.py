@@ -81,18 +81,16 @@ class Run:
         with stop.listening():
             light = reflected(solution, geometry, problem)
             tracing = Tracing.of(geometry, problem, self.sensors, light, count, Seed(self.seed), direct=self.direct)
-            with (
-                nullcontext() if self.cluster is None else HOOKS["sensing"](self.cluster, tracing, problem, geometry.device.name)
-            ):
+            with sensing_on(self.cluster, tracing, problem, geometry.device.name):
                 values, status, reached = _staged(tracing, self.budget, problem, self.sensors, teller, stop, self.error_of)
         inside = tracing.behind() > BEHIND
         found = Measurement.of(solution, self.sensors, problem, values, inside, tracing.traced, perf_counter() - begun, status)
         return found if reached or status != "complete" else replace(found, status="not reached")
 
 
-def on_cluster(cluster: Any) -> AbstractContextManager:
-    """Return a context that gives the client of a cluster, None where there is none."""
-    return nullcontext() if cluster is None else HOOKS["connected"](cluster)
+def sensing_on(client: Any, tracing: Tracing, problem: Problem, device: str) -> AbstractContextManager:
+    """Return a context in which the workers of a client trace the lines of sensors; here where it is None."""
+    return nullcontext() if client is None else HOOKS["sensing"](client, tracing, problem, device)
 
 
 def traced(

@@ -7,7 +7,7 @@ fires now and what power they carry, can fire them. Hits are whole numbers, and 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,9 +15,6 @@ from ...device.backend import frozen, upload
 from ...solution.books import exact_sum
 from ...tally.wraps import PERIOD
 from ...tracing.lanes import Wavefront
-
-if TYPE_CHECKING:
-    from .counters import FiringCounters
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,8 +76,8 @@ class AbstractFirer(ABC):
         """Yield the hits of all lines, in any order and in any pieces."""
 
 
-def fire_elsewhere(counters: "FiringCounters", wavefront: Wavefront, largest: int, firer: AbstractFirer) -> None:
-    """Fire a wavefront, and add its hits to the counters."""
+def fire_elsewhere(counters: Any, wavefront: Wavefront, largest: int, firer: AbstractFirer) -> None:
+    """Fire a wavefront, and add its hits to the `FiringCounters`."""
     tracer, bands = counters.tracer, counters.bands
     numbers, counts = _on_host(counters, wavefront)
     fired, some = counters.fired_upper.values(counters.fired).astype(np.uint64), counts > 0
@@ -122,12 +119,12 @@ class _Sums:
     lines: int = 0
 
     @staticmethod
-    def of(counters: "FiringCounters") -> "_Sums":
+    def of(counters: Any) -> "_Sums":
         bands = counters.bands
         arrivals, missed = (column.astype(np.uint64) for column in counters.hits.read())
         return _Sums(arrivals, missed, None if bands is None else frozen(bands.received).reshape(-1, bands.n).copy())
 
-    def after(self, counters: "FiringCounters", hits: Hits) -> "_Sums":
+    def after(self, counters: Any, hits: Hits) -> "_Sums":
         """Return the sums with what lines brought."""
         lines, tracer = int(hits.arrivals.sum(dtype=np.int64)) + int(hits.missed.sum(dtype=np.int64)), counters.tracer
         sums = self
@@ -144,14 +141,14 @@ class _Sums:
             sums.received[tracer.total + hits.replicate :: tracer.replicates] += hits.received_missed
         return sums
 
-    def put_back(self, counters: "FiringCounters") -> None:
+    def put_back(self, counters: Any) -> None:
         """Set the counters to the sums."""
         counters.hits.write(self.arrivals, self.missed)
         if counters.bands is not None and self.received is not None:
             counters.bands.received = upload(counters.types.UInt64, self.received)
 
 
-def fire_here(counters: "FiringCounters", lines: Lines) -> Hits:
+def fire_here(counters: Any, lines: Lines) -> Hits:
     """Fire lines with the counters of their replicate alone, which are of use for nothing else."""
     types, tracer, bands, n = counters.types, counters.tracer, counters.bands, counters.tracer.n
     zero = np.zeros((1, n), np.uint32)
@@ -203,7 +200,7 @@ def _between(lines: list[Lines], low: int, high: int) -> list[Lines]:
     return found
 
 
-def _on_host(counters: "FiringCounters", wavefront: Wavefront) -> tuple[np.ndarray, np.ndarray]:
+def _on_host(counters: Any, wavefront: Wavefront) -> tuple[np.ndarray, np.ndarray]:
     """Return the row numbers of a wavefront, and how many lines each fires."""
     size = wavefront.size
     numbers: Any = wavefront.numbers
