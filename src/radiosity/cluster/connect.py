@@ -3,6 +3,7 @@
 import logging
 import multiprocessing
 import os
+from asyncio import CancelledError
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
@@ -110,4 +111,6 @@ def _why(error: BaseException) -> str:
     """Return the first cause in words."""
     while (inner := error.__cause__ or error.__context__) is not None:
         error = inner
+    if isinstance(error, (CancelledError, TimeoutError)):
+        return f"nothing within {TIMEOUT:g} s"
     return " ".join(str(error).split())[:200] or type(error).__name__
