@@ -1,7 +1,9 @@
 """Connections to a Dask scheduler: one that exists, a client that the caller has, or workers on this machine."""
 
 import logging
+import multiprocessing
 import os
+from asyncio import CancelledError
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
@@ -17,6 +19,10 @@ QUIET = {  # what Dask does for its pages, which nobody looks at: 3 % of each co
     "distributed.admin.system-monitor.interval": "2s",
 }
 TIMEOUT = 15.0  # seconds to reach a scheduler
+GUARD = (
+    "Processes on this machine import the script that starts them: its own work must stand under `if __name__ == '__main__':` "
+    "(docs/cluster.md)"
+)
 FORMS = "give the address of a scheduler (tcp://HOST:PORT, tls://HOST:PORT), or local:N for N processes on this machine"
 
 
@@ -68,12 +74,15 @@ def _local(workers: int) -> Iterator[Any]:
     threads = max(1, _cores() // workers)
     # no limit of Dask's own: it would stop a worker at a share of the memory; a run estimates what it takes beforehand
     options = {"memory_limit": 0, "dashboard_address": "127.0.0.1:0", "silence_logs": logging.CRITICAL}
-    with (
-        dask.config.set(QUIET),
-        LocalCluster(n_workers=workers, threads_per_worker=threads, processes=True, **options) as cluster,
-        Client(cluster) as client,
-    ):
-        yield client
+    if getattr(multiprocessing.current_process(), "_inheriting", False):  # a worker that runs the caller's script
+        raise DeviceError(GUARD)
+    with dask.config.set(QUIET):
+        try:
+            cluster = LocalCluster(n_workers=workers, threads_per_worker=threads, processes=True, **options)
+        except RuntimeError as error:
+            raise DeviceError(f"cluster 'local:{workers}': its processes do not start ({_why(error)}). {GUARD}") from None
+        with cluster, Client(cluster) as client:
+            yield client
 
 
 def _cores() -> int:
@@ -102,4 +111,6 @@ def _why(error: BaseException) -> str:
     """Return the first cause in words."""
     while (inner := error.__cause__ or error.__context__) is not None:
         error = inner
+    if isinstance(error, (CancelledError, TimeoutError)):
+        return f"nothing within {TIMEOUT:g} s"
     return " ".join(str(error).split())[:200] or type(error).__name__

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..device.backend import choose
 from ..problem.model import Problem
-from ..sensors.tracing import LineSums, Setup, Tracing
+from ..sensors.tracing import OfLines, Setup, Tracing
 from ..tracing.geometry import Geometry
 from .barrier import Barrier
 from .crew import DaskCrew
@@ -40,7 +40,7 @@ class SensorJob:
     def tracing(self) -> Tracing:
         return self.setup.tracing(Geometry(self.problem.patches, choose(self.device)), self.problem)
 
-    def sums(self, before: np.ndarray, more: np.ndarray) -> LineSums:
+    def sums(self, before: np.ndarray, more: np.ndarray) -> OfLines:
         """Return the sums of lines, on the host."""
         return on_host(self.tracing.sums(before, more))
 
@@ -49,7 +49,7 @@ class SensorJob:
         return {name: value for name, value in vars(self).items() if name != "tracing"}
 
 
-def on_host(sums: LineSums) -> LineSums:
+def on_host(sums: OfLines) -> OfLines:
     """Return copies of sums."""
     met, missed, brought = ([np.array(column) for column in columns] for columns in sums)
     return met, missed, brought
@@ -66,7 +66,7 @@ def sensing(client: Any, tracing: Tracing, problem: Problem, device: str) -> Ite
     def lines_of(counts: tuple[np.ndarray, np.ndarray]) -> int:
         return int((counts[1] * sizes).sum())
 
-    def elsewhere(before: np.ndarray, more: np.ndarray) -> Iterator[LineSums]:
+    def elsewhere(before: np.ndarray, more: np.ndarray) -> Iterator[OfLines]:
         parts = max(1, min(len(barrier.workers()), lines_of((before, more)) // FEWEST))
         ends = [more * at // parts for at in range(parts + 1)]
         yield from barrier.done([(before + low, high - low) for low, high in pairwise(ends)], lines_of)

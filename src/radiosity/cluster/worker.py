@@ -94,7 +94,7 @@ class Brought:
     """What lines between two barriers brought, and the time that they took.
 
     Attributes:
-        what: of lines of a wavefront `Hits`, of sensors `LineSums`.
+        what: of lines of a wavefront `Hits`, of sensors `Sums`.
         seconds: of work.
         address: of the worker.
         facts: of its packages.

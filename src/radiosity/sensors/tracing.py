@@ -21,7 +21,7 @@ from ..tracing.geometry import Geometry
 from .model import Sensors
 from .receivers import Receivers
 
-LineSums = tuple[list, list, list]  # see `Tracing.sums`
+OfLines = tuple[list, list, list]  # see `Tracing.sums`
 PILOT = 16  # lines of each kind of each plane
 LEAST = 0.1  # of the mean: the least share of lines of a packet
 POWER = 0.435  # shares go as variance to this power, as those of patches do (`algorithms.gather.shares`)
@@ -70,7 +70,7 @@ class Tracing:
     missed: list
     setup: Setup
     traced: int = field(default=0)
-    elsewhere: "Callable[[np.ndarray, np.ndarray], Iterator[LineSums]] | None" = None
+    elsewhere: "Callable[[np.ndarray, np.ndarray], Iterator[OfLines]] | None" = None
 
     @staticmethod
     def of(
@@ -123,16 +123,14 @@ class Tracing:
         """Trace until every plane has about ``each`` lines of both kinds together, in each replicate."""
         wanted = np.maximum(np.ceil(self.shares * each), (self.shares > 0) * 2).astype(np.int64)
         more = np.maximum(wanted - self.counts, 0)
-        for met, missed, brought in (
-            [self.sums(self.counts, more)] if self.elsewhere is None else self.elsewhere(self.counts, more)
-        ):
+        trace = self.elsewhere or (lambda before, more: iter([self.sums(before, more)]))
+        for met, missed, brought in trace(self.counts, more):
             if met:
-                self.met.add([_on_device(self.met.kind, one) for one in met])
-                self.missed = [
-                    total + type(total)(_on_device(type(total), one)) for total, one in zip(self.missed, missed, strict=True)
-                ]
+                self.met.add(_on_device(self.met.kind, met))
+                kind = type(self.missed[0])
+                self.missed = [total + kind(one) for total, one in zip(self.missed, _on_device(kind, missed), strict=True)]
             if brought:
-                self.brought.add([_on_device(self.brought.kind, one) for one in brought])
+                self.brought.add(_on_device(self.brought.kind, brought))
         dr.eval(self.met.low, self.brought.low, self.missed)
         self.counts = self.counts + more
         if int(self.counts.max()) >= BLOCK:
@@ -140,7 +138,7 @@ class Tracing:
             self.brought.set_apart()
         self.traced += int((more * self.receivers.sizes).sum()) * self.receivers.replicates
 
-    def sums(self, before: np.ndarray, more: np.ndarray) -> LineSums:
+    def sums(self, before: np.ndarray, more: np.ndarray) -> OfLines:
         """Trace lines of each packet, and return what they met, how many were missed, and what shadow rays brought.
 
         All are whole numbers of each lane; a list is empty where no line was traced.
@@ -179,6 +177,11 @@ class Tracing:
         return np.add.reduceat(planes, starts, axis=1) / np.diff(np.append(starts, planes.shape[1]))
 
 
+def _on_device(kind: Any, columns: list) -> list:
+    """Return columns of whole numbers as device arrays; those of other machines come as numpy arrays."""
+    return [upload(kind, one) if isinstance(one, np.ndarray) else one for one in columns]
+
+
 def _without_direct(lines: Lines) -> Lines:
     """Return lines that see no lamp and no sky."""
     nothing = [dr.zeros(lines.types.Float, dr.width(column)) for column in lines.targets.emission]
@@ -202,8 +205,3 @@ def _shares(variance: np.ndarray, sizes: np.ndarray, *, has_targets: bool) -> np
     each = weight.sum(axis=0)
     weight *= np.maximum(each, LEAST * each.mean()) / each
     return weight * (sizes.sum() / (weight.sum(axis=0) * sizes).sum())
-
-
-def _on_device(kind: Any, values: Any) -> Any:
-    """Return sums of lanes that came from elsewhere as an array of the device, and others as they are."""
-    return upload(kind, values) if isinstance(values, np.ndarray) else values
