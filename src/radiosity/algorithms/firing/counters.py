@@ -34,8 +34,8 @@ from .elsewhere import AbstractFirer, fire_elsewhere
 
 MANY = 4  # after wavefronts of at least a line for 4 patches, all patches are looked through, and no flags are kept
 FEW = 1 << 13  # up to this many lines, the host sorts the slots that they hit: that is faster than to look through all flags
-# Lines of a wavefront of integers: some ten seconds, after which a run can be stopped, or its checkpoint written.
-MOST = {"cpu": 1 << 28, "cuda": 1 << 32}
+# Lines of a wavefront of integers: a few seconds, after which a run can be stopped, or its checkpoint written.
+MOST = {"cpu": 1 << 26, "cuda": 1 << 32}
 # 8, 4 or 2 lines of a lane, in wavefronts of 250 000 lines a thread, once as many lines have been fired
 SHIFTS, MUCH = (3, 2, 1), 250_000
 
