@@ -25,7 +25,7 @@ import resource, sys
 from radiosity.cli import checkpoints, main
 from radiosity.device.backend import choose
 from radiosity.run import checkpoint
-checkpoint.TIMES = checkpoint.EVERY = checkpoints.MINUTE = 0
+checkpoint.TIMES = checkpoint.EVERY = checkpoints.HALF_A_MINUTE = 0
 choose("cpu")
 import drjit
 drjit.set_thread_count(1)
@@ -42,7 +42,7 @@ def run(capsys, *arguments):
 @pytest.fixture
 def soon(monkeypatch):
     """Checkpoints that nobody asked for are written from the first sweep on."""
-    monkeypatch.setattr(checkpoints, "MINUTE", 0.0)
+    monkeypatch.setattr(checkpoints, "HALF_A_MINUTE", 0.0)
     monkeypatch.setattr(engine_checkpoints, "TIMES", 0)
 
 
@@ -290,7 +290,7 @@ from radiosity.cli import checkpoints, main
 from radiosity.run import checkpoint
 import radiosity as rd
 if sys.argv.pop(1) == "after a checkpoint":
-    checkpoint.TIMES = checkpoints.MINUTE = 0
+    checkpoint.TIMES = checkpoints.HALF_A_MINUTE = 0
 solve, most = rd.solve, 12_000
 
 def filled(*arguments, **options):

@@ -179,6 +179,23 @@ def test_wide_counters_give_the_integers_of_narrow_ones(monkeypatch):
         assert np.array_equal(narrow.irradiance, wide.irradiance)
 
 
+def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
+    """A wavefront of very many lines is fired in parts, so that runs can be stopped in between."""
+    from radiosity.algorithms.firing import counters
+    from radiosity.algorithms.firing.orders import breadth_first
+
+    patches, told = rd.subdivide(rd.load_scene("room"), cells=2), []
+    monkeypatch.setitem(breadth_first.TAILS, "cpu", 0)
+    whole = rd.solve(patches, rd.Method(), quanta=20_000, replicates=2)
+    monkeypatch.setitem(counters.MOST, "cpu", 3_000)
+    fire = counters.FiringCounters.fire
+    monkeypatch.setattr(counters.FiringCounters, "fire", lambda self, *of: (told.append(of[0].total), fire(self, *of))[1])
+    parts_of_it = rd.solve(patches, rd.Method(), quanta=20_000, replicates=2)
+    assert all(np.array_equal(whole.state[name], parts_of_it.state[name]) for name in whole.state)
+    assert max(told) < 3_400
+    assert len(told) > 20
+
+
 def test_powers_of_bands_go_on_beyond_64_bits(geometry):
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=1).solid
     geometry, problem = Geometry(patches, choose("cpu")), Problem.of(patches)

@@ -8,7 +8,7 @@ from ..errors import OutputError, RadiosityWarning
 from . import interrupts
 from .streams import say
 
-MINUTE = 60.0  # seconds from which a run is long; also the time between two checkpoints that nobody asked for
+HALF_A_MINUTE = 30.0  # seconds from which a run is long; also the time between two checkpoints that nobody asked for
 
 
 def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None, save=None):
@@ -31,28 +31,28 @@ def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None, s
             raise OutputError(f"{path} is named twice; give the checkpoint a name of its own, since it is removed in the end")
         keeper = Checkpoint(path, save=save)
         keeper.check(method)
-        _point_at_earlier(path, resume, "half a minute")
+        _point_at_earlier(path, resume)
         return keeper
     if off or not outputs or not resumable(method):
         return None
     beside: Path = outputs[0].with_name(f"{outputs[0].stem}.checkpoint.npz")
     if _place(beside) in map(_place, outputs):
         return None
-    keeper = Checkpoint(beside, MINUTE, save)
+    keeper = Checkpoint(beside, HALF_A_MINUTE, save)
     try:
         keeper.check(method)
     except OutputError:  # nobody asked for it
         return None
-    _point_at_earlier(beside, resume, "a minute")
+    _point_at_earlier(beside, resume)
     return keeper
 
 
-def _point_at_earlier(path: Path, resume: Path | None, when: str) -> None:
+def _point_at_earlier(path: Path, resume: Path | None) -> None:
     """Warn that this run will replace an earlier checkpoint which it does not continue."""
     if path.exists() and (resume is None or _place(resume) != _place(path)):
         warnings.warn(
             f"{path}: the checkpoint of an earlier run, which --resume {path} goes on from; one of this run takes its place "
-            f"after {when}",
+            "after half a minute",
             RadiosityWarning,
             stacklevel=3,
         )

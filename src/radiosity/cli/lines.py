@@ -59,7 +59,7 @@ class LineRunning(Machine):
         resume: Continue from this .npz file of lines of the same geometry, sources, seed and replicates; its lines count. It
             reuses its patches unless you set others.
         checkpoint: An .npz file that keeps the lines so far, written about every 30 seconds, for --resume after a crash. It is
-            removed at the end. Default: for runs of a minute and more, beside the output.
+            removed at the end. Default: for runs of half a minute and more, beside the output.
         no_checkpoint: Write no checkpoint.
         cluster: Trace on the workers of Dask, as of `radiosity solve`: tcp://HOST:PORT, or local:N.
     """

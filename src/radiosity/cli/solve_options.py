@@ -25,8 +25,8 @@ class Budget:
         seconds: Time to trace, such as 60, 5min or 1h.
         error: Trace until the relative error is below this, such as 1% or 0.01. In 95 % of runs the true error then is. A
             number of lines or seconds beside it is a limit. A run that ends above the error, or with too few lines to tell, has
-            the status "not reached" and the exit status 3. Without a limit it ends at 4 billion lines a replicate, when its
-            counters are full.
+            the status "not reached" and the exit status 3. Without a limit it goes on until the error is reached, but only to
+            4 billion lines a replicate where so many do not tell it.
         error_of: What --error is the error of: surface:NAME (RMS over its patches), or mean:NAME (its mean irradiance, the ± of
             the report). NAME may be a pattern. Default: RMS over all patches.
         quanta: Reproduce a run: energy packets (quanta) of each replicate, as its report says.
@@ -157,7 +157,7 @@ class Running(Machine):
         resume: Continue from this .npz file of the same scene, method, seed and replicates, finished or interrupted. Its lines
             count. It reuses its patches unless you set others. Not for full-matrix and hierarchical.
         checkpoint: An .npz file that keeps the state of the run, written about every 30 seconds, for --resume after a crash, a
-            kill or a power cut. It is removed when all outputs are written. Default: for runs of a minute and more, beside the
+            kill or a power cut. It is removed when all outputs are written. Default: for longer runs, beside the
             first output: out/box.glb -> out/box.checkpoint.npz.
         no_checkpoint: Write no checkpoint.
         cluster: Trace on the workers of Dask: tcp://HOST:PORT or tls://HOST:PORT of a scheduler, or local:N for N processes on

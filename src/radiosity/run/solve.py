@@ -72,9 +72,9 @@ def solve(
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
             scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run of
             the same method bit for bit ("auto" may choose another: name the one that it chose). An error alone may have a limit
-            beside it, rays, seconds or both. Where it is not reached within that, or within what counters hold (2^32 lines for
-            each replicate), or where there are too few hits to know it, the status is "not reached" and a warning says what is
-            known.
+            beside it, rays, seconds or both. Where it is not reached within that, or where there are too few hits to know it (a
+            run without a limit then ends after some 2^32 lines for each replicate), the status is "not reached" and a warning
+            says what is known.
         error_of: "surface:NAME": reach the error on the patches of this surface (or all whose names match a pattern) instead; or
             "mean:NAME": that of the mean irradiance over it, as `Solution.surface_interval` tells it.
         replicates: independent randomised runs; from 2 on there are standard errors. Default: 8, of baselines 1.

@@ -34,6 +34,8 @@ from .elsewhere import AbstractFirer, fire_elsewhere
 
 MANY = 4  # after wavefronts of at least a line for 4 patches, all patches are looked through, and no flags are kept
 FEW = 1 << 13  # up to this many lines, the host sorts the slots that they hit: that is faster than to look through all flags
+# Lines of a wavefront of integers: a few seconds, after which a run can be stopped, or its checkpoint written.
+MOST = {"cpu": 1 << 26, "cuda": 1 << 32}
 # 8, 4 or 2 lines of a lane, in wavefronts of 250 000 lines a thread, once as many lines have been fired
 SHIFTS, MUCH = (3, 2, 1), 250_000
 
@@ -51,6 +53,7 @@ class FiringCounters:
         quanta: N of the stage that began last.
         has_due: True where some row may still have to fire a line.
         firer: fires wavefronts elsewhere; None: here.
+        parted: True where the last wavefront has a part of the lines that were due.
         wide: True where 32 bits may be too few for the next wavefront.
         unseen: at least the number of lines since counters were looked at.
     """
@@ -72,7 +75,7 @@ class FiringCounters:
         self.quanta = 0
         self.everywhere, self.has_due, self.wide = True, False, False
         self.swept = self.unseen = 0  # swept: lines of the wavefronts so far
-        self.emits_much, self.whole_upper = False, None
+        self.emits_much, self.whole_upper, self.parted = False, None, False
         self.firer: AbstractFirer | None = None  # where lines are fired elsewhere
 
     def set_quanta(self, quanta: int) -> None:
@@ -247,10 +250,20 @@ class FiringCounters:
             if self.bands is not None:
                 self.bands.weigh(self, piece, places, arrivals, counts)
         lines = int(total[0])
+        self.parted = self.bands is None and lines > MOST[self.tracer.geometry.device.name]
         if not lines:
             return None, 0
+        if self.parted:
+            counts, lines = self._part(counts, lines)
         blocks = self.blocks if wide else None
         return Wavefront(numbers, low, size, lines, counts if keep else None, blocks), int(largest[0])
+
+    def _part(self, counts, lines: int):
+        """Return counts of a part of all lines, and their number: what is left is due in the next wavefront."""
+        share = dr.opaque(self.types.Float64, MOST[self.tracer.geometry.device.name] / lines)
+        some = dr.minimum(self.types.UInt32(self.types.Float64(counts) * share) + 1, counts)
+        dr.eval(some)
+        return some, sums(self.types, some)[0]
 
     def _count(self, numbers, arrivals, total, largest):
         """Return how many lines patch numbers must fire now, and update their sum and the largest line number; in a kernel."""
@@ -280,7 +293,7 @@ class FiringCounters:
         types = self.types
         bits = self.tracer.numbers.bits_for(largest)
         few = wavefront.total <= FEW and wavefront.blocks is None
-        everywhere = wavefront.blocks is not None or (not few and MANY * wavefront.total >= self.total)
+        everywhere = wavefront.blocks is not None or self.parted or (not few and MANY * wavefront.total >= self.total)
         tally, landed = hit_tally(self.hits, wavefront.total, flags=not few and not everywhere), []
         for batch in self.batches(wavefront, () if few else self._shifts(wavefront)):
             boxes = boxes_for(types, batch.counts) if self.coherent else None
