@@ -1,4 +1,4 @@
-"""Figure of time and memory against faces and patches, from the rows of `scale.py`: ``python benchmarks/scale_figure.py PATH``."""
+"""Figure of time and memory against faces and patches, from the rows of `scale.py`: ``scale_figure.py PATH``."""
 
 import json
 import sys
