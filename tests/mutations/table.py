@@ -1439,8 +1439,8 @@ MISTAKES = (
     ),
     Mistake(
         "patches/subdivide.py",
-        "patches[columns * rows > 1].sum() > about",
-        "patches.sum() > about",
+        "(cells * sides[part])[cells > 1].sum()",
+        "(cells * sides[part]).sum()",
         ("test_patches.py",),
         "many small faces keep a wall whole",
     ),
