@@ -161,6 +161,9 @@ def test_what_will_not_fit_is_refused_before_it_begins(monkeypatch):
     few = "take [1-9][0-9]? replicates or fewer, or larger patches"
     with pytest.raises(rd.MethodError, match=few):
         rd.solve(patches, "random-walk", rays=1_000_000, replicates=64)
+    monkeypatch.setattr("radiosity.run.solve.tell", lambda scene: pytest.fail("faces are searched first, which takes minutes"))
+    with pytest.raises(rd.MethodError, match=few):
+        rd.solve(patches, "random-walk", rays=1_000_000, replicates=64)
     monkeypatch.delenv(memory.VARIABLE)
     monkeypatch.setattr(memory, "free", lambda: 200e6)
     with pytest.raises(rd.MethodError, match=r"191 MiB are free; .*--memory 16G or none"):

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..hooks import HOOKS
+from ..pieces import of_pieces
 from ..scene.model import Back, Scene
 from . import cells as grid
 from .model import Patches
@@ -62,7 +63,7 @@ def subdivide(
         if size is not None and not (isinstance(size, Real) and np.isfinite(size) and size > 0):
             raise SceneError(f"patch size is {size!r}; it must be a positive number of metres")
         size = _default_size(scene, powers_of_two, about) if size is None else float(size)
-        columns, rows = _by_size(scene, size, powers_of_two)
+        columns, rows = _by_size(_edges(scene), _own_sizes(scene), size, powers_of_two)
     return _checked(scene, columns, rows)
 
 
@@ -80,10 +81,15 @@ def _rounded(counts: np.ndarray, powers_of_two: bool) -> np.ndarray:
     return (2 ** exponent.astype(np.int64)).astype(counts.dtype)
 
 
-def _by_size(scene: Scene, size: float, powers_of_two: bool) -> tuple[np.ndarray, np.ndarray]:
-    own = scene.patch_size[scene.surface] if len(scene.patch_size) else np.full(scene.n_faces, np.nan)
-    wanted = np.where(np.isfinite(own), own, size)
-    columns, rows = (np.maximum(np.ceil(edge / wanted * (1 - 1e-9)), 1) for edge in _edges(scene))
+def _own_sizes(scene: Scene) -> np.ndarray | None:
+    """Return the patch size that each face's surface asks for, (n_faces,), NaN for none; None where no surface asks."""
+    return scene.patch_size[scene.surface] if np.isfinite(scene.patch_size).any() else None
+
+
+def _by_size(edges, own: np.ndarray | None, size: float, powers_of_two: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return columns and rows of faces with these edges, (m,) float64 each."""
+    wanted = size if own is None else np.where(np.isfinite(own), own, size)
+    columns, rows = (np.maximum(np.ceil(edge / wanted * (1 - 1e-9)), 1) for edge in edges)
     return tuple(_rounded(np.minimum(count, 2**31), powers_of_two) for count in (columns, rows))  # type: ignore[return-value]
 
 
@@ -93,13 +99,21 @@ def _default_size(scene: Scene, powers_of_two: bool, about: int) -> float:
     So walls are cut however many tiny faces there are beside them.
     """
     sides = np.where(scene.back == Back.RADIATES, 2, 1)
-    high = float(max(edge.max() for edge in _edges(scene)))
+    edges, own = _edges(scene), _own_sizes(scene)
+
+    def patches_cut(size: float) -> float:
+        def of(part: slice) -> float:
+            columns, rows = _by_size([edge[part] for edge in edges], None if own is None else own[part], size, powers_of_two)
+            cells = columns * rows
+            return float((cells * sides[part])[cells > 1].sum())
+
+        return sum(of_pieces(of, scene.n_faces))
+
+    high = float(max(edge.max() for edge in edges))
     low = high * 1e-6
     for _ in range(60):
         middle = np.sqrt(low * high)
-        columns, rows = _by_size(scene, middle, powers_of_two)
-        patches = columns * rows * sides
-        low, high = (middle, high) if patches[columns * rows > 1].sum() > about else (low, middle)
+        low, high = (middle, high) if patches_cut(middle) > about else (low, middle)
     return high * SLACK
 
 

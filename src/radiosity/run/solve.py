@@ -204,11 +204,11 @@ def prepared(
     refuse_open(scene.scene, chosen)
     refuse_panes(scene.scene, chosen)
     keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, chosen)
-    tell(scene.scene)
     from .record import Record
     from .run import Run
 
     run = Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of, choice, record=Record)
+    tell(scene.scene)  # what searches the faces comes after the memory estimate
     local = chosen.lines == "local" or chosen.first_shot if isinstance(chosen, Method) else chosen.factors == "lines"
     if local:
         warn_of_light(run.geometry, scene, stacklevel=3)

@@ -6,23 +6,30 @@ from ..errors import SceneError
 from .back import Back
 from .camera import Camera
 
+MOST = 2**53  # of whole numbers: all up to there are numbers of double precision, too
 LARGEST = 1e30  # of emission, colours and texture coordinates: products and single precision copies of them are finite
 
 
-def array(value, dtype, what, source) -> np.ndarray:
-    """An array of numbers."""
+def array(value, dtype, what, source, copy: bool = True) -> np.ndarray:
+    """An array of numbers; without ``copy`` perhaps the one that is given."""
     if isinstance(value, np.ndarray) and np.iscomplexobj(value):
         raise SceneError(f"{source}: {what} cannot be read as numbers (they are complex)")
     try:
-        return np.array(value, dtype=dtype)
+        return np.array(value, dtype=dtype) if copy else np.asarray(value, dtype=dtype)
     except (TypeError, ValueError, OverflowError) as error:
         raise SceneError(f"{source}: {what} cannot be read as numbers ({error})") from None
 
 
-def whole(value, what, kind, source) -> np.ndarray:
-    """An array of whole numbers, int64."""
+def whole(value, what, kind, source, copy: bool = True) -> np.ndarray:
+    """An array of whole numbers, int64; without ``copy`` perhaps the one that is given."""
+    if (
+        isinstance(value, np.ndarray)
+        and value.dtype.kind in "iu"
+        and -MOST <= value.min(initial=0) <= value.max(initial=0) <= MOST
+    ):
+        return np.array(value, np.int64) if copy else np.asarray(value, np.int64)
     raw = array(value, np.float64, what, source)
-    if not np.isfinite(raw).all() or (raw != np.floor(raw)).any() or np.abs(raw).max(initial=0) > 2**53:
+    if not np.isfinite(raw).all() or (raw != np.floor(raw)).any() or np.abs(raw).max(initial=0) > MOST:
         raise SceneError(f"{source}: {what} must hold whole {kind}")
     return raw.astype(np.int64)
 
@@ -41,13 +48,15 @@ def cameras_of(value, source) -> tuple[Camera, ...]:
     return tuple(value)
 
 
-def indices(faces, source) -> np.ndarray:
+def indices(faces, source, copy: bool = True) -> np.ndarray:
     """Return the corners of faces, (n_faces, 4) int64, -1 in the last column of triangles."""
-    raw = whole(faces, "faces", "vertex numbers", source)
+    raw = whole(faces, "faces", "vertex numbers", source, copy)
     if raw.size == 0:
         return np.zeros((0, 4), np.int64)
     if raw.ndim != 2 or raw.shape[1] not in (3, 4):
         raise SceneError(f"{source}: faces have shape {raw.shape}; expected (n_faces, 3) or (n_faces, 4)")
+    if raw.shape[1] == 4:
+        return raw
     result = np.full((len(raw), 4), -1, np.int64)
     result[:, : raw.shape[1]] = raw
     return result
@@ -55,6 +64,8 @@ def indices(faces, source) -> np.ndarray:
 
 def check_indices(faces, n_vertices, source) -> None:
     """Refuse corners that are no vertices."""
+    if n_vertices and faces.min() >= -1 and faces[:, :3].min() >= 0 and faces.max() < n_vertices:
+        return
     low = faces.copy()
     low[:, 3] = np.maximum(low[:, 3], 0 if n_vertices else -1)
     wrong = (low < 0) | (low >= n_vertices) | (faces < -1)
@@ -65,14 +76,16 @@ def check_indices(faces, n_vertices, source) -> None:
         )
 
 
-def per_face(value, n, what, source) -> np.ndarray:
+def per_face(value, n, what, source, copy: bool = True) -> np.ndarray:
     """Return a value of each face, (n, 1) or (n, n_bands) float64."""
-    value = array(value, np.float64, what, source)
+    value = array(value, np.float64, what, source, copy)
     if value.ndim == 0:
         return np.full((n, 1), value)
     if value.ndim == 1 and len(value) == n:
         return value[:, None]
-    if value.ndim == 2 and value.shape[0] in (1, n) and value.shape[1] >= 1:
+    if value.ndim == 2 and value.shape[0] == n and value.shape[1] >= 1:
+        return value
+    if value.ndim == 2 and value.shape[0] == 1 and value.shape[1] >= 1:
         return np.broadcast_to(value, (n, value.shape[1])).copy()
     raise SceneError(f"{source}: {what} has shape {value.shape}; expected one number, ({n},), (1, n_bands) or ({n}, n_bands)")
 
@@ -81,12 +94,12 @@ def widen(value, n_bands, source) -> np.ndarray:
     """Return values of faces in all bands, from one or all of them, (n, n_bands) float64."""
     if value.shape[1] not in (1, n_bands):
         raise SceneError(f"{source}: values have {value.shape[1]} and {n_bands} bands; give all the same number, or one")
-    return np.broadcast_to(value, (len(value), n_bands)).copy()
+    return value if value.shape[1] == n_bands else np.broadcast_to(value, (len(value), n_bands)).copy()
 
 
-def surfaces_of(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]:
+def surfaces_of(surface, names, n, source, copy: bool = True) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the surface of each face, (n,) int32, and the names of all surfaces."""
-    index = np.zeros(n, np.int64) if surface is None else whole(surface, "surface", "surface numbers", source)
+    index = np.zeros(n, np.int64) if surface is None else whole(surface, "surface", "surface numbers", source, copy)
     if index.shape != (n,):
         raise SceneError(f"{source}: surface has shape {index.shape}; expected ({n},)")
     if index.min() < 0:
@@ -100,28 +113,35 @@ def surfaces_of(surface, names, n, source) -> tuple[np.ndarray, tuple[str, ...]]
     names = words(names, "names", source)
     if index.max() >= len(names):
         raise SceneError(f"{source}: face {int(index.argmax())} has surface {index.max()}, but there are {len(names)} names")
-    return index.astype(np.int32), names
+    return _narrow(index, np.int32), names
 
 
-def backs_of(back, two_sided, n, source) -> np.ndarray:
+def backs_of(back, two_sided, n, source, copy: bool = True) -> np.ndarray:
     """Return the `Back` of each face, (n,) uint8."""
     if back is None:
         sides = array(two_sided, np.float64, "two_sided", source)
         if sides.shape not in ((), (n,)) or not np.isin(sides, (0, 1)).all():
             raise SceneError(f"{source}: two_sided must be True, False or ({n},) of them")
         return np.where(np.broadcast_to(sides.astype(bool), (n,)), Back.RADIATES, Back.ABSORBS).astype(np.uint8)
-    values = whole(back, "back", "numbers", source)
+    values = whole(back, "back", "numbers", source, copy)
     values = np.broadcast_to(values, (n,)) if values.ndim == 0 else values
-    if values.shape != (n,) or not np.isin(values, tuple(Back)).all():
+    if values.shape != (n,) or not 0 <= values.min() <= values.max() <= max(Back):
         raise SceneError(
             f"{source}: back must hold {', '.join(f'{int(b)} ({b.name.lower()})' for b in Back)} for each of {n} faces"
         )
-    return values.astype(np.uint8)
+    return _narrow(values, np.uint8)
+
+
+def _narrow(values: np.ndarray, dtype) -> np.ndarray:
+    """Return whole numbers, (n,), in a narrower type; of equal ones there is one in memory where it was so before."""
+    return np.broadcast_to(values[:1].astype(dtype), len(values)) if values.strides == (0,) else values.astype(dtype)
 
 
 def check_values(value, what, surface, names, source) -> None:
     """Refuse reflectances and emissions out of range."""
     top = 1.0 if "reflectance" in what else LARGEST
+    if not value.size or 0 <= value.min() <= value.max() < top:
+        return
     wrong = ~((value >= 0) & (value < top))
     if wrong.any():
         face, band = np.argwhere(wrong)[0]
@@ -133,7 +153,8 @@ def check_values(value, what, surface, names, source) -> None:
 
 def check_open(back, reflectance, surface, names, source) -> None:
     """Refuse open faces that reflect: lines pass through them."""
-    wrong = (back == Back.OPEN) & (reflectance > 0).any(axis=1)
+    wrong = back == Back.OPEN
+    wrong = wrong & (reflectance > 0).any(axis=1) if wrong.any() else wrong
     if wrong.any():
         face = int(np.flatnonzero(wrong)[0])
         raise SceneError(

@@ -12,6 +12,7 @@ from .habits import warn
 from .paint import Paint
 
 OPPOSITE = 1e-6  # cosine between halves that rounding does not make
+FARTHEST = 1e18  # metres
 PARALLEL_TOLERANCE = 2e-6  # of the longest edge: what single precision coordinates can hold
 
 
@@ -34,38 +35,41 @@ def checked_fields(
     refractive_index=None,
     cameras=(),
     source="arrays",
-) -> tuple[dict[str, Any], np.ndarray]:
+    copy: bool = True,
+) -> tuple[dict[str, Any], np.ndarray | slice]:
     """The fields of a `Scene` by name, with degenerate faces still in it, and the input row that each of its faces came from.
 
     Arguments and errors are those of `Scene.from_arrays`.
+
+    Args:
+        copy: arrays are copied. Without, those that are given may be parts of the scene.
     """
-    vertices = arguments.array(vertices, np.float64, "vertices", source)
-    faces = arguments.indices(faces, source)
+    vertices = arguments.array(vertices, np.float64, "vertices", source, copy)
+    faces = arguments.indices(faces, source, copy)
     if vertices.ndim != 2 or vertices.shape[1] != 3:
         raise SceneError(f"{source}: vertices have shape {vertices.shape}; expected (n_vertices, 3)")
     n = len(faces)
     if n == 0:
         raise SceneError(f"{source}: the scene has no faces; add geometry")
     arguments.check_indices(faces, len(vertices), source)
-    used = np.unique(faces[faces >= 0])
-    bad = used[~np.isfinite(vertices[used]).all(axis=1)]
-    if len(bad):
-        face = int(np.flatnonzero((faces == bad[0]).any(axis=1))[0])
-        raise SceneError(f"{source}: vertex {bad[0]} of face {face} is {vertices[bad[0]].tolist()}; coordinates must be finite")
-    if np.abs(vertices[used]).max() > 1e18:
-        raise SceneError(f"{source}: coordinates reach {np.abs(vertices[used]).max():.3g} m; check the unit (at most 1e18)")
-    reflectance = arguments.per_face(reflectance, n, "reflectance", source)
-    emission = arguments.per_face(emission, n, "emission", source)
+    if not -FARTHEST <= vertices.min() <= vertices.max() <= FARTHEST:
+        _check_used(vertices, faces, source)
+    reflectance = arguments.per_face(reflectance, n, "reflectance", source, copy)
+    emission = arguments.per_face(emission, n, "emission", source, copy)
     back_reflectance = (
-        reflectance if back_reflectance is None else arguments.per_face(back_reflectance, n, "back_reflectance", source)
+        reflectance.copy()
+        if back_reflectance is None
+        else arguments.per_face(back_reflectance, n, "back_reflectance", source, copy)
     )
-    back_emission = emission if back_emission is None else arguments.per_face(back_emission, n, "back_emission", source)
+    back_emission = (
+        emission.copy() if back_emission is None else arguments.per_face(back_emission, n, "back_emission", source, copy)
+    )
     diffuse = panes.diffuse_transmittances(diffuse_transmittance, n, source)
     given = (reflectance, emission, back_reflectance, back_emission)
     n_bands = max(a.shape[1] for a in (*given, *([] if diffuse is None else [diffuse])))
     values = [arguments.widen(a, n_bands, source) for a in given]
-    surface, names = arguments.surfaces_of(surface, names, n, source)
-    back = arguments.backs_of(back, two_sided, n, source)
+    surface, names = arguments.surfaces_of(surface, names, n, source, copy)
+    back = arguments.backs_of(back, two_sided, n, source, copy)
     for value, what in zip(values, ("reflectance", "emission", "back reflectance", "back emission"), strict=True):
         arguments.check_values(value, what, surface, names, source)
     arguments.check_open(back, values[0], surface, names, source)
@@ -104,17 +108,28 @@ def checked_fields(
     return fields, rows
 
 
-def split_paint(paint: Paint, split: np.ndarray, rows: np.ndarray, faces: np.ndarray) -> Paint:
+def _check_used(vertices: np.ndarray, faces: np.ndarray, source: str) -> None:
+    """Refuse vertices of faces that are not finite, or too far away."""
+    used = np.unique(faces[faces >= 0])
+    bad = used[~np.isfinite(vertices[used]).all(axis=1)]
+    if len(bad):
+        face = int(np.flatnonzero((faces == bad[0]).any(axis=1))[0])
+        raise SceneError(f"{source}: vertex {bad[0]} of face {face} is {vertices[bad[0]].tolist()}; coordinates must be finite")
+    if np.abs(vertices[used]).max() > FARTHEST:
+        raise SceneError(f"{source}: coordinates reach {np.abs(vertices[used]).max():.3g} m; check the unit (at most 1e18)")
+
+
+def split_paint(paint: Paint, split: np.ndarray, rows: np.ndarray | slice, faces: np.ndarray) -> Paint:
     """A paint of input faces, carried to the faces of the scene.
 
     Args:
         paint: of the input faces.
         split: (n_faces, 4) corners of the scene's faces, where quadrilaterals were split.
-        rows: (n_faces,) the input face of each.
+        rows: (n_faces,) the input face of each; a slice of all where none was split.
         faces: (n_input, 4) corners of the input faces.
     """
     corner = np.argmax(faces[rows][:, None, :] == split[:, :, None], axis=2)
-    at = np.arange(len(rows))[:, None]
+    at = np.arange(len(split))[:, None]
     return replace(paint, image=paint.image[rows], uv=paint.uv[rows][at, corner], color=paint.color[rows][at, corner])
 
 
@@ -130,12 +145,16 @@ def _crossed(vertices, faces) -> np.ndarray:
     return quad[result]
 
 
-def _parallelograms(vertices, faces) -> tuple[np.ndarray, np.ndarray]:
+def _parallelograms(vertices, faces) -> tuple[np.ndarray, np.ndarray | slice]:
     """Split quadrilaterals that are no parallelograms in two; also the row each face came from."""
     quad = faces[:, 3] >= 0
+    if not quad.any():
+        return faces, slice(None)
     a, b, c, d = (vertices[np.where(quad, faces[:, i], faces[:, 0])] for i in range(4))
     size = np.maximum(np.linalg.norm(b - a, axis=1), np.linalg.norm(d - a, axis=1))
     split = quad & ~(np.linalg.norm(a + c - b - d, axis=1) <= PARALLEL_TOLERANCE * size)
+    if not split.any():
+        return faces, slice(None)
     rows = np.repeat(np.arange(len(faces)), 1 + split)
     result = faces[rows]
     first = np.flatnonzero(np.diff(rows, prepend=-1) & split[rows])

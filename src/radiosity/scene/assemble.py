@@ -47,19 +47,25 @@ def assemble(
     names = tuple(dict.fromkeys(part.name for part in parts))
     index = {name: i for i, name in enumerate(names)}
     starts = np.cumsum([0] + [len(part.vertices) for part in parts])
-    faces = np.concatenate([_offset(part, start) for part, start in zip(parts, starts, strict=False)])
+    faces = joined([_offset(part, start) for part, start in zip(parts, starts, strict=False)])
     sizes = [len(part.faces) for part in parts]
     material = [part.material for part in parts]
 
     def each(values, dtype: type = np.float64):
-        return np.repeat(np.array(values, dtype), sizes, axis=0)
+        rows = np.array(values, dtype)
+        if (rows == rows[0]).all():  # one row in memory for all faces
+            return np.broadcast_to(rows[0], (len(faces), *rows.shape[1:]))
+        return np.repeat(rows, sizes, axis=0)
+
+    def each_or_none(values):
+        return each(values) if np.any(values) else None
 
     def spread(value):
         value = np.asarray(value, np.float64).ravel()
         return np.broadcast_to(value, (len(bands),)) if len(value) == 1 else value
 
     fields, rows = checked_fields(
-        np.concatenate([part.vertices for part in parts]),
+        joined([part.vertices for part in parts]),
         faces,
         each([spread(m.reflectance) for m in material]),
         each([spread(m.emission) for m in material]),
@@ -70,11 +76,12 @@ def assemble(
         back_emission=each([spread(m.emission if m.back_emission is None else m.back_emission) for m in material]),
         bands=bands,
         photometric=photometric,
-        transmittance=each([m.transmittance for m in material]),
-        refractive_index=each([m.refractive_index for m in material]),
-        diffuse_transmittance=each([spread(m.diffuse_transmittance or 0.0) for m in material]),
+        transmittance=each_or_none([m.transmittance for m in material]),
+        refractive_index=each_or_none([m.refractive_index for m in material]),
+        diffuse_transmittance=each_or_none([spread(m.diffuse_transmittance or 0.0) for m in material]),
         cameras=cameras,
         source=source,
+        copy=False,
     )
     # the rows of the paints must follow where quadrilaterals were split
     paints = (reflectance_paint(parts, len(bands), options.max_reflectance), emission_paint(parts, len(bands)))
@@ -94,12 +101,16 @@ def assemble(
     return replace(whole, patch_size=sizes_asked, scale=scale, assumed=assumed)
 
 
+def joined(arrays: list[np.ndarray]) -> np.ndarray:
+    """Return arrays one after another; a single one is not copied."""
+    return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
+
+
 def _check_indices(part: Part, source: str) -> None:
     faces, n = np.asarray(part.faces), len(part.vertices)
-    low = np.array([0, 0, 0, -1][: faces.shape[1]])
-    wrong = (faces < low) | (faces >= n)
-    if wrong.any():
-        face, corner = np.argwhere(wrong)[0]
+    if faces.max() >= n or faces.min() < -1 or faces[:, :3].min() < 0:
+        low = np.array([0, 0, 0, -1][: faces.shape[1]])
+        face, corner = np.argwhere((faces < low) | (faces >= n))[0]
         raise SceneError(
             f"{source}: face {face} of surface '{part.name}' names vertex {int(faces[face, corner])}; there are {n} (from 0)"
         )
@@ -108,5 +119,7 @@ def _check_indices(part: Part, source: str) -> None:
 def _offset(part: Part, start: int) -> np.ndarray:
     faces = np.asarray(part.faces, np.int64)
     if faces.shape[1] == 3:
-        faces = np.column_stack([faces, np.full(len(faces), -1)])
+        result = np.full((len(faces), 4), -1)
+        np.add(faces, start, out=result[:, :3])
+        return result
     return np.where(faces >= 0, faces + start, -1)

@@ -44,9 +44,10 @@ def without_area(scene) -> np.ndarray:
     Their height over their longest edge is below the resolution where they lie, or their area is below what lines can tell apart
     beside the size of the scene.
     """
-    _, first, second = scene.frames
-    longest = np.max([np.linalg.norm(e, axis=1) for e in (first, second, second - first)], axis=0)
-    doubled = np.linalg.norm(np.cross(first, second), axis=1)
-    height = doubled / np.where(longest > 0, longest, 1)
-    reach = np.abs(scene.vertices[scene.faces[:, :3]] - scene.centre).max(axis=(1, 2))
-    return (height <= RESOLUTION * reach) | (doubled <= SMALLEST * scene.reach**2)
+    measures, reach = scene.measures, scene.reach
+    doubled = measures.area * np.where(scene.is_quad, 1, 2)
+    bad = doubled <= SMALLEST * reach**2
+    thin = np.flatnonzero(measures.height <= RESOLUTION * reach)
+    near = np.abs(scene.vertices[scene.faces[thin, :3]] - scene.centre).max(axis=(1, 2), initial=0)
+    bad[thin] |= measures.height[thin] <= RESOLUTION * near
+    return bad

@@ -1,8 +1,8 @@
-"""The geometry of faces: frames, areas, normals, and where numbers of single precision are counted from."""
+"""The geometry of faces: frames, normals, and the numbers that place their planes. Areas are in `scene.measures`."""
 
 import numpy as np
 
-from .precision import median_centre, plane_reach
+from .precision import plane_reach
 
 Frames = tuple[np.ndarray, np.ndarray, np.ndarray]  # origin and two edges of each face, (n_faces, 3) each
 
@@ -14,27 +14,10 @@ def frames_of(vertices: np.ndarray, faces: np.ndarray) -> Frames:
     return corners[:, 0], corners[:, 1] - corners[:, 0], vertices[last] - corners[:, 0]
 
 
-def areas_of(frames: Frames, is_quad: np.ndarray) -> np.ndarray:
-    """Return the area of one side of each face, (n_faces,) m²."""
-    _, first, second = frames
-    return np.linalg.norm(np.cross(first, second), axis=1) * np.where(is_quad, 1.0, 0.5)
-
-
 def unit_normals(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Return unit normals, (n, 3), of faces with these edges, (n, 3) each."""
     cross = np.cross(first, second)
     return cross / np.linalg.norm(cross, axis=1, keepdims=True)
-
-
-def centre_of(frames: Frames, is_quad: np.ndarray, area: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """Return the origin of coordinates in single precision, (3,) m; see `scene.precision`.
-
-    It is the middle of the box where the scene has no area.
-    """
-    if not area.sum() > 0:
-        return bounds.mean(axis=0)
-    origin, first, second = frames
-    return median_centre(origin + (first + second) / np.where(is_quad, 2.0, 3.0)[:, None], area)
 
 
 def plane_reach_of(vertices: np.ndarray, faces: np.ndarray, normal: np.ndarray) -> np.ndarray:

@@ -132,8 +132,6 @@ def _check_values(name: str, m, source: str) -> None:
 def _check_arrays(part: Part, source: str) -> None:
     """Refuse coordinates and colours out of range, of vertices that faces use."""
     faces = np.asarray(part.faces)
-    used = np.zeros(len(part.vertices), bool)
-    used[faces[faces >= 0]] = True
     for values, what, low, high in (
         (part.vertices, "coordinates", -np.inf, np.inf),
         (part.color, "colour", 0.0, LARGEST),
@@ -141,8 +139,14 @@ def _check_arrays(part: Part, source: str) -> None:
         (part.uv, "texture coordinates", -LARGEST, LARGEST),
         (part.emission_uv, "texture coordinates", -LARGEST, LARGEST),
     ):
-        if values is None:
+        if (
+            values is None
+            or not np.size(values)
+            or (low <= np.min(values) <= np.max(values) <= high and np.isfinite(values).all())
+        ):
             continue
+        used = np.zeros(len(part.vertices), bool)
+        used[faces[faces >= 0]] = True
         good = np.all(np.isfinite(values) & (values >= low) & (values <= high), axis=1)
         if not good[used].all():
             vertex = int(np.flatnonzero(used & ~good)[0])

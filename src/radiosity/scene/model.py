@@ -10,13 +10,14 @@ from numpy.typing import ArrayLike
 from .back import Back
 from .camera import Camera
 from .cut import Cut
-from .geometry import areas_of, centre_of, frames_of, plane_reach_of, unit_normals
+from .geometry import frames_of, plane_reach_of, unit_normals
 from .hashes import geometry_hash_of, hash_of
 from .heat import Heat
 from .lights.luminaire import Luminaire
 from .lights.model import Lights
 from .lights.sky import Sky
 from .lights.sun import Sun
+from .measures import Measures, measured
 from .paint import Paint
 from .sensor_request import SensorRequest
 from .taking import is_cut_of, taken
@@ -212,9 +213,14 @@ class Scene:
         return frames_of(self.vertices, self.faces)
 
     @cached_property
+    def measures(self) -> Measures:
+        """The sizes of the faces."""
+        return measured(self.vertices, self.faces)
+
+    @property
     def area(self) -> np.ndarray:
         """The area of one side of each face, (n_faces,) m²."""
-        return areas_of(self.frames, self.is_quad)
+        return self.measures.area
 
     @cached_property
     def normal(self) -> np.ndarray:
@@ -222,19 +228,18 @@ class Scene:
         _, first, second = self.frames
         return unit_normals(first, second)
 
-    @cached_property
+    @property
     def bounds(self) -> np.ndarray:
         """The lowest and highest coordinates, (2, 3) metres."""
-        used = self.vertices[np.unique(self.faces[self.faces >= 0])]
-        return np.stack([used.min(axis=0), used.max(axis=0)])
+        return self.measures.bounds
 
-    @cached_property
+    @property
     def centre(self) -> np.ndarray:
         """The origin of coordinates in single precision, (3,) float64 metres; see `scene.precision`.
 
         It is the middle of the box where the scene has no area.
         """
-        return centre_of(self.frames, self.is_quad, self.area, self.bounds)
+        return self.measures.centre
 
     @cached_property
     def reach(self) -> float:

@@ -50,13 +50,13 @@ def pairs(plates: Plates, some: np.ndarray) -> Iterator[tuple[np.ndarray, np.nda
     size = np.maximum((plates.high - plates.low).max(axis=1) + 2 * plates.margin, 1e-300)
     level = STEP * np.ceil(np.log2(size) / STEP).astype(np.int64)
     for at in np.unique(level[some]):
-        cube, larger = 2.0**at, some[level[some] == at]
-        face, cell, keys = _entries(plates, larger, cube)
+        cube = 2.0**at
+        face, cell, keys = _entries(plates, some[level[some] == at], cube)
         order = np.argsort(keys)
-        face, cell, keys = face[order], cell[order], keys[order]
+        larger = _Groups.of(face[order], cell[order], keys[order], plates.piece)
         smaller = some[level[some] <= at]
         for begin in range(0, len(smaller), CHUNK):
-            yield from _matches(plates, smaller[begin : begin + CHUNK], cube, level, (face, cell, keys))
+            yield from _matches(plates, smaller[begin : begin + CHUNK], cube, level, larger)
 
 
 def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -97,23 +97,54 @@ def _each(conditions, count: int) -> np.ndarray:
     return result
 
 
-def _matches(plates: Plates, some: np.ndarray, cube: float, level: np.ndarray, larger) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    target, target_cell, target_keys = larger
+@dataclass(frozen=True, eq=False)
+class _Groups:
+    """Entries of faces in groups of one key.
+
+    Attributes:
+        face, cell: (k,), (k, 3) of each entry.
+        key, begin, end: (m,) of each group, in order: its key, its first entry, and the one after its last.
+        lowest, highest: (m,) of the pieces of its faces.
+        taken: which hashes of keys there are.
+    """
+
+    face: np.ndarray
+    cell: np.ndarray
+    key: np.ndarray
+    begin: np.ndarray
+    end: np.ndarray
+    lowest: np.ndarray
+    highest: np.ndarray
+    taken: np.ndarray
+
+    @staticmethod
+    def of(face: np.ndarray, cell: np.ndarray, keys: np.ndarray, piece: np.ndarray) -> "_Groups":
+        """Return groups of entries with sorted keys, (k,)."""
+        begin = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
+        lowest, highest = (reduce.reduceat(piece[face], begin) for reduce in (np.minimum, np.maximum))
+        taken = np.zeros(int(FILTER) + 1, bool)
+        taken[keys[begin] & FILTER] = True
+        return _Groups(face, cell, keys[begin], begin, np.append(begin[1:], len(keys)), lowest, highest, taken)
+
+    def find(self, keys: np.ndarray) -> np.ndarray:
+        """Return the group of each key, or of the next higher key; searched in order of the keys, which keeps to the cache."""
+        order = np.argsort(keys)
+        result = np.empty(len(keys), np.int64)
+        result[order] = np.minimum(np.searchsorted(self.key, keys[order]), len(self.key) - 1)
+        return result
+
+
+def _matches(
+    plates: Plates, some: np.ndarray, cube: float, level: np.ndarray, larger: _Groups
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     face, cell, keys = _entries(plates, some, cube)
-    taken = np.zeros(int(FILTER) + 1, bool)
-    taken[target_keys & FILTER] = True
-    shared = np.flatnonzero(taken[keys & FILTER])
+    shared = np.flatnonzero(larger.taken[keys & FILTER])
     face, cell, keys = face[shared], cell[shared], keys[shared]
-    begin, end = np.searchsorted(target_keys, keys, "left"), np.searchsorted(target_keys, keys, "right")
-    met = np.flatnonzero(end > begin)
+    group = larger.find(keys)
     # where all faces of a key are of the plate's own piece there is nothing to compare
-    piece, ends_of = plates.piece[target], np.flatnonzero(np.concatenate([target_keys[1:] != target_keys[:-1], [True]]))
-    starts = np.concatenate([[0], ends_of[:-1] + 1])
-    lowest, highest = (reduce.reduceat(piece, starts) for reduce in (np.minimum, np.maximum))
-    group = np.searchsorted(ends_of, begin[met])
-    own = plates.piece[face[met]]
-    met = met[(lowest[group] != own) | (highest[group] != own)]
-    face, cell, begin, many = face[met], cell[met], begin[met], (end - begin)[met]
+    own = plates.piece[face]
+    met = np.flatnonzero((larger.key[group] == keys) & ((larger.lowest[group] != own) | (larger.highest[group] != own)))
+    face, cell, begin, many = face[met], cell[met], larger.begin[group[met]], (larger.end - larger.begin)[group[met]]
     ends = np.cumsum(many)
     at = 0
     while at < len(face):
@@ -121,9 +152,9 @@ def _matches(plates: Plates, some: np.ndarray, cube: float, level: np.ndarray, l
         part = slice(at, until)
         row = np.repeat(np.arange(at, until), many[part])
         place = begin[row] + np.arange(len(row)) - np.repeat(ends[part] - many[part] - (ends[at - 1] if at else 0), many[part])
-        one, two = face[row], target[place]
+        one, two = face[row], larger.face[place]
         keep = ((level[one] < level[two]) | (one < two)) & (plates.piece[one] != plates.piece[two])
-        keep &= _each((cell[row, axis] == target_cell[place, axis] for axis in range(3)), len(row))
+        keep &= _each((cell[row, axis] == larger.cell[place, axis] for axis in range(3)), len(row))
         row, one, two = row[keep], one[keep], two[keep]
         low = [np.maximum(plates.low[one, axis], plates.low[two, axis]) for axis in range(3)]
         high = [np.minimum(plates.high[one, axis], plates.high[two, axis]) for axis in range(3)]

@@ -4,26 +4,55 @@ Lines are traced in single precision, about the scene's centre. The centre is a 
 the precision of all others. The rounding at a point depends on the numbers near it, not on the size of the scene.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
+
+from ..pieces import of_pieces
 
 EPSILON = float(np.finfo(np.float32).eps)
 OFFSET = 8 * EPSILON  # of the largest number that places a point or its plane: lines begin this far in front of it
+BINS, FEW = 1 << 12, 1 << 14  # of the search of a median
 TIE = 1e-9  # share of the area: where less decides, the lower of two medians is taken, however sums are rounded
 
 
-def median_centre(centroid: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """Return the area-weighted median of the faces' centroids, axis by axis, (3,) float64 metres.
+def weighted_median(values: np.ndarray, weights: np.ndarray) -> float:
+    """Return the lowest value up to which half of the weights lie, less `TIE`.
+
+    Values are counted in bins, then those of the bin where the median lies, until few are left, which are sorted.
 
     Args:
-        centroid: (n_faces, 3) metres.
-        area: (n_faces,) m², whose sum is above zero.
+        values: (n,)
+        weights: (n,) not negative, with a sum above zero.
     """
-    centre = np.empty(3)
-    for axis in range(3):
-        order = np.argsort(centroid[:, axis], kind="stable")
-        sums = np.cumsum(area[order])
-        centre[axis] = centroid[order[np.searchsorted(sums, sums[-1] / 2 * (1 - TIE))], axis]
-    return centre
+    goal, before = weights.sum() / 2 * (1 - TIE), 0.0
+    while len(values) > FEW and (low := values.min()) < (high := values.max()):
+        bins = _Bins(values, low, BINS / (high - low))
+        sums = before + np.cumsum(
+            sum(of_pieces(lambda part, b=bins, w=weights: np.bincount(b.of(part), w[part], BINS), len(values)))
+        )
+        at = min(int(np.searchsorted(sums, goal)), BINS - 1)
+        before = float(sums[at - 1]) if at else before
+        inside = np.concatenate(of_pieces(lambda part, b=bins, at=at: part.start + np.flatnonzero(b.of(part) == at), len(values)))
+        if len(inside) in (0, len(values)):
+            break
+        values, weights = values[inside], weights[inside]
+    order = np.argsort(values, kind="stable")
+    sums = before + np.cumsum(weights[order])
+    return float(values[order[min(int(np.searchsorted(sums, goal)), len(order) - 1)]])
+
+
+@dataclass(frozen=True, eq=False)
+class _Bins:
+    """Bins of equal width of values, from the lowest on."""
+
+    values: np.ndarray
+    low: float
+    scale: float
+
+    def of(self, part: slice) -> np.ndarray:
+        """Return the bin of each value of a part; the highest value is in the last bin."""
+        return np.minimum((self.values[part] - self.low) * self.scale, BINS - 1).astype(np.int32)
 
 
 def plane_reach(normal: np.ndarray, corners: np.ndarray) -> np.ndarray:

@@ -6,10 +6,12 @@ import numpy as np
 
 from .arrays import PARALLEL_TOLERANCE
 from .bends import tolerance
+from .matching import matched
+from .measures import length, minus
 from .model import Scene
 from .paint import Paint
-
-ROUNDS = 16  # most rounds of mutual best matching; meshes need two or three
+from .shared_edges import shared_edges
+from .welded import welded
 
 
 def merge_triangles(scene: Scene) -> Scene:
@@ -23,9 +25,10 @@ def merge_triangles(scene: Scene) -> Scene:
         return scene
     a, b, c = (scene.faces[one, (shared[0] + i) % 3] for i in (0, 1, 2))  # diagonal a-b, apex c
     d = scene.faces[two, (shared[1] + 2) % 3]
-    p = scene.vertices
-    edge = np.maximum(np.linalg.norm(p[a] - p[c], axis=1), np.linalg.norm(p[b] - p[c], axis=1))
-    fits = np.linalg.norm(p[a] + p[b] - p[c] - p[d], axis=1) <= PARALLEL_TOLERANCE * edge
+    at_a, at_b, at_c, at_d = ([axis[corner] for axis in np.ascontiguousarray(scene.vertices.T)] for corner in (a, b, c, d))
+    edge = np.maximum(length(minus(at_a, at_c)), length(minus(at_b, at_c)))
+    off = [a + b - c - d for a, b, c, d in zip(at_a, at_b, at_c, at_d, strict=True)]
+    fits = length(off) <= PARALLEL_TOLERANCE * edge
     fits &= _equal_rows(scene, one, two)
     for paint in (scene.reflectance_paint, scene.emission_paint):
         if paint is not None:
@@ -33,10 +36,12 @@ def merge_triangles(scene: Scene) -> Scene:
     one, two = one[fits], two[fits]
     quads = np.column_stack([c, a, d, b])[fits]
     first_corner = ((shared[0] + 2) % 3)[fits]
-    diagonal = np.linalg.norm(p[a] - p[b], axis=1)[fits]
+    diagonal = length(minus(at_a, at_b))[fits]
     cost = -diagonal / np.maximum(edge[fits], 1e-300)
     cost = np.where(np.abs(one - two) == 1, cost - 10.0, cost)
-    chosen = _match(one, two, cost, scene.n_faces)
+    chosen = matched(one, two, (shared[0][fits], shared[1][fits]), cost, scene.n_faces)
+    if not len(chosen):
+        return scene
     keep, gone = np.minimum(one, two)[chosen], np.maximum(one, two)[chosen]
     faces = scene.faces.copy()
     faces[keep] = quads[chosen]
@@ -53,27 +58,32 @@ def merge_triangles(scene: Scene) -> Scene:
     return merged.take(kept)
 
 
-def _candidates(scene: Scene):
-    """Pairs of triangles of one surface with one edge in common, run in opposite directions."""
-    triangle = np.flatnonzero(~scene.is_quad)
-    _, welded = np.unique(scene.vertices + 0.0, axis=0, return_inverse=True)
-    corners = welded.ravel()[scene.faces[triangle, :3]]
-    start = corners.ravel()
-    end = np.roll(corners, -1, axis=1).ravel()
-    face = np.repeat(triangle, 3)
-    corner = np.tile(np.arange(3), len(triangle))
-    surface = scene.surface[face]
-    low, high = np.minimum(start, end), np.maximum(start, end)
-    order = np.lexsort((start, surface, high, low))
-    same = (
-        (low[order][1:] == low[order][:-1]) & (high[order][1:] == high[order][:-1]) & (surface[order][1:] == surface[order][:-1])
-    )
-    group = np.concatenate([[0], np.cumsum(~same)])
-    pair = np.flatnonzero(same & (np.bincount(group)[group[1:]] == 2))
-    left, right = order[pair], order[pair + 1]
-    opposite = (start[left] == end[right]) & (start[left] != end[left])
-    left, right = left[opposite], right[opposite]
-    return face[left], face[right], (corner[left], corner[right])
+def _candidates(scene: Scene) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """Return pairs of triangles of one surface with one edge in common, and for both the corner where that edge begins.
+
+    The first one runs through the edge from the end that is lower by x, then y, then z.
+    """
+    triangle = np.flatnonzero(~scene.is_quad) if scene.is_quad.any() else None
+    corners, surface = scene.faces[:, :3], scene.surface
+    if triangle is not None:
+        corners, surface = corners[triangle], surface[triangle]
+    if (number := welded(scene.vertices)) is not None:
+        corners = number[corners]
+    edges = shared_edges(scene.vertices, corners, surface, scene.measures, PARALLEL_TOLERANCE)
+    begin = corners[edges[0] >> 2, edges[0] & 3]
+    end = corners[edges[1] >> 2, edges[1] & 3]
+    turn = _lower(scene.vertices[end], scene.vertices[begin])
+    one, two = np.where(turn, edges[1], edges[0]), np.where(turn, edges[0], edges[1])
+    rows = [edge >> 2 if triangle is None else triangle[edge >> 2] for edge in (one, two)]
+    return rows[0], rows[1], (one & 3, two & 3)
+
+
+def _lower(one: np.ndarray, two: np.ndarray) -> np.ndarray:
+    """Return which points, (m, 3), are lower than others by x, of equal ones by y, then by z."""
+    result = one[:, 2] < two[:, 2]
+    for axis in (1, 0):
+        result = (one[:, axis] < two[:, axis]) | ((one[:, axis] == two[:, axis]) & result)
+    return result
 
 
 def _equal_rows(scene: Scene, one, two) -> np.ndarray:
@@ -114,22 +124,3 @@ def _merge_paint(paint: Paint, one, two, first_corner, second_corner, keep) -> P
         d = source[two, (second_corner + 2) % 3]
         values[keep] = np.stack([c, a, d, b], axis=1)
     return replace(paint, uv=uv, color=color)
-
-
-def _match(one, two, cost, n) -> np.ndarray:
-    """Greedy matching by rounds: a pair is taken where it is the best of both its triangles."""
-    order = np.lexsort((np.maximum(one, two), np.minimum(one, two), np.round(cost, 6)))
-    taken = np.zeros(n, bool)
-    chosen: list[np.ndarray] = []
-    for _ in range(ROUNDS):
-        order = order[~(taken[one[order]] | taken[two[order]])]
-        if len(order) == 0:
-            break
-        best = np.full(n, len(one))
-        rank = np.arange(len(order))
-        np.minimum.at(best, one[order], rank)
-        np.minimum.at(best, two[order], rank)
-        mutual = order[(best[one[order]] == rank) & (best[two[order]] == rank)]
-        taken[one[mutual]] = taken[two[mutual]] = True
-        chosen.append(mutual)
-    return np.concatenate(chosen) if chosen else np.zeros(0, np.int64)

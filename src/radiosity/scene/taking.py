@@ -14,10 +14,10 @@ WITH_ROWS = ("reflectance_paint", "emission_paint", "cut")  # None, or what take
 def taken(scene, keep: np.ndarray):
     """Return the scene of a choice of faces (indices or mask)."""
     rows = np.flatnonzero(keep) if np.asarray(keep).dtype == bool else np.asarray(keep)
-    changes = {name: getattr(scene, name)[rows] for name in OF_FACES}
+    changes = {name: getattr(scene, name).take(rows, axis=0) for name in OF_FACES}
     for name in THROUGH:
         values = getattr(scene, name)
-        changes[name] = panes_or_none(None if values is None else values[rows])
+        changes[name] = panes_or_none(None if values is None else values.take(rows, axis=0))
     for name in WITH_ROWS:
         value = getattr(scene, name)
         changes[name] = value and value.take(rows)

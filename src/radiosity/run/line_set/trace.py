@@ -110,7 +110,6 @@ def trace_lines(
         if chosen.names and lines != "local":
             raise MethodError(f"sources get more local lines, and lines '{lines}' begin at no surface; leave one of the two out")
         keeper = checkpoint if checkpoint is None else Checkpoint.of(checkpoint, checkpoint_every, method, save_lines)
-        tell(patches.scene, any_light=True)
         from ..run import Run
         from .record import LineRecord
 
@@ -119,6 +118,7 @@ def trace_lines(
         record = partial(LineRecord, sources=chosen.names, both_ways=both_ways)
         problem = problem_of(patches, chosen)
         run = Run(patches, method, budget, part, device, progress, resume, keeper, record=record, problem=problem)
+        tell(patches.scene, any_light=True)  # what searches the faces comes after the memory estimate
         found = run.solve() if cluster is None else HOOKS["cluster"](cluster, lambda: run)
     with result_kept():
         if resume is None and known:

@@ -136,6 +136,8 @@ def _placed(
     matrices = node.matrix[None] if copies is None else node.matrix @ copies
     mirrored = np.linalg.det(matrices[:, :3, :3]) < 0
     place = np.einsum("kij,nj->kni", matrices[:, :3, :3], vertices) + matrices[:, None, :3, 3]
+    if len(matrices) == 1:
+        return place[0], faces[:, ::-1] if mirrored[0] else faces
     every = np.where(mirrored[:, None, None], faces[:, ::-1], faces) + (np.arange(len(matrices)) * len(vertices))[:, None, None]
     return place.reshape(-1, 3), every.reshape(-1, 3)
 
@@ -143,7 +145,7 @@ def _placed(
 def _attribute(file: GltfFile, attributes: dict, key: str, widths: tuple, what: str, count: int | None = None) -> np.ndarray:
     if key not in attributes:
         raise file.fail(f"a primitive of {what} has no {key}")
-    values = accessor(file, attributes[key]).astype(np.float64)
+    values = accessor(file, attributes[key]).astype(np.float64, copy=False)
     if values.shape[1] not in widths or count not in (None, len(values)):
         raise file.fail(f"{key} of {what} has shape {values.shape}; expected ({count or 'n'}, {' or '.join(map(str, widths))})")
     return values

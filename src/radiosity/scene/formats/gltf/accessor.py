@@ -11,7 +11,7 @@ MOST_UNSTORED = 2**27  # numbers in an accessor that has no bytes of its own
 
 
 def accessor(file: GltfFile, index) -> np.ndarray:
-    """Return the values, (count, width) float64, or int64 where the accessor holds integers that are not normalised.
+    """Return the values, (count, width) float64, or int32 or int64 where the accessor holds integers that are not normalised.
 
     Raises:
         SceneError: the accessor does not exist, or does not fit its bytes.
@@ -33,6 +33,8 @@ def accessor(file: GltfFile, index) -> np.ndarray:
         return values.astype(np.float64)
     if info.get("normalized") is True:
         return np.maximum(values / np.iinfo(dtype).max, -1.0)
+    if dtype == "<u4" and values.max(initial=0) < 2**31:
+        return np.ascontiguousarray(values).view(np.int32)
     return values.astype(np.int64)
 
 

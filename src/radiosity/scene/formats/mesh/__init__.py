@@ -49,14 +49,15 @@ def _ply(path: Path, options: ReadOptions) -> list[Part]:
     vertex = ply.columns.get("vertex", Columns({}, {}))
     if not set("xyz") <= set(vertex.numbers):
         raise SceneError(f"{path}: the vertices have no x, y, z; the file is damaged")
-    points = np.column_stack([vertex.numbers[axis] for axis in "xyz"]).astype(np.float64)
+    points = np.empty((len(vertex.numbers["x"]), 3))
+    for axis, name in enumerate("xyz"):
+        points[:, axis] = vertex.numbers[name]
     polygons = polygons_of(path, ply)
     if polygons is None or not len(polygons.sizes):
         raise SceneError(f"{path}: the file holds {len(points)} points but no faces; export a surface, not a point cloud")
     face, index = of_polygons(ply, polygons), polygons.values
-    wrong = (index < 0) | (index >= len(points))
-    if wrong.any():
-        at = int(np.flatnonzero(wrong)[0])
+    if len(index) and not 0 <= index.min() <= index.max() < len(points):
+        at = int(np.flatnonzero((index < 0) | (index >= len(points)))[0])
         row = int(np.searchsorted(np.cumsum(polygons.sizes), at, side="right"))
         raise SceneError(f"{path}: face {row} names vertex {index[at]}; there are {len(points)} (0 to {len(points) - 1})")
     if (polygons.sizes < 3).any():
@@ -65,12 +66,14 @@ def _ply(path: Path, options: ReadOptions) -> list[Part]:
             raise SceneError(text)
         warn(text)
     crossed: list[int] = []
-    faces = cut(points[index], polygons.sizes, crossed)
+    size = int(polygons.sizes[0]) if polygons.sizes[0] in (3, 4) and (polygons.sizes == polygons.sizes[0]).all() else 0
+    faces = np.arange(0) if size else cut(points[index], polygons.sizes, crossed)  # numbers of corners
     warn_of_crossing(path, {path.stem: crossed})
-    polygon = np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)[faces[:, 0]]
+    polygon = slice(None) if size else np.repeat(np.arange(len(polygons.sizes)), polygons.sizes)[faces[:, 0]]
     color, face_color, uv = colors_of(path, vertex, "vertex"), colors_of(path, face, "face"), of_vertices(vertex)
     if color is not None and face_color is not None:
         warn(f"{path}: colours of faces are left out, since vertices have colours too")
+    own = True  # corners are vertices of their own
     wedges, placed = of_corners(path, face.lists.get("texcoord"), polygons.sizes)
     if wedges is not None:
         uv = wedges
@@ -78,7 +81,11 @@ def _ply(path: Path, options: ReadOptions) -> list[Part]:
     elif face_color is not None and color is None:
         points, uv = points[index], None if uv is None else uv[index]
     else:
-        faces = np.where(faces >= 0, index[faces], -1)  # every corner need not be a vertex of its own
+        own = False
+    if size:
+        faces = (np.arange(len(index)) if own else index).reshape(-1, size)
+    elif not own:
+        faces = np.where(faces >= 0, index[faces], -1)
     if face_color is not None and color is None:
         color = np.repeat(face_color, polygons.sizes, axis=0)
     images = textures(path, ply, options)
@@ -86,8 +93,11 @@ def _ply(path: Path, options: ReadOptions) -> list[Part]:
     if wedges is not None:
         number = np.where(placed, number, NONE)
     parts = []
-    for which in np.unique(number[polygon]):
+    number = number[polygon]
+    several = number[:1] if (number == number[:1]).all() else np.unique(number)
+    for which in several:
         image = None if which == NONE else images[which]
         material = Material() if color is None and image is None else Material((1.0,))
-        parts.append(Part(path.stem, points, faces[number[polygon] == which], material, uv, color, image))
+        some = faces[number == which] if len(several) > 1 else faces
+        parts.append(Part(path.stem, points, some, material, uv, color, image))
     return parts

@@ -87,7 +87,7 @@ def read_ply(path: Path) -> Ply:
     return Ply(columns, comments)
 
 
-def _parted(path: Path, data: bytes) -> tuple[list[str], bytes]:
+def _parted(path: Path, data: bytes) -> tuple[list[str], memoryview]:
     """Lines of the header, and the bytes after it. Lines end as the first one does, so that data may begin with any byte."""
     ends = re.match(rb"ply[ \t]*(\r\n|\n|\r)", data)
     usual = re.escape(ends[1]) if ends else b"\n"
@@ -95,7 +95,7 @@ def _parted(path: Path, data: bytes) -> tuple[list[str], bytes]:
     if ends is None or end is None:
         raise SceneError(f"{path}: the header has no end (a line end_header); the file is truncated")
     text = decode(data[: end.start()], str(path)).text
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), data[end.end() :]
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), memoryview(data)[end.end() :]
 
 
 def _header(path: Path, lines: list[str]):
@@ -127,8 +127,8 @@ def _header(path: Path, lines: list[str]):
     return order, elements, comments
 
 
-def _numbers(path: Path, body: bytes) -> np.ndarray:
-    words = body.split()
+def _numbers(path: Path, body: memoryview) -> np.ndarray:
+    words = bytes(body).split()
     try:
         return np.array(words, dtype=np.float64)
     except ValueError as error:

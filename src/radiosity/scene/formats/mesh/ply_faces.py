@@ -14,7 +14,7 @@ AGAIN = -1  # in a strip: another one begins
 
 
 def polygons(path: Path, ply: Ply) -> Lists | None:
-    """Vertex numbers (int64) of each polygon, or None where the file has none.
+    """Vertex numbers of each polygon, or None where the file has none.
 
     Raises:
         SceneError: numbers that are not whole.
@@ -38,6 +38,8 @@ def _indices(path: Path, element: Columns | None) -> Lists | None:
     found = next((element.lists[name] for name in INDICES if element and name in element.lists), None)
     if found is None:
         return None
+    if found.values.dtype.kind != "f" and found.values.dtype.itemsize <= 4:
+        return Lists(found.values if found.values.dtype.kind == "i" else found.values.astype(np.int64), found.sizes)
     whole = found.values.astype(np.int64)
     if (whole != found.values).any():
         raise SceneError(f"{path}: a face names vertex {found.values[whole != found.values][0]:g}; expected whole numbers")

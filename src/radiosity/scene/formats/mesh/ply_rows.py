@@ -54,7 +54,7 @@ def _size(value) -> int:
     return int(value)
 
 
-def read_binary(body: bytes, at: int, count: int, properties: list[Property]) -> tuple[Columns, int]:
+def read_binary(body: memoryview, at: int, count: int, properties: list[Property]) -> tuple[Columns, int]:
     """Columns of ``count`` rows from bytes, and where they end. ValueError or IndexError: they do not fit."""
     sizes = _first_sizes(body, at, properties) if count else [1] * len(properties)
     row = np.dtype(
@@ -67,7 +67,7 @@ def read_binary(body: bytes, at: int, count: int, properties: list[Property]) ->
     if at + count * row.itemsize <= len(body):
         table = np.frombuffer(body, row, count, at)
         if all((table[f"n{i}"] == size).all() for i, (p, size) in enumerate(zip(properties, sizes, strict=True)) if p.count):
-            found = [([table[f"v{i}"].ravel()], np.full(count, size)) for i, size in enumerate(sizes)]
+            found = [([table[f"v{i}"].ravel()], np.broadcast_to(np.int64(size), count)) for i, size in enumerate(sizes)]
             return _columns(properties, found), at + count * row.itemsize
     found = [([], []) for _ in properties]
     for _ in range(count):
@@ -84,7 +84,7 @@ def read_binary(body: bytes, at: int, count: int, properties: list[Property]) ->
     return _columns(properties, found), at
 
 
-def _first_sizes(body: bytes, at: int, properties) -> list[int]:
+def _first_sizes(body: memoryview, at: int, properties) -> list[int]:
     sizes = []
     for p in properties:
         size = 1
@@ -101,7 +101,8 @@ def _first_sizes(body: bytes, at: int, properties) -> list[int]:
 def _columns(properties, found) -> Columns:
     result = Columns({}, {})
     for p, (values, sizes) in zip(properties, found, strict=True):
-        flat = (np.concatenate(values) if len(values) else np.zeros(0)).astype(p.dtype.newbyteorder("="))
+        flat = values[0] if len(values) == 1 else np.concatenate(values) if len(values) else np.zeros(0)
+        flat = flat.astype(p.dtype.newbyteorder("="), copy=False)
         if p.count is None:
             result.numbers[p.name] = flat
         else:

@@ -48,7 +48,7 @@ def of_faces(path: Path, face: Columns, count: int, n_textures: int) -> np.ndarr
     if "texnumber" not in face.numbers:
         if n_textures > 1:
             warn(f"{path}: names {n_textures} textures, and faces have no texnumber; all take the first")
-        return np.full(count, 0 if n_textures else NONE)
+        return np.broadcast_to(0 if n_textures else NONE, count)
     number = face.numbers["texnumber"].astype(np.int64)
     wrong = np.flatnonzero(number >= max(n_textures, 1))
     if len(wrong):

@@ -1,0 +1,48 @@
+"""Vertices at the same place: all are known by the number of one of them."""
+
+import numpy as np
+
+from ..pieces import of_pieces
+from .equal_keys import follows, mixed, sort
+
+MOST = 1 << 30  # vertices: their numbers leave room for the rest of a key
+
+
+def welded(vertices: np.ndarray) -> np.ndarray | None:
+    """Return numbers that are equal where vertices are equal, and only there, (n,) int64, below n; None where no two are equal.
+
+    Args:
+        vertices: (n, 3) float64; plus and minus zero are equal.
+    """
+    n = len(vertices)
+    if n > MOST:
+        return _by_rows(vertices)
+    low = np.uint64((1 << max(n - 1, 1).bit_length()) - 1)
+    keys = np.empty(n, np.uint64)
+
+    def make(part: slice) -> None:
+        x, y, z = (np.ascontiguousarray(vertices[part, axis] + 0.0).view(np.uint64) for axis in range(3))
+        keys[part] = (mixed(mixed(mixed(x) + y) + z) & ~low) | np.arange(part.start, part.stop, dtype=np.uint64)
+
+    of_pieces(make, n)
+    sort(keys)
+    follow = follows(keys, int(low).bit_length())
+    alike = np.flatnonzero(follow[:-1] | follow[1:])  # sorted keys that have the high bits of a neighbour
+    if not len(alike):
+        return None
+    number = np.arange(n)
+    entry = (keys[alike] & low).astype(np.int64)
+    begins = ~follow[alike]
+    run = np.cumsum(begins) - 1
+    first = entry[begins][run]
+    number[entry] = first
+    wrong = (vertices[entry] != vertices[first]).any(axis=1)
+    if wrong.any():  # places whose high bits are equal by chance
+        some = entry[np.isin(run, run[wrong])]
+        number[some] = some[_by_rows(vertices[some])]
+    return number
+
+
+def _by_rows(points: np.ndarray) -> np.ndarray:
+    _, first, place = np.unique(points + 0.0, axis=0, return_index=True, return_inverse=True)
+    return first[place.ravel()]
