@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity.cli.app import run as command
+from radiosity.diagnostics.near_lamps import near_lamps
 from radiosity.patches.contact import cut_at_contacts
 from radiosity.patches.contact.lines import Boxes, contact_lines
 from radiosity.scene.box_pairs import box_pairs
@@ -52,7 +54,7 @@ def test_a_mesh_cut_along_a_lamp_holds_its_light(turn):
     scene = ceiling_and_lamp(turn=turn)
     even, cut = rd.subdivide(scene, cells=8), rd.subdivide(cut_at_contacts(scene, 100, 50), about=100)
     exact = 2 * RHO * (1 - seen(GAP))
-    with pytest.warns(rd.RadiosityWarning, match="'lamp at ceiling': lamps shine on a face from 0.001 m.*--adaptive"):
+    with pytest.warns(rd.RadiosityWarning, match="'lamp at ceiling': lamps shine on a face from 0.001 m.*--contacts"):
         assert leaks(even) > 0.1
     assert 0 <= leaks(cut) < exact + 1e-3
     assert exact < 3e-3
@@ -91,3 +93,21 @@ def test_boxes_that_overlap_are_found(random):
     every = ((one[0][:, None] <= two[1]) & (one[1][:, None] >= two[0])).all(axis=2)
     assert sorted(map(tuple, found.tolist())) == list(map(tuple, np.argwhere(every).tolist()))
     assert len(found) > 50
+
+
+def test_the_command_line_cuts_along_lamps(tmp_path, monkeypatch, capsys):
+    """Such a mesh holds the light of lamps without a word; it goes on from its file, and is refused where parts are."""
+    scene = ceiling_and_lamp(side=0.05)
+    monkeypatch.chdir(tmp_path)
+    rd.save_scene(scene, "lamp.toml")
+    run = ["solve", "lamp.toml", "--patch-size", "0.5", "--contacts", "--method", "random-walk"]
+    assert command([*run, "--rays", "20k", "-o", "a.npz"]) == 0
+    patches = rd.load_solution("a.npz").patches
+    assert near_lamps(rd.subdivide(scene, size=0.5)) is not None
+    assert near_lamps(patches) is None
+    assert patches.scene.is_cut_of(rd.load_scene("lamp.toml"))
+    assert patches.sizes.max() <= 0.5
+    assert command([*run, "--cells", "2"]) == 2
+    assert "--contacts cuts faces into parts of unlike size" in capsys.readouterr().err
+    with pytest.raises(rd.SceneError, match="leave cells out"):
+        rd.subdivide(scene, cells=2, contacts=True)

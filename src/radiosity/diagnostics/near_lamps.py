@@ -66,7 +66,7 @@ def told(found: NearLamps) -> str:
     return (
         f"{shown(found.names, 5)}: lamps shine on a face from {found.distance:.2g} m, and patches there are up to "
         f"{found.size:.2g} m large; those that a lamp covers in part give back some {found.share:.1%} of all light where they "
-        "are not covered: the scene becomes too bright, which no error shows; take --adaptive or --patches N, which cut the face "
+        "are not covered: the scene becomes too bright, which no error shows; take --contacts or --adaptive, which cut the face "
         "along such lamps, or smaller patches, or let the lamps emit on one side only"
     )
 

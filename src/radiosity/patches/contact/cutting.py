@@ -24,15 +24,16 @@ SMALL = 0.05  # of a patch's size: shorter lines of lamps are left out
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 
 
-def cut_at_contacts(scene: Scene, patches: int, most: int) -> Scene:
+def cut_at_contacts(scene: Scene, patches: int, most: int, sizes: np.ndarray | None = None) -> Scene:
     """Return the scene cut along its contact lines.
 
     Args:
         patches: how many patches there are to be: their size says which lines matter.
         most: the largest number of faces that cuts may add.
+        sizes: (n_faces,) metres, of the patches of each face, which say what is near; default: of so many even patches.
     """
     size = float(np.sqrt(scene.area.sum() / patches))
-    lines = _lines(scene, size, subdivide(scene, about=patches).sizes)
+    lines = _lines(scene, size, subdivide(scene, about=patches).sizes if sizes is None else sizes)
     polygons: dict[int, list] = {}
     frames = {face: _Flat(scene, face) for face in {line.face for line in lines}}
     added = 0
