@@ -5,7 +5,7 @@ camera gets a fitted one. The error is the RMS of (picture - truth) in linear ra
 beside one, relative to the mean of the truth. The truth is two path traced pictures of other seeds, a and b; the mean of
 (picture - a)(picture - b) holds none of their own noise. CPU seconds of ours hold the solution.
 
-python benchmarks/pictures.py [--width 256] [--truth 256] [--scenes cornell-box room]
+python benchmarks/pictures.py [--width 256] [--truth 256] [--contacts] [--scenes cornell-box room]
 """
 
 import argparse
@@ -71,7 +71,7 @@ def without_lamps(scene: rd.Scene, camera: rd.Camera) -> np.ndarray:
     return ~np.any(beside, axis=0)
 
 
-def compare(name: str, width: int, truth: int) -> None:
+def compare(name: str, width: int, truth: int, contacts: bool) -> None:
     """Print the rows of a scene."""
     scene = rd.load_scene(name, allow_outside=True)
     scene = replace(scene, back=np.where(scene.back == rd.Back.PASSES, rd.Back.ABSORBS, scene.back).astype(np.uint8))
@@ -94,7 +94,7 @@ def compare(name: str, width: int, truth: int) -> None:
         for lines, filtered in OURS:
             for _ in range(2):  # the first compiles kernels
                 begun = used()
-                solution = rd.solve(scene, rays=LINES)
+                solution = rd.solve(rd.subdivide(scene, contacts=contacts), rays=LINES)
                 picture = render(solution, Path(folder) / "a.exr", camera=camera, final_gather=lines, denoise=filtered)
                 seconds = used() - begun
             words = "patches alone" if lines is None else f"final gather, {lines} lines a pixel{', denoised' * filtered}"
@@ -105,7 +105,8 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--width", type=int, default=256)
     parser.add_argument("--truth", type=int, default=256)
+    parser.add_argument("--contacts", action="store_true", help="cut faces along contact lines; the seconds are those of ours")
     parser.add_argument("--scenes", nargs="+", default=["cornell-box", "room"])
     given = parser.parse_args()
     for scene_name in given.scenes:
-        compare(scene_name, given.width, given.truth)
+        compare(scene_name, given.width, given.truth, given.contacts)

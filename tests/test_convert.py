@@ -305,6 +305,16 @@ def test_help_names_what_is_to_be_given(capsys):
             assert "ARGS" not in capsys.readouterr().out, name
 
 
+@pytest.mark.parametrize(
+    ("suffix", "name"), [(".obj", "north wall"), (".xml", "north wall"), (".mgf", "north_wall"), (".rad", "north_wall")]
+)
+def test_line_breaks_in_names_become_what_blanks_do(suffix, name, tmp_path):
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    scene = rd.Scene.from_arrays(corners, [[0, 1, 2]], 0.25, 2.0, two_sided=suffix == ".obj", names=["north\n\u2028wall"])
+    read, _ = again(scene, tmp_path / f"x{suffix}")
+    assert read.names[0].startswith(name)
+
+
 def test_libraries_have_no_blanks_in_their_names(tmp_path):
     """Many programs read the name of a library up to its first blank."""
     scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.25, 2.0, two_sided=True, names=["a wall"])

@@ -81,6 +81,12 @@ def _adapt(*of, **options):
     return adapt(*of, **options)
 
 
+def _cut_at_contacts(patches):
+    from .patches.contact import cut_at_contacts
+
+    return cut_at_contacts(patches.scene, len(patches), max(len(patches) // 8, 64), patches.sizes)
+
+
 def _on_cluster(*of):
     from .cluster.solve import solve
 
@@ -101,6 +107,7 @@ def _sensing(*of):
 
 HOOKS["export"] = _export  # of `Solution.export`
 HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)` and `solve(scene, adaptive=True)`
+HOOKS["cut at contacts"] = _cut_at_contacts  # of `subdivide(scene, contacts=True)`
 HOOKS["gather"] = _gather  # of pictures with a final gather
 HOOKS["cluster"] = _on_cluster  # of `solve(scene, cluster=...)`
 HOOKS["connected"] = _connected  # of what solves and traces on one cluster

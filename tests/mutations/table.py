@@ -15,6 +15,20 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "patches/contact/lines.py",
+        "        shines[1] &= scene.back == Back.RADIATES\n",
+        "",
+        ("test_near_lamps.py",),
+        "backs that do not radiate count as lamps",
+    ),
+    Mistake(
+        "patches/contact/lines.py",
+        "np.where(lamp, NEAR_LAMP, NEAR) * size",
+        "0.0 * np.where(lamp, NEAR_LAMP, NEAR)",
+        ("test_near_lamps.py",),
+        "faces just in front of others have no contact lines",
+    ),
+    Mistake(
         "tracing/angles.py",
         "np.cumsum(1 - share_at(middle, transmissivity, float(index)))",
         "np.cumsum(np.ones(FINE))",

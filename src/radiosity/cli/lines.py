@@ -162,7 +162,7 @@ def _patches(scene, size: Mesh, before, run: LineRunning, progress):
     import radiosity as rd
 
     if size.sized:
-        return rd.subdivide(scene, size=size.patch_size, cells=size.cells)
+        return rd.subdivide(scene, size=size.patch_size, cells=size.cells, contacts=size.contacts)
     if size.follows:
         return rd.adapt(scene, size.patches, seed=run.seed, device=run.device, memory=run.memory, progress=progress)
     if before is not None and before.patches.scene.is_cut_of(scene):

@@ -119,8 +119,12 @@ def _patches(scene, cut: Cut, method, before, run: Running, progress):
         count = cut.patches or len(rd.subdivide(scene, **cut_for(method)))
         return rd.adapt(scene, count, progress=progress, **options)
     if cut.given:
+        if cut.contacts:
+            refuse_hierarchical(method)
         size = {"size": cut.patch_size, "cells": cut.cells} if cut.patch_size or cut.cells else cut_for(method)
-        return rd.subdivide(scene, **(size | {"powers_of_two": cut.powers_of_two or method.needs_powers_of_two}))
+        return rd.subdivide(
+            scene, **(size | {"powers_of_two": cut.powers_of_two or method.needs_powers_of_two, "contacts": cut.contacts})
+        )
     if before is not None and (before.patches.scene.hash == scene.hash or before.patches.scene.is_cut_of(scene)):
         return before.patches
     return scene

@@ -76,10 +76,13 @@ class Mesh(Size):
         patches: At most so many patches, such as 50k, which follow the light: faces are cut where other faces touch them, and
             where light varies, as pilot runs see it (docs/meshes.md).
         adaptive: The same, with as many patches as by default.
+        contacts: Cut faces along the outlines of what touches them or lies just in front of them, such as lamps below a ceiling;
+            their parts have the size of --patch-size, or its default.
     """
 
     patches: Count = None
     adaptive: Flag = False
+    contacts: Flag = False
 
     @property
     def follows(self) -> bool:
@@ -96,7 +99,12 @@ class Mesh(Size):
         sized = self.patch_size is not None or self.cells is not None
         if sized and self.follows:
             raise MethodError("--patches and --adaptive cut where light varies: leave out --patch-size and --cells")
-        return sized
+        if self.contacts and (self.follows or self.cells is not None):
+            raise MethodError(
+                "--contacts cuts faces into parts of unlike size, as --patches and --adaptive do by themselves: leave it out, or "
+                "leave out --cells, --patches and --adaptive"
+            )
+        return sized or self.contacts
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ def write(scene: Scene, path: Path, told: Told) -> None:
 
 def name_of(name: str) -> str:
     """Return a name as Mitsuba takes it: without points, which part its paths, and without the sign of parameters."""
-    name = " ".join(printable(name).split()).replace(".", "_").replace("$", "_")
+    name = printable(" ".join(name.split())).replace(".", "_").replace("$", "_")
     return "" if name.startswith(MADE_UP) else name
 
 

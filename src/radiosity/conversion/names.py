@@ -37,7 +37,7 @@ def unique_names(parts: list[Piece], told: Told, clean: Callable[[str], str], *,
 
 def word(name: str) -> str:
     """Return a name as a word, as Radiance has them: without blanks, and not too long."""
-    name = "_".join(printable(name).split())
+    name = printable("_".join(name.split()))
     whole = len(name.encode()) <= LONGEST and name not in RESERVED
     return name if whole and not name.startswith(("#", "!", '"', "'", "|")) else ""
 

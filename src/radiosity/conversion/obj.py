@@ -62,7 +62,7 @@ def object_names(parts: list[Piece], told: Told) -> list[str]:
 
 
 def _of_objects(name: str) -> str:
-    name = " ".join(printable(name).split())
+    name = printable(" ".join(name.split()))
     return "" if name.lower() in NO_NAME or name.startswith("#") or " #" in name or name.endswith("\\") else name
 
 

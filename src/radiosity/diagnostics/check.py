@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import RadiosityWarning, SceneError, shown
 from ..scene import topology
 from ..scene.model import Scene
-from . import contact_findings, dark_sides, leaks, luminaire_findings
+from . import contact_findings, dark_sides, leaks, luminaire_findings, near_lamps
 from .report import NOTE, SERIOUS, WARNING, Finding, Report, surface_rows
 
 LITTLE = 0.01  # of the lines: in many correct scenes, backs of lamps absorb that much
@@ -64,6 +64,9 @@ def check(scene: Scene, *, walks: int = leaks.WALKS, seed: int = 0, device: str 
     from_lights, of_luminaires = luminaire_findings.first_light(scene, seed, device)
     findings = [*_values(patches), *_light(scene, power), *_topology(scene), *of_luminaires]
     findings += _lines(scene, power + from_lights, walks, seed, device)
+    near = near_lamps.near_lamps(subdivide(scene), device)
+    if near is not None:
+        findings.append(Finding(WARNING, "near lamps", near_lamps.told(near)))
     for surface, front, back in leaks.flipped_emitters(scene, (power[0] > 0) & (power[1] == 0), seed=seed, device=device):
         text = f"{_percent(front)} of the lines from its emitting side see the scene, {_percent(back)} from behind"
         name = scene.names[surface]

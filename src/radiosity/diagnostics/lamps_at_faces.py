@@ -47,8 +47,7 @@ def spots(patches: Patches) -> list[Spot]:
     scene, found = patches.scene, []
     if not scene.lights.luminaires:
         return found
-    cells = patches.columns * patches.rows * np.where(scene.is_quad, 1, 0.5)
-    sizes = np.sqrt(scene.area / np.maximum(cells, 0.5))
+    sizes = patches.sizes
     origin, first, second = scene.frames
     power = sum(float(one.power.sum()) for one in scene.lights.luminaires)
     for one in scene.lights.luminaires:

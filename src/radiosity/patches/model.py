@@ -42,6 +42,12 @@ class Patches:
         return int(self.first[-1])
 
     @property
+    def sizes(self) -> np.ndarray:
+        """The square root of the mean area of the cells of each face, (n_faces,) metres."""
+        cells_of = self.columns * self.rows * np.where(self.scene.is_quad, 1, 0.5)
+        return np.sqrt(self.scene.area / np.maximum(cells_of, 0.5))
+
+    @property
     def cut_hash(self) -> str:
         """SHA-256 of the way in which the scene is cut."""
         return self._cut().hexdigest()

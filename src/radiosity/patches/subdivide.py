@@ -23,6 +23,7 @@ def subdivide(
     cells: int | None = None,
     about: int = DEFAULT_PATCHES,
     powers_of_two: bool = False,
+    contacts: bool = False,
     patches: int | None = None,
 ) -> Patches:
     """Cut every face into patches.
@@ -35,6 +36,8 @@ def subdivide(
             others are one for each side.
         powers_of_two: columns and rows are rounded up to powers of two, so that the patches are the leaves of a `Hierarchy`;
             what is said of size, cells and about still holds.
+        contacts: cut faces first along the outlines of what touches them or lies just in front of them, lamps before others, as
+            `adapt` does; their parts have the same size. Each part is a face of the scene of the patches.
         patches: so many patches at most, which follow the light instead, see `adapt`.
 
     Raises:
@@ -48,11 +51,13 @@ def subdivide(
     if not isinstance(scene, Scene):
         raise SceneError(f"subdivide takes a Scene, not {type(scene).__name__}; load a file with load_scene")
     if patches is not None:
-        if size is not None or cells is not None or powers_of_two or about != DEFAULT_PATCHES:
-            raise SceneError("patches=N cuts where light varies; leave out size, cells, about and powers_of_two")
+        if size is not None or cells is not None or powers_of_two or contacts or about != DEFAULT_PATCHES:
+            raise SceneError("patches=N cuts where light varies; leave out size, cells, about, powers_of_two and contacts")
         return HOOKS["adapt"](scene, patches)
     if size is not None and cells is not None:
         raise SceneError("give size or cells, not both")
+    if cells is not None and contacts:
+        raise SceneError("contacts cuts faces into parts of unlike size: give a size, or leave cells out")
     if isinstance(about, bool) or not isinstance(about, int) or about < 1:
         raise SceneError(f"about is {about!r}; it must be a whole number of patches, 1 or more")
     if cells is not None:
@@ -64,6 +69,9 @@ def subdivide(
             raise SceneError(f"patch size is {size!r}; it must be a positive number of metres")
         size = _default_size(scene, powers_of_two, about) if size is None else float(size)
         columns, rows = _by_size(_edges(scene), _own_sizes(scene), size, powers_of_two)
+        if contacts:
+            scene = HOOKS["cut at contacts"](_checked(scene, columns, rows))
+            columns, rows = _by_size(_edges(scene), _own_sizes(scene), size, powers_of_two)
     return _checked(scene, columns, rows)
 
 

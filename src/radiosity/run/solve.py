@@ -13,6 +13,7 @@ from ..device.turn import turn
 from ..diagnostics.contact_findings import tell
 from ..diagnostics.lamps_at_faces import warn_of_spots
 from ..diagnostics.narrow import warn_of_light
+from ..diagnostics.near_lamps import warn_of_near_lamps
 from ..errors import MethodError, keeping, shown
 from ..hooks import HOOKS
 from ..method import Auto, Baseline, Method, resolve
@@ -214,6 +215,8 @@ def prepared(
         warn_of_light(run.geometry, scene, stacklevel=3)
     if isinstance(chosen, Method) and chosen.machine == "gather":
         warn_of_spots(scene)
+    if not refines(chosen):
+        warn_of_near_lamps(scene, device)
     return run
 
 
@@ -245,9 +248,14 @@ def refuse_cut(patches: Patches, method: Method | Baseline | Auto) -> None:
         refuse_hierarchical(method)
 
 
+def refines(method: Method | Baseline | Auto) -> bool:
+    """Return whether a method refines patches by itself."""
+    return isinstance(method, Baseline) and method.scheme == "hierarchical"
+
+
 def refuse_hierarchical(method: Method | Baseline | Auto) -> None:
     """Raise where a method refines patches by itself."""
-    if isinstance(method, Baseline) and method.scheme == "hierarchical":
+    if refines(method):
         raise MethodError(
             "hierarchical radiosity refines its patches by itself, from whole faces: give it the scene, or patches by size or "
             "cells, and no mesh that follows the light"

@@ -2,59 +2,81 @@
 
 Where a box stands on a floor, the floor beneath it is dark and the floor beside it is not. A patch that lies on both sides of the
 line would average them: light leaks under the box. So a face is cut, with straight cuts from rim to rim of what is cut already,
-along the lines where other faces touch or pierce it; the longest ones first.
+along the lines where other faces touch or pierce it, or end just in front of it; the longest ones first. Before all others come
+outlines of lamps just in front of a face: such a lamp lights the part that it covers, and a patch that is covered in part would
+give that light back from its open part.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...scene.model import Scene
 from ...scene.split import bent, split
+from ..subdivide import subdivide
 from . import convex
-from .lines import Boxes, contact_lines
+from .lines import Boxes, contact_lines, near_lamps
 
 THIN = 1e-4  # of a patch's size: thinner strips are not cut off
-SHORT = 0.5  # of a patch's size: shorter lines are left to finer patches
-LARGE = 4.0  # patches: smaller faces are not cut
+SHORT = 0.5  # of a patch's size: shorter lines are left to finer patches, but for those of lamps
+LARGE = 4.0  # patches: smaller faces are not cut, but for lamps
+SMALL = 0.05  # of a patch's size: shorter lines of lamps are left out
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 
 
-def cut_at_contacts(scene: Scene, patches: int, most: int) -> Scene:
+def cut_at_contacts(scene: Scene, patches: int, most: int, sizes: np.ndarray | None = None) -> Scene:
     """Return the scene cut along its contact lines.
 
     Args:
         patches: how many patches there are to be: their size says which lines matter.
         most: the largest number of faces that cuts may add.
+        sizes: (n_faces,) metres, of the patches of each face, which say what is near; default: of so many even patches.
     """
     size = float(np.sqrt(scene.area.sum() / patches))
-    lines = _lines(scene, size)
+    lines = _lines(scene, size, subdivide(scene, about=patches).sizes if sizes is None else sizes)
     polygons: dict[int, list] = {}
-    frames = {face: _Flat(scene, face) for face in {face for _, face, _ in lines}}
+    frames = {face: _Flat(scene, face) for face in {line.face for line in lines}}
     added = 0
-    for _, face, line in lines:
+    for line in lines:
         if added >= most:
             break
-        pieces = polygons.setdefault(face, [frames[face].outline])
-        cut = [part for piece in pieces for part in _cut(piece, frames[face].plane(line), size)]
+        pieces = polygons.setdefault(line.face, [frames[line.face].outline])
+        cut = [part for piece in pieces for part in _cut(piece, frames[line.face].plane(line.ends), size)]
         added += len(cut) - len(pieces)
-        polygons[face] = cut
+        polygons[line.face] = cut
     cut = {face: pieces for face, pieces in polygons.items() if len(pieces) > 1}
     return _rebuilt(scene, cut, frames) if cut else scene
 
 
-def _lines(scene: Scene, size: float) -> list[tuple[float, int, np.ndarray]]:
-    """Return length, face and ends of the contact lines that matter, the longest first."""
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """A contact line that matters: its face, ends in face coordinates, length in metres, and whether it is that of a lamp."""
+
+    face: int
+    ends: np.ndarray
+    length: float
+    of_lamp: bool
+
+
+def _lines(scene: Scene, size: float, sizes: np.ndarray) -> list[_Line]:
+    """Return the contact lines that matter, those of lamps first, then the longest first.
+
+    Args:
+        size: metres, of the mean patch. sizes: (n_faces,) metres, of the patches of each face, which say what is near.
+    """
     boxes, result = Boxes.of(scene), []
     _, first, second = scene.frames
-    for face in np.flatnonzero((scene.area > LARGE * size**2) & ~bent(scene)):
+    for face in np.flatnonzero(((scene.area > LARGE * size**2) | near_lamps(boxes, sizes)) & ~bent(scene)):
         outline = SQUARE if scene.is_quad[face] else SQUARE[[0, 1, 3]]
-        for line in contact_lines(scene, boxes, int(face)):
+        found = contact_lines(scene, boxes, int(face), sizes[face])
+        for line, of_lamp in zip(found.ends, found.of_lamps.tolist(), strict=True):
             within = convex.inside(outline, line[0], line[1], 1e-9)
             if within is not None:
                 step = within[1] - within[0]
                 length = float(np.linalg.norm(step[0] * first[face] + step[1] * second[face]))
-                if length > SHORT * size:
-                    result.append((length, int(face), np.array(within)))
-    return sorted(result, key=lambda entry: (-round(entry[0], 9), entry[1]))
+                if length > (SMALL if of_lamp else SHORT) * size and (of_lamp or scene.area[face] > LARGE * size**2):
+                    result.append(_Line(int(face), np.array(within), length, of_lamp))
+    return sorted(result, key=lambda line: (not line.of_lamp, -round(line.length, 9), line.face))
 
 
 class _Flat:

@@ -1,13 +1,17 @@
-"""Contact lines: where other faces touch or pierce a face, in its coordinates."""
+"""Contact lines: where other faces touch or pierce a face, or lie just in front of it, in its coordinates."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...scene.model import Scene
+from ...scene.box_pairs import box_pairs
+from ...scene.model import Back, Scene
 from ...scene.precision import EPSILON
 
-NEAR = 8 * EPSILON  # of the largest number that places a plane: what is nearer touches it
+TOUCHES = 8 * EPSILON  # of the largest number that places a plane: what is nearer touches it
+NEAR = 0.02  # of a patch's size: what is nearer hides a part of a patch as if it touched it
+NEAR_LAMP = 0.2  # likewise, of what emits towards the patch
+PARALLEL = 0.9  # cosine between a lamp and such a patch, at least: light of others spreads
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,39 +21,91 @@ class Boxes:
     Attributes:
         corners: (n_faces, 4, 3) metres; a triangle repeats its last corner.
         low, high: (n_faces, 3) the corners of the boxes.
-        near: (n_faces,) metres, the distance at which other faces touch.
+        touch: (n_faces,) metres, the distance at which other faces touch.
+        shines: (2, n_faces) bool, whether fronts and backs emit.
     """
 
     corners: np.ndarray
     low: np.ndarray
     high: np.ndarray
-    near: np.ndarray
+    touch: np.ndarray
+    shines: np.ndarray
 
     @staticmethod
     def of(scene: Scene) -> "Boxes":
         """Return those of a scene."""
         corners = scene.vertices[np.where(scene.faces < 0, scene.faces[:, 2:3], scene.faces)]
         reach = np.maximum(np.abs(corners - scene.centre).max(axis=(1, 2)), scene.plane_reach)
-        return Boxes(corners, corners.min(axis=1), corners.max(axis=1), NEAR * reach)
+        shines = np.stack([(light > 0).any(axis=1) for light in (scene.emission, scene.back_emission)])
+        shines[1] &= scene.back == Back.RADIATES
+        return Boxes(corners, corners.min(axis=1), corners.max(axis=1), TOUCHES * reach, shines)
 
 
-def contact_lines(scene: Scene, boxes: Boxes, face: int) -> np.ndarray:
-    """Return the contact lines of a face, (m, 2, 2): both ends in face coordinates. They may leave the face or lie on its rim."""
-    margin = boxes.near[face]
+@dataclass(frozen=True, eq=False)
+class ContactLines:
+    """Lines of a face.
+
+    Attributes:
+        ends: (m, 2, 2) face coordinates. They may leave the face or lie on its rim.
+        of_lamps: (m,) bool: light from just in front of the face ends there.
+    """
+
+    ends: np.ndarray
+    of_lamps: np.ndarray
+
+
+def contact_lines(scene: Scene, boxes: Boxes, face: int, size: float = 0.0) -> ContactLines:
+    """Return the contact lines of a face.
+
+    Args:
+        size: metres, of a patch. Outlines of faces that are nearer than `NEAR` of it are contact lines, too, if they lie in front
+            of a side that radiates.
+    """
+    margin = max(boxes.touch[face], NEAR_LAMP * size)
     beside = (boxes.low <= boxes.high[face] + margin).all(axis=1) & (boxes.high >= boxes.low[face] - margin).all(axis=1)
     beside[face] = False
     others = np.flatnonzero(beside)
     corners = boxes.corners[others]
     origin, first, second = (edge[face] for edge in scene.frames)
     height = (corners - origin) @ scene.normal[face]
-    height = np.where(np.abs(height) <= np.maximum(margin, boxes.near[others])[:, None], 0.0, height)
+    height = np.where(np.abs(height) <= np.maximum(boxes.touch[face], boxes.touch[others])[:, None], 0.0, height)
     to_face = np.linalg.pinv(np.stack([first, second], axis=1))
     flat = (corners - origin) @ to_face.T  # (m, 4, 2)
-    lines = []
+    touches, lamp = height == 0, _shines_at(scene, boxes, face, others, height)
+    near = _near(scene, face, height, np.where(lamp, NEAR_LAMP, NEAR) * size)
+    lines, of_lamps = [], []
     for edge in range(4):
         after = (edge + 1) % 4
-        lines.append(np.stack([flat[:, edge], flat[:, after]], axis=1)[(height[:, edge] == 0) & (height[:, after] == 0)])
-    return np.concatenate([*lines, _piercing(flat, height)])
+        rows = (touches[:, edge] & touches[:, after]) | (near[:, edge] & near[:, after])
+        lines.append(np.stack([flat[:, edge], flat[:, after]], axis=1)[rows])
+        of_lamps.append((lamp & near[:, edge])[rows])
+    ends, lamps, through = np.concatenate(lines), np.concatenate(of_lamps), _piercing(flat, height)
+    keep = (ends[:, 0] != ends[:, 1]).any(axis=1) & (~lamps | _single(ends, lamps))
+    return ContactLines(np.concatenate([ends[keep], through]), np.concatenate([lamps[keep], np.zeros(len(through), bool)]))
+
+
+def _single(ends: np.ndarray, some: np.ndarray) -> np.ndarray:
+    """Return which of some lines no other one of them equals, (m,) bool: two faces of one lamp share inner edges."""
+    rows, result = np.flatnonzero(some), np.zeros(len(ends), bool)
+    order = np.lexsort((ends[rows, :, 1], ends[rows, :, 0]), axis=1)
+    lines = np.take_along_axis(ends[rows], order[:, :, None], axis=1).reshape(-1, 4).round(9)
+    _, number, count = np.unique(lines, axis=0, return_inverse=True, return_counts=True)
+    result[rows] = count[number.ravel()] == 1
+    return result
+
+
+def _near(scene: Scene, face: int, height: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """Return which corners of faces lie just in front of a side that radiates, (m, 4) bool; those of faces that go through it
+    do not: light ends where they do."""
+    front = (height >= 0).all(axis=1)
+    some = front | ((height <= 0).all(axis=1) & (scene.back[face] == Back.RADIATES))
+    return some[:, None] & (height != 0) & (np.abs(height) <= reach[:, None])
+
+
+def _shines_at(scene: Scene, boxes: Boxes, face: int, others: np.ndarray, height: np.ndarray) -> np.ndarray:
+    """Return which of the other faces are parallel to a face and emit towards its plane, (m,) bool."""
+    along = (scene.normal[others] @ scene.normal[face]) * np.sign(height.sum(axis=1))  # below zero: the front looks at the face
+    return np.where(along < 0, boxes.shines[0, others], boxes.shines[1, others]) & (np.abs(along) > PARALLEL)
 
 
 def _piercing(flat: np.ndarray, height: np.ndarray) -> np.ndarray:
@@ -65,4 +121,17 @@ def _piercing(flat: np.ndarray, height: np.ndarray) -> np.ndarray:
     for row in range(len(some)):
         ends = points[row][on[row]]
         result[row] = ends[0], ends[np.argmax(((ends - ends[0]) ** 2).sum(axis=1))]
+    return result
+
+
+def near_lamps(boxes: Boxes, sizes: np.ndarray) -> np.ndarray:
+    """Return the faces that are nearer to the box of one that emits than lamps count, (n_faces,) bool; itself left out.
+
+    Args:
+        sizes: (n_faces,) metres, of the patches of each face.
+    """
+    lamps, result = np.flatnonzero(boxes.shines.any(axis=0)), np.zeros(len(boxes.low), bool)
+    reach = NEAR_LAMP * sizes[:, None]
+    for face, lamp in box_pairs((boxes.low - reach, boxes.high + reach), (boxes.low[lamps], boxes.high[lamps])):
+        result[face[lamps[lamp] != face]] = True
     return result

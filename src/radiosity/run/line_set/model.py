@@ -8,6 +8,7 @@ from ...algorithms.matrix.tally import MatrixTally
 from ...algorithms.state import Sizes
 from ...device.backend import choose
 from ...diagnostics.narrow import warn_of_light
+from ...diagnostics.near_lamps import warn_of_near_lamps
 from ...errors import SceneError, printable, shown
 from ...factors.counted import CountedPairs
 from ...method import Method
@@ -125,6 +126,7 @@ class LineSet:
         if self.method.lines == "local":
             warn_of_starved(patches, self.pairs.lines)
             warn_of_light(Geometry(patches, choose("auto")), patches, stacklevel=2)
+        warn_of_near_lamps(patches)
         warn_of_few_ends(self.method, self.rays / self.replicates / len(patches))
         return replace(solution, state={}, provenance=solution.provenance | {"line_set": self.provenance})
 
