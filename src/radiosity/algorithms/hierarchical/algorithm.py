@@ -15,6 +15,8 @@ from .parameters import Hierarchical as Parameters
 from .rounds import Rounds
 from .state import HierarchicalState
 
+MISSED = 1 << 24  # lines of all patches that find what escapes, at most 1024 and at least 16 a patch
+
 
 class Hierarchical(AbstractAlgorithm[HierarchicalState]):
     """Hierarchical radiosity. N is the number of rounds, at most all of them.
@@ -28,11 +30,14 @@ class Hierarchical(AbstractAlgorithm[HierarchicalState]):
             raise MethodError(
                 "hierarchical radiosity follows one sequence of refinements and has no replicates; compare seeds instead"
             )
-        roots.check(Hierarchy(self.problem.patches))
         method, self.wanted, self.lines, self._swept = self.method, 0, 0, None
         parameters = Parameters(method.epsilon, method.refinement, method.lines_of_pair, seed=Seed.of(self.seed).value)
+        tree = Hierarchy(self.problem.patches)
+        if not parameters.clustered(len(tree.side_face)):
+            roots.check(tree)
         self.rounds = Rounds(self.problem.patches, self.geometry, parameters, self._told)
-        self.missed = np.stack(missed(self.geometry, seed=Seed.of(self.seed).value))
+        lines = min(1024, max(MISSED // len(self.problem.patches), 16))
+        self.missed = np.stack(missed(self.geometry, lines, Seed.of(self.seed).value))
 
     def _told(self, lines: int) -> None:
         self.lines += lines

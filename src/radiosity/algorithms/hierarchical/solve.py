@@ -92,12 +92,13 @@ def _delta(levels: Levels, links: Links, errors: np.ndarray) -> np.ndarray:
 
 
 def _elements(levels: Levels, links: Links) -> int:
-    """Return the number of elements at the ends of links, of those that hold them, and of the siblings of all."""
+    """Return the number of elements at the ends of links, of those that hold them, and of the siblings of all; no clusters."""
     used = np.zeros(len(levels.area), bool)
     used[links.receiver] = used[links.source] = True
     divided = np.zeros_like(used)
     for element in reversed(levels.below):
         parent = levels.parent[element]
         divided[parent[(used | divided)[element]]] = True
-    roots = len(levels.hierarchy.side_face)
-    return roots + sum(int(divided[levels.parent[element]].sum()) for element in levels.below)
+    roots, clusters = len(levels.hierarchy.side_face), levels.clusters
+    within = levels.below if clusters is None else levels.below[len(clusters.below) + 1 :]
+    return roots + sum(int(divided[levels.parent[element]].sum()) for element in within)
