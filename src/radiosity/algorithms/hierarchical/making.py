@@ -81,7 +81,10 @@ class Maker:
             return np.ones(count), 0
         one, other = (Polygons(shape.corners, self.hierarchy.face(shape.element)) for shape in (source, receiver))
         rays = self.parameters.rays
-        return visible_share(self.geometry, one, other, rays, self.parameters.seed), count * rays
+        share = visible_share(self.geometry, one, other, rays, self.parameters.seed)
+        if (through := self.geometry.scene.transmittance) is not None:  # irradiance is that of the receiver's solid part
+            share /= 1 - through[other.face]
+        return share, count * rays
 
     def _spread(self, one: Shapes, other: Shapes, factor: np.ndarray, share: np.ndarray, whole: np.ndarray) -> np.ndarray:
         """Return the largest difference of a point's factor from the link's.

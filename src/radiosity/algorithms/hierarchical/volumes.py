@@ -143,11 +143,10 @@ def _sampled(
     ends = [_drawn(clusters, end, number) for end, number in zip((one, other), numbers, strict=True)]
     salts = mixed(key)[:, None] + lane.astype(np.uint64)
     means = kernel_means(geometry, ends[1], ends[0], 1, (parameters.seed,), salts.ravel())[0]
-    tree = clusters.hierarchy
     transmittance = geometry.scene.transmittance
-    if transmittance is not None:  # sides of clusters are drawn by their solid parts already
-        through = transmittance[ends[1].face]
-        means[1] /= np.where(np.repeat(other.cluster >= 0, rays), 1 - through, 1)
+    if transmittance is not None:  # receivers are solid parts alone, and sides of clusters are drawn by them already
+        receiver, source = (1 - transmittance[end.face] for end in ends)
+        means[1] /= receiver * np.where(np.repeat(other.cluster >= 0, rays), source, 1)
     whole, seen = means.reshape(2, m, rays).mean(axis=2)
     between = ends[0].corners.mean(axis=1) - ends[1].corners.mean(axis=1)
     least = (0.25 * (one.radius + other.radius)) ** 2
