@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.algorithms.hierarchical import REFINEMENTS, Hierarchical, solve_hierarchical
+from radiosity.algorithms.hierarchical import REFINEMENTS, Hierarchical, parameters, solve_hierarchical
 from radiosity.algorithms.hierarchical.levels import Levels
 from radiosity.algorithms.hierarchical.rounds import Rounds
 from radiosity.algorithms.hierarchical.volumes import volumetric
@@ -154,3 +154,31 @@ def test_random_walks_agree_the_better_the_smaller_epsilon(patches, refinement, 
     assert errors[0] < 0.1
     assert errors[1] < 0.04
     assert errors[1] < 0.6 * errors[0]
+
+
+@pytest.mark.filterwarnings("ignore:.*out of balance")
+def test_rounds_go_on_from_a_file_to_the_same_bits(tmp_path, monkeypatch):
+    """With clusters; the links lie in the file, and their indicated errors once all rounds are complete."""
+    monkeypatch.setattr(parameters, "MOST_SIDES", 20)
+    patches = rd.subdivide(litter(np.random.default_rng(3), 20), cells=1, powers_of_two=True)
+    method = rd.Baseline("hierarchical", refinement="error-power", epsilon=0.01, samples=4)
+    whole, begun = (rd.solve(patches, method, quanta=rounds, seed=2) for rounds in (4, 2))
+    assert begun.indicated is None
+    begun.save(tmp_path / "begun.npz")
+    after = rd.solve(patches, method, quanta=4, seed=2, resume=rd.load_solution(tmp_path / "begun.npz"))
+    assert np.array_equal(after.radiosity, whole.radiosity)
+    assert np.array_equal(after.history, whole.history)
+    assert np.array_equal(after.state["link_factor"], whole.state["link_factor"])
+    assert (whole.state["link_receiver"] >= len(Hierarchy(patches))).any()
+    assert np.array_equal(after.indicated, whole.indicated)
+    assert (whole.indicated > 0).all()
+
+
+@pytest.mark.filterwarnings("ignore:.*out of balance")
+def test_links_of_another_scene_are_refused():
+    patches = rd.subdivide(rd.load_scene("room"), cells=1, powers_of_two=True)
+    method = rd.Baseline("hierarchical", epsilon=0.01, samples=4)
+    begun = rd.solve(patches, method, quanta=2)
+    begun.state["link_source"][0] = 10**6
+    with pytest.raises(rd.MethodError, match="links are not between"):
+        rd.solve(patches, method, quanta=4, resume=begun)

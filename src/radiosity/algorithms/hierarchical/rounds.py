@@ -75,6 +75,10 @@ class Rounds:
         self.links, self.irradiance, self.history = links, irradiance, history
         self.complete += 1
 
+    def restore(self, links: Links, irradiance: np.ndarray, history: list[Pass], complete: int) -> None:
+        """Go on from the links and the irradiance after a number of complete rounds."""
+        self.links, self.irradiance, self.history, self.complete = links, irradiance, history, complete
+
     def _first_pairs(self) -> tuple[np.ndarray, np.ndarray]:
         """Return receivers and sources of the first links: all whole sides, or the whole scene with itself."""
         if self.clusters is None:
