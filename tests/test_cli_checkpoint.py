@@ -131,7 +131,7 @@ def test_what_becomes_of_it_in_the_end(tmp_path, status, written, named, outputs
         (("--checkpoint", "a.npz", "--no-checkpoint"), "exclude each other"),
         (("--checkpoint", "a.csv"), r"is an \.npz file"),
         (("--checkpoint", "file/a.npz"), "is a file, not a folder"),
-        (("--checkpoint", "a.npz", "--method", "hierarchical"), "nothing to go on from"),
+        (("--checkpoint", "a.npz", "--method", "full-matrix"), "nothing to go on from"),
     ],
     ids=str,
 )

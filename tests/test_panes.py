@@ -84,6 +84,8 @@ def test_methods_agree_where_a_pane_reflects_and_emits():
     """Student intervals of 99.9 % for 12 patches of one box, against exact factors with visible shares of many rays."""
     patches = rd.subdivide(two_rooms(10.0 * (np.arange(11) == 0) + 3.0 * (np.arange(11) == 10)), cells=1)
     exact = rd.solve(patches, "full-matrix", samples=4096)
+    links = rd.solve(patches, "hierarchical", samples=4096, epsilon=1e-4)
+    assert links.irradiance == pytest.approx(exact.irradiance, rel=0.005)
     for method in ("random-walk", "gather", "stochastic-jacobi-control-variate"):
         solution = rd.solve(patches, method, rays=4e5, seed=5)
         low, high = solution.interval(0.999, "irradiance")
@@ -183,7 +185,7 @@ def test_bad_panes_are_refused(transmittance, more, message):
 
 def test_methods_that_cannot_are_refused_by_name():
     patches = rd.subdivide(two_rooms(1.0), cells=1)
-    for method in ("global-multipath", "transillumination", "hierarchical"):
+    for method in ("global-multipath", "transillumination"):
         with pytest.raises(rd.MethodError, match="'pane' let light through"):
             rd.solve(patches, method, rays=1e4)
     with pytest.raises(rd.MethodError, match="lines 'global'"):

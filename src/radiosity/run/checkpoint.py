@@ -19,7 +19,6 @@ TIMES = 30  # a run goes on for this many times the time of writing, at least: w
 RATE = 60e6  # bytes a second that a disk is assumed to write, before it has been measured
 WHOLE = {
     "full-matrix": "a full matrix is made whole or not at all",
-    "hierarchical": "hierarchical radiosity keeps no links in its results",
 }
 
 

@@ -279,15 +279,14 @@ def refuse_open(scene: Scene, method: Method | Baseline) -> None:
 def refuse_panes(scene: Scene, method: Method | Baseline) -> None:
     """Raise where a scene has panes and the method cannot solve it.
 
-    Global lines pair the two sides of what they cross, and hierarchies take links for seen or not: neither goes on through panes.
-    Some algorithms do not send light on from the other side of a face.
+    Global lines pair the two sides of what they cross, and do not go on through panes. Some algorithms do not send light on from
+    the other side of a face.
     """
     if isinstance(method, Method):
         clear = "" if method.lines == "local" else f"lines '{method.lines}' pair the faces on both sides of a pane"
         one_sided = method.machine in ("multipath", "pooling") or method.absorption == "fractional"
     else:
-        one_sided = method.scheme == "hierarchical"
-        clear = "links of a hierarchy do not go on through panes" if one_sided else ""
+        clear, one_sided = "", method.scheme == "hierarchical"
     glass = "" if isinstance(method, Method) else "form factors of baselines have one transmittance for all angles"
     diffuse = f"method {method} sends no light on from the other side of a face" if one_sided else ""
     for some, key, reason in (

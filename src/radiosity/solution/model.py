@@ -223,6 +223,15 @@ class Solution:
         """
         return np.asarray(self.state.get("history", np.zeros((0, 2))))
 
+    @property
+    def indicated(self) -> np.ndarray | None:
+        """The errors of irradiance that the links of hierarchical radiosity may add up to, (n_patches, n_bands) W/m² or lm/m².
+
+        They are far above the true error: see docs/hierarchical.md. NaN with the refinement brightness-factor, which gives no
+        error. None for other methods, and before the last round is complete.
+        """
+        return self.state.get("indicated")
+
     def surface_table(self) -> list[dict]:
         """The table of surfaces: a row for each surface, or for each side that light reached.
 

@@ -75,10 +75,13 @@ def visible_share(geometry: Geometry, one: Polygons, other: Polygons, rays: int 
 
 
 @turn()
-def kernel_means(geometry: Geometry, one: Polygons, other: Polygons, rays: int, seeds: Sequence[int]) -> np.ndarray:
+def kernel_means(
+    geometry: Geometry, one: Polygons, other: Polygons, rays: int, seeds: Sequence[int], salts: np.ndarray | None = None
+) -> np.ndarray:
     """Return means of cos cos' / r² over points of pairs, 1/m², (seeds, 2, m): of all points, and of those that see each other.
 
     Args: see `visible_share`; of each seed there are other points.
+        salts: (m,) uint64, numbers that give equal pairs other points.
 
     Raises:
         MethodError: fewer than one ray, or more than 65 535.
@@ -93,7 +96,9 @@ def kernel_means(geometry: Geometry, one: Polygons, other: Polygons, rays: int, 
             for a, b in ((one, other), (other, one))
         )
         first, second = np.where(swap, second, first), np.where(swap, first, second)
-    keys = _mixed(first * np.uint64(3) + second)
+    keys = mixed(first * np.uint64(3) + second)
+    if salts is not None:
+        keys = mixed(keys + salts)
     size = max(CHUNK // rays, 1)
     means = np.empty((len(seeds), 2, len(keys)))
     for rows in (slice(at, at + size) for at in range(0, len(keys), size)):
@@ -218,11 +223,11 @@ def _keys(corners: np.ndarray) -> np.ndarray:
     bits = np.ascontiguousarray(corners + 0.0).reshape(len(corners), 12).view(np.uint64)
     key = np.zeros(len(bits), np.uint64)
     for column in bits.T:
-        key = _mixed(key * np.uint64(0x9E3779B97F4A7C15) + column)
+        key = mixed(key * np.uint64(0x9E3779B97F4A7C15) + column)
     return key
 
 
-def _mixed(x: np.ndarray) -> np.ndarray:
+def mixed(x: np.ndarray) -> np.ndarray:
     """Map 64-bit words by a bijection (S. Vigna's SplitMix64)."""
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)

@@ -11,9 +11,13 @@ from ..baseline_state import Solved
 from ..baseline_tally import SolvedTally
 from ..state import Arrays, Sizes
 from . import roots
+from .indicated import indicated
+from .links import Links
 from .parameters import Hierarchical as Parameters
-from .rounds import Rounds
-from .state import HierarchicalState
+from .rounds import Pass, Rounds
+from .state import HierarchicalState, Kept
+
+MISSED = 1 << 24  # lines of all patches that find what escapes, at most 1024 and at least 16 a patch
 
 
 class Hierarchical(AbstractAlgorithm[HierarchicalState]):
@@ -28,11 +32,15 @@ class Hierarchical(AbstractAlgorithm[HierarchicalState]):
             raise MethodError(
                 "hierarchical radiosity follows one sequence of refinements and has no replicates; compare seeds instead"
             )
-        roots.check(Hierarchy(self.problem.patches))
         method, self.wanted, self.lines, self._swept = self.method, 0, 0, None
         parameters = Parameters(method.epsilon, method.refinement, method.lines_of_pair, seed=Seed.of(self.seed).value)
+        self.errors: np.ndarray | None = None
+        tree = Hierarchy(self.problem.patches)
+        if not parameters.clustered(len(tree.side_face)):
+            roots.check(tree)
         self.rounds = Rounds(self.problem.patches, self.geometry, parameters, self._told)
-        self.missed = np.stack(missed(self.geometry, seed=Seed.of(self.seed).value))
+        lines = min(1024, max(MISSED // len(self.problem.patches), 16))
+        self.missed = np.stack(missed(self.geometry, lines, Seed.of(self.seed).value))
 
     def _told(self, lines: int) -> None:
         self.lines += lines
@@ -69,7 +77,16 @@ class Hierarchical(AbstractAlgorithm[HierarchicalState]):
             history=np.array([(i + 1, p.change) for i, p in enumerate(rounds.history)]).reshape(-1, 2),
         )
         numbers = {"quanta": self.wanted, "rounds": rounds.complete, "links": len(rounds.links)}
-        return HierarchicalState(sizes=self.sizes, solved=solved, **numbers)
+        kept = Kept(sizes=self.sizes, irradiance=rounds.irradiance, **vars(rounds.links))
+        return HierarchicalState(sizes=self.sizes, solved=solved, kept=kept, indicated=self._indicated(), **numbers)
+
+    def _indicated(self) -> np.ndarray | None:
+        """Return the indicated errors once all rounds are complete; they are found once."""
+        if self.rounds.done and self.errors is None:
+            told, self.rounds.told = self.rounds.told, lambda lines: None  # the state is captured: nothing may end it
+            self.errors = indicated(self.rounds)
+            self.rounds.told = told
+        return self.errors
 
     def _seen(self) -> np.ndarray:
         """The number of links that bring light to each patch, (n_patches,)."""
@@ -83,7 +100,27 @@ class Hierarchical(AbstractAlgorithm[HierarchicalState]):
         return HierarchicalState.read(arrays, sizes)
 
     def restore(self, state: HierarchicalState) -> None:
-        raise MethodError("hierarchical radiosity keeps no links in its results: there is nothing to go on from; start anew")
+        if state.kept is None or state.solved is None:
+            raise MethodError(
+                "the solution is of an older version, which kept no links: there is nothing to go on from; start anew"
+            )
+        kept, links = state.kept, self._links(state.kept)
+        self.wanted, self.lines = state.rounds, state.solved.lines
+        history = [Pass(np.nan, state.links, change) for _, change in state.solved.history]
+        self.rounds.restore(links, np.array(kept.irradiance), history, state.rounds)
+
+    def _links(self, kept: Kept) -> Links:
+        """Return links of a file.
+
+        Raises:
+            MethodError: they are of no elements of this scene.
+        """
+        links = Links(*(np.array(getattr(kept, name)) for name in ("receiver", "source", "factor", "spread")))
+        ends, count = np.concatenate([links.receiver, links.source]), len(self.rounds.levels.area)
+        lengths = {len(value) for value in vars(links).values()}
+        if len(lengths) != 1 or (len(ends) and not 0 <= ends.min() <= ends.max() < count):
+            raise MethodError(f"the solution's links are not between the {count} elements of this scene; start anew")
+        return links
 
     @property
     def tally(self) -> SolvedTally:

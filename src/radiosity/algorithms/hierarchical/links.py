@@ -33,6 +33,11 @@ class Links:
         return Links(*(value[rows] for value in vars(self).values()))
 
     @staticmethod
+    def appended(parts: list["Links"]) -> "Links":
+        """Return all links of several parts, one part after the other."""
+        return Links(*(np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])))
+
+    @staticmethod
     def joined(parts: list["Links"]) -> "Links":
         """Return all links of several parts, sorted by receiver and source: sums over links then have one order."""
         columns = [np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])]

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...patches import Hierarchy
+from ...patches.clusters import Clusters
 from ...tracing.geometry import Geometry
 from ...tracing.visibility import Polygons, visible_share
 from .kernel import Shapes, facing, samples, unoccluded
 from .links import Links
 from .parameters import Hierarchical
+from .volumes import volumetric
 
 BATCH = 1 << 13  # pairs: their points fit into the processor's cache
 
@@ -26,6 +28,7 @@ class Maker:
         hierarchy: the elements.
         parameters: the parameters, such as the number of rays.
         told: called after each batch with the rays traced for it; it may raise.
+        clusters: clusters above the elements, or None.
         rays: rays traced so far.
         pairs: pairs looked at so far.
     """
@@ -34,17 +37,29 @@ class Maker:
     hierarchy: Hierarchy
     parameters: Hierarchical
     told: Told
+    clusters: Clusters | None = None
     rays: int = 0
     pairs: int = 0
 
     def make(self, receiver: np.ndarray, source: np.ndarray) -> Links:
-        """Return links for the pairs that face each other, in the order given."""
+        """Return links for the pairs that face each other, batch after batch."""
         parts = [self._batch(receiver[at : at + BATCH], source[at : at + BATCH]) for at in range(0, len(receiver), BATCH)] or [
             Links.none()
         ]
-        return Links(*(np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])))
+        return Links.appended(parts)
 
     def _batch(self, receiver: np.ndarray, source: np.ndarray) -> Links:
+        if self.clusters is None:
+            return self._flat(receiver, source)
+        flat = np.maximum(receiver, source) < len(self.hierarchy)
+        links, rays = volumetric(self.clusters, self.geometry, self.parameters, receiver[~flat], source[~flat])
+        self.pairs += int((~flat).sum())
+        self.rays += rays
+        self.told(rays)
+        return Links.appended([self._flat(receiver[flat], source[flat]), links])
+
+    def _flat(self, receiver: np.ndarray, source: np.ndarray) -> Links:
+        """Return links of elements."""
         one, other = Shapes.of(self.hierarchy, receiver), Shapes.of(self.hierarchy, source)
         some, whole = facing(self.hierarchy, one, other)
         one, other, whole = one.take(some), other.take(some), whole[some]
@@ -66,7 +81,10 @@ class Maker:
             return np.ones(count), 0
         one, other = (Polygons(shape.corners, self.hierarchy.face(shape.element)) for shape in (source, receiver))
         rays = self.parameters.rays
-        return visible_share(self.geometry, one, other, rays, self.parameters.seed), count * rays
+        share = visible_share(self.geometry, one, other, rays, self.parameters.seed)
+        if (through := self.geometry.scene.transmittance) is not None:  # irradiance is that of the receiver's solid part
+            share /= 1 - through[other.face]
+        return share, count * rays
 
     def _spread(self, one: Shapes, other: Shapes, factor: np.ndarray, share: np.ndarray, whole: np.ndarray) -> np.ndarray:
         """Return the largest difference of a point's factor from the link's.

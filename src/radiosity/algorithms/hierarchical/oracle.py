@@ -88,6 +88,11 @@ class Oracle:
             here, there = (self._weighted(links, part) for part in self.parts(links, radiosity))
         else:
             here, there = area[links.receiver] * (1 + 1e-9), area[links.source]
+        if self.levels.clusters is not None:  # the area of a cluster says little of its size
+            size, count = self.levels.size, len(self.levels.hierarchy)
+            volume = np.maximum(links.receiver, links.source) >= count
+            here = np.where(volume, size[links.receiver] * (1 + 1e-9), here)
+            there = np.where(volume, size[links.source], there)
         return ~leaf[links.receiver] & ((here >= there) | leaf[links.source])
 
 
@@ -107,4 +112,8 @@ class Radiosity:
     def of(levels: Levels, patches: np.ndarray) -> "Radiosity":
         """Return the radiosity of elements from that of patches, (n_patches, n_bands)."""
         mean, (low, high) = levels.pull(patches), levels.extremes(patches)
-        return Radiosity(mean, np.maximum(np.maximum(high - mean, mean - low), 0.0))
+        deviation = np.maximum(np.maximum(high - mean, mean - low), 0.0)
+        if levels.clusters is not None:  # of many sides, bright ones are few: the mean deviation is no more than this
+            count = len(levels.hierarchy)
+            deviation[count:] = np.minimum(deviation[count:], 2 * mean[count:])
+        return Radiosity(mean, deviation)

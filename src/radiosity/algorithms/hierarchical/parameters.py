@@ -8,6 +8,7 @@ from ...errors import MethodError
 from ...method import schemes
 
 REFINEMENTS = tuple(schemes.REFINEMENTS)
+MOST_SIDES = 2000  # radiating sides: scenes with more begin with clusters
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,7 @@ class Hierarchical:
     step: the factor of epsilon from round to round.
     tolerance: tolerance of the solution with given links, relative to the largest radiosity of a band.
     seed: the seed of the rays.
+    clusters: whether sides near each other are grouped; None: where there are more than `MOST_SIDES` of them.
 
     Raises:
         MethodError: a value out of its range.
@@ -37,6 +39,7 @@ class Hierarchical:
     step: float = 4.0
     tolerance: float = 1e-8
     seed: int = 0
+    clusters: bool | None = None
 
     def __post_init__(self):
         if self.refinement not in REFINEMENTS:
@@ -48,6 +51,10 @@ class Hierarchical:
             raise MethodError(f"coarsest is {self.coarsest!r} and step {self.step!r}; they must be at least 1, and more than 1")
         if self.rays < 0:
             raise MethodError(f"rays of a link are {self.rays!r}; they must be 0 or more")
+
+    def clustered(self, sides: int) -> bool:
+        """Return whether a scene of so many radiating sides has clusters."""
+        return sides > MOST_SIDES if self.clusters is None else self.clusters
 
     @property
     def rounds(self) -> tuple[float, ...]:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...errors import MethodError
+from ...patches.clusters import Clusters
 from .links import Links
 from .making import Maker
 from .oracle import Oracle, Radiosity
@@ -37,8 +38,39 @@ def refined(links: Links, oracle: Oracle, maker: Maker, radiosity: Radiosity, ep
 def split(links: Links, oracle: Oracle, radiosity: Radiosity) -> tuple[np.ndarray, np.ndarray]:
     """Return the receivers and sources of the pairs that replace coarse links."""
     here = oracle.divides_receiver(links, radiosity)
-    children = oracle.levels.hierarchy.children(np.where(here, links.receiver, links.source))
-    other = np.where(here, links.source, links.receiver)[:, None]
+    divided, other = np.where(here, links.receiver, links.source), np.where(here, links.source, links.receiver)
+    clusters = oracle.levels.clusters
+    if clusters is None:
+        return _split_elements(oracle, here, divided, other)
+    count = len(oracle.levels.hierarchy)
+    flat = divided < count
+    row, child = _children(clusters, divided[~flat] - count)
+    same = np.flatnonzero((divided == other)[~flat][row])  # light within a cluster: between all pairs of its children
+    apart = np.flatnonzero((divided != other)[~flat][row])
+    again, pair = _children(clusters, divided[~flat][row[same]] - count)
+    first = child[same][again]
+    useful = (first != pair) | (first >= count)  # no element sees itself
+    there, whole = here[~flat][row[apart]], other[~flat][row[apart]]
+    parts = [
+        _split_elements(oracle, here[flat], divided[flat], other[flat]),
+        (np.where(there, child[apart], whole), np.where(there, whole, child[apart])),
+        (first[useful], pair[useful]),
+    ]
+    receiver, source = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return receiver, source
+
+
+def _children(clusters: Clusters, cluster: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the children of clusters by element numbers, one after the other, and which of the clusters each is of."""
+    child, start = clusters.children
+    counts = start[cluster + 1] - start[cluster]
+    row = np.repeat(np.arange(len(cluster)), counts)
+    within = np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return row, child[start[cluster][row] + within]
+
+
+def _split_elements(oracle: Oracle, here: np.ndarray, divided: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    children, other = oracle.levels.hierarchy.children(divided), other[:, None]
     receiver = np.where(here[:, None], children, other)
     source = np.where(here[:, None], other, children)
     exists = children >= 0

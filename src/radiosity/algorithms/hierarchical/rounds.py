@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...patches import Hierarchy, Patches
+from ...patches.clusters import grow
 from ...tracing.geometry import Geometry
 from .exchange import Exchange
 from .levels import Levels
@@ -45,9 +46,10 @@ class Rounds:
 
     def __init__(self, patches: Patches, geometry: Geometry | None, parameters: Hierarchical, told: Told):
         self.hierarchy, self.parameters, self.told = Hierarchy(patches), parameters, told
-        self.levels = Levels(self.hierarchy)
+        self.clusters = grow(self.hierarchy) if parameters.clustered(len(self.hierarchy.side_face)) else None
+        self.levels = Levels(self.hierarchy, self.clusters)
         self.oracle = Oracle(self.levels, parameters)
-        self.maker = Maker(geometry if parameters.rays else None, self.hierarchy, parameters, told)
+        self.maker = Maker(geometry if parameters.rays else None, self.hierarchy, parameters, told, self.clusters)
         self.emission, self.reflectance = patches.emission, patches.reflectance
         self.irradiance, self.history, self.complete = np.zeros_like(self.emission), [], 0
         self.links = Links.none()
@@ -59,7 +61,7 @@ class Rounds:
     def advance(self) -> None:
         """Make the next round. If ``told`` ends it with an exception, its work is lost, and it may be called again."""
         epsilon = self.parameters.rounds[self.complete]
-        links = Links.joined([self.maker.make(*root_pairs(self.hierarchy, self.told))]) if self.complete == 0 else self.links
+        links = Links.joined([self.maker.make(*self._first_pairs())]) if self.complete == 0 else self.links
         irradiance, history, new = self.irradiance, list(self.history), True
         while new:
             before = self.emission + self.reflectance * irradiance
@@ -72,6 +74,17 @@ class Rounds:
             irradiance = self._solved(links, irradiance, self.parameters.tolerance)
         self.links, self.irradiance, self.history = links, irradiance, history
         self.complete += 1
+
+    def restore(self, links: Links, irradiance: np.ndarray, history: list[Pass], complete: int) -> None:
+        """Go on from the links and the irradiance after a number of complete rounds."""
+        self.links, self.irradiance, self.history, self.complete = links, irradiance, history, complete
+
+    def _first_pairs(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return receivers and sources of the first links: all whole sides, or the whole scene with itself."""
+        if self.clusters is None:
+            return root_pairs(self.hierarchy, self.told)
+        root = np.array([len(self.hierarchy)])
+        return root, root
 
     def _solved(self, links: Links, begin: np.ndarray, tolerance: float) -> np.ndarray:
         return Exchange(self.levels, links).solve(self.emission, self.reflectance, begin, tolerance, self.told)

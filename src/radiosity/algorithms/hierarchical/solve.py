@@ -6,13 +6,12 @@ import numpy as np
 
 from ...patches import Patches
 from ...tracing.geometry import Geometry
-from .exchange import Exchange
+from .indicated import indicated
 from .levels import Levels
 from .links import Links
 from .making import Told
-from .oracle import Radiosity
 from .parameters import Hierarchical
-from .rounds import ROUGH, Pass, Rounds
+from .rounds import Pass, Rounds
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,18 +62,12 @@ def solve_hierarchical(
     rounds = Rounds(patches, geometry, parameters or Hierarchical(), told)
     while not rounds.done:
         rounds.advance()
-    levels, links, irradiance, oracle = rounds.levels, rounds.links, rounds.irradiance, rounds.oracle
-    reflectance = patches.reflectance
-    radiosity = patches.emission + reflectance * irradiance
-    indicated = np.full_like(radiosity, np.nan)
-    if oracle.by_error:
-        here, there = oracle.parts(links, Radiosity.of(levels, radiosity))
-        own = _delta(levels, links, here + there)
-        indicated = own + Exchange(levels, links).solve(reflectance * own, reflectance, np.zeros_like(own), ROUGH, told)
+    levels, links, irradiance = rounds.levels, rounds.links, rounds.irradiance
+    radiosity = patches.emission + patches.reflectance * irradiance
     return HierarchicalResult(
         irradiance,
         radiosity,
-        indicated,
+        indicated(rounds),
         len(links),
         int((links.factor == 0).sum()),
         _elements(levels, links),
@@ -85,19 +78,14 @@ def solve_hierarchical(
     )
 
 
-def _delta(levels: Levels, links: Links, errors: np.ndarray) -> np.ndarray:
-    """Return the sum of the errors of all links that reach a patch, (n_patches, n_bands)."""
-    columns = [np.bincount(links.receiver, weights=band, minlength=len(levels.area)) for band in errors.T]
-    return levels.push(np.stack(columns, axis=1))
-
-
 def _elements(levels: Levels, links: Links) -> int:
-    """Return the number of elements at the ends of links, of those that hold them, and of the siblings of all."""
+    """Return the number of elements at the ends of links, of those that hold them, and of the siblings of all; no clusters."""
     used = np.zeros(len(levels.area), bool)
     used[links.receiver] = used[links.source] = True
     divided = np.zeros_like(used)
     for element in reversed(levels.below):
         parent = levels.parent[element]
         divided[parent[(used | divided)[element]]] = True
-    roots = len(levels.hierarchy.side_face)
-    return roots + sum(int(divided[levels.parent[element]].sum()) for element in levels.below)
+    roots, clusters = len(levels.hierarchy.side_face), levels.clusters
+    within = levels.below if clusters is None else levels.below[len(clusters.below) + 1 :]
+    return roots + sum(int(divided[levels.parent[element]].sum()) for element in within)
