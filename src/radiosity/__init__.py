@@ -75,6 +75,12 @@ def _gather(*of, **options):
     return Gather.of(*of, **options)
 
 
+def _sight(*of):
+    from .sensors.sight import sight
+
+    return sight(*of)
+
+
 def _adapt(*of, **options):
     from .run.adapt import adapt
 
@@ -90,6 +96,7 @@ def _on_cluster(*of):
 HOOKS["export"] = _export  # of `Solution.export`
 HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)` and `solve(scene, adaptive=True)`
 HOOKS["gather"] = _gather  # of pictures with a final gather
+HOOKS["sight"] = _sight  # of `solve(scene, importance=...)`
 HOOKS["cluster"] = _on_cluster  # of `solve(scene, cluster=...)`
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.

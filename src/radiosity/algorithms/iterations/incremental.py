@@ -15,13 +15,13 @@ from ...device.backend import upload
 from ...problem.model import Problem
 from ..base import Swept
 from .control import SHARE, Control, source_constant
-from .exchange import LINE, Exchange
+from .exchange import Exchange
 from .polynomials import end_of_polynomials
 from .state import IncrementalState
 
 
 class Incremental:
-    """Power received and unsent of all replicates, in units of a quantum / LINE.
+    """Power received and unsent of all replicates, in units of a quantum / `Exchange.unit`.
 
     Attributes:
         received: (slots * columns,) Int64, all that arrived.
@@ -57,7 +57,7 @@ class Incremental:
             self.probing = self.control.probe(max(more // SHARE, 1))
             # B - beta solves the equation of the source E - (1 - rho f) beta
             source += np.array(exchange.scattered(self.control.received()) - self.control.constant())
-        new = np.rint(source * (float(more) * LINE))
+        new = np.rint(source * (float(more) * exchange.unit))
         self.unsent = upload(types.Float64, np.array(self.unsent) + new)
         self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.columns).sum(axis=1)
 
@@ -69,7 +69,7 @@ class Incremental:
         exchange, types = self.exchange, self.exchange.types
         if not dr.any(self.unsent != 0):
             return 0  # no step is counted: a run that continues here calls this twice
-        expected = types.UInt64(exchange.largest(self.unsent))
+        expected = exchange.lines_of(self.unsent)
         if exchange.basis.size > 1:
             self.unsent, expected = end_of_polynomials(exchange, self.unsent, self.quanta)
         lines, fired = exchange.send(self.unsent, expected)
@@ -82,7 +82,7 @@ class Incremental:
     @property
     def scale(self) -> float:
         """One unit of the received power over Phi."""
-        return 1.0 / (float(self.quanta) * LINE)
+        return 1.0 / (float(self.quanta) * self.exchange.unit)
 
     def capture(self) -> IncrementalState:
         """Return copies of the power."""
