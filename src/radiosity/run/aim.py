@@ -53,8 +53,8 @@ class Aim:
         aim = Aim(f"{called} ({sha256(share.tobytes()).hexdigest()[:12]})", share, radiosity=True)
         if not (share * patches.scatter.albedo.max(axis=1)).any():
             raise MethodError(
-                f"{patches.scene.source}: {called} see no patch that reflects light, so there is nothing to share lines out by: "
-                "turn them, or leave importance out"
+                f"{patches.scene.source}: no patch that reflects light is seen by {called}, so that there is nothing to share "
+                "lines out by: turn the view, or leave importance out"
             )
         return aim
 

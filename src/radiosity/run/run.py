@@ -26,8 +26,8 @@ from ..solution.status import NOT_REACHED
 from ..tally import unmet
 from ..tracing.geometry import Geometry
 from . import memory_estimate
-from .baseline_budget import warn_of_missing
 from .aim import Aim
+from .baseline_budget import warn_of_missing
 from .budget import FULL, Budget, Progressed, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
 from .choice import Choice
@@ -107,9 +107,7 @@ class Run(Generic[R]):
         self.error_of, self.target = error_of, Target.of(patches, error_of, None if aim is None else aim[0])
         given = {name: value for name, value in {**vars(budget), "error_of": error_of}.items() if value is not None}
         facts = {} if aim is None else {"importance": (aim[0].name, aim[1])}
-        self.record = record(
-            patches, method, part, self.device.name, given, None if choice is None else choice.facts, **facts
-        )
+        self.record = record(patches, method, part, self.device.name, given, None if choice is None else choice.facts, **facts)
         if resume is not None:
             check_same(resume.provenance, self.record.provenance, self.record.kind)
 
@@ -123,6 +121,7 @@ class Run(Generic[R]):
             values = self.resume.state.get("importance")
             self.problem = replace(self.problem, importance=None if values is None else np.asarray(values))
             return aim, int(self.resume.provenance.get("importance_lines", 0))
+        assert isinstance(self.method, Method)  # `aim.method_of`
         self.teller.tell("importance")
         found = aim.shared(self.problem, self.geometry, self.method, self.part.seed)
         self.problem = replace(self.problem, importance=found.values)

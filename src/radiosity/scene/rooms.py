@@ -33,7 +33,7 @@ def rooms() -> Scene:
     end = COUNT * LENGTH
     parts.append(("desk", 0.4, 0.0, box((end - 1.6, 1.4, 0.7), (end - 0.8, 2.6, 0.74))))
     parts.append(("lamp", 0.0, LAMP, [quad((1.6, 1.6, HEIGHT - 0.02), (0, 0.8, 0), (0.8, 0, 0))]))
-    backs = {name: 0.5 for name in between} | {"lamp": 0.7}
+    backs = dict.fromkeys(between, 0.5) | {"lamp": 0.7}
     camera = Camera((end - LENGTH + 0.4, 3.6, 1.7), (end - 1.4, 1.6, 0.9), (0, 0, 1), 65.0, 800, 600)
     return join(parts, source="rooms", cameras=(camera,), backs=backs)
 

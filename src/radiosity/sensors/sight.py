@@ -25,17 +25,17 @@ def sight(scene: Scene, given) -> tuple[str, np.ndarray, np.ndarray]:
     if isinstance(given, str):
         kind, _, number = given.partition(":")
         if kind == "camera" and (not number or number.isdigit()):
-            return _of_camera(f"the camera {given}", _camera(scene, int(number or 1)))
+            return _of_camera(f"camera {number or 1}", _camera(scene, int(number or 1)))
         if given == "sensors":
             return _of_sensors("the scene's sensors", Sensors.of_scene(scene))
     if isinstance(given, Camera):
-        return _of_camera("the camera", given)
+        return _of_camera("a camera", given)
     if isinstance(given, Sensors):
         return _of_sensors("sensors", given)
     shown = f"'{given}'" if isinstance(given, str) else type(given).__name__
     raise MethodError(
-        f"importance is {shown}; give surface:NAME, camera, camera:2 (the scene's second), sensors (those of the scene's file), a "
-        "Camera or Sensors"
+        f"importance is {shown}; give surface:NAME, camera, camera:2 (the scene's second), sensors (those of the scene's "
+        "file), a Camera or Sensors"
     )
 
 

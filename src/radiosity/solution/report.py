@@ -53,7 +53,7 @@ def _chosen(solution) -> list[str]:
 
 def _importance(solution) -> list[str]:
     name = solution.provenance.get("importance")
-    return [f"lines for {printable(name)}: shared out by importance; other patches have larger errors"] if name else []
+    return [f"shared    lines are shared out for {printable(name)}; other patches have larger errors"] if name else []
 
 
 def _counted(solution) -> str:

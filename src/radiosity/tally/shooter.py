@@ -97,8 +97,8 @@ class Shooter:
 
         Args:
             counts: (total,) UInt32, lines that each patch number fires now.
-            weights: (total * n_groups,) Int32 or Int64, what each line of a patch number adds to the slot that it hits; with a basis of
-                more functions (total * n_columns,) Float, the coefficients of a polynomial.
+            weights: (total * n_groups,) Int32 or Int64, what each line of a patch number adds to the slot that it hits; with a
+                basis of more functions (total * n_columns,) Float, the coefficients of a polynomial.
             ends: what lines add at both ends, in place of ``weights``.
             pairs: called for every launch with patch numbers and the slots that their lines hit, (m,) uint32 each; the
                 arrays are valid until it returns.

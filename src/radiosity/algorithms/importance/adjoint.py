@@ -67,7 +67,7 @@ class Importance:
             power, hits, fired = _irradiance(geometry, ends[end], shares, method, base.moved(number), QUANTA << (number // 4))
             found[end], lines = float(power @ wanted[end]), lines + fired
             known[end] = blocks.smooth(power, hits)
-            if end and 0 < abs(found[0] - found[1]) <= ALIKE * min(found):
+            if end and min(found) > 0 and abs(found[0] - found[1]) <= ALIKE * min(found):
                 break
         values = known[1]
         assert values is not None
@@ -86,7 +86,9 @@ def _emitting(problem: Problem, emission: np.ndarray) -> Problem:
     return replace(problem, groups=groups, source=replace(problem.source, power=float(emission @ problem.patches.area)))
 
 
-def _irradiance(geometry, problem: Problem, shares, method: Method, seed: Seed, quanta: int) -> tuple[np.ndarray, np.ndarray, int]:
+def _irradiance(
+    geometry, problem: Problem, shares, method: Method, seed: Seed, quanta: int
+) -> tuple[np.ndarray, np.ndarray, int]:
     """Return the power that patches receive, (n_patches,) W or lm, their hits, and the number of lines."""
     run = Iteration(geometry, replace(problem, importance=shares), method, seed, 1)
     lines = 0
