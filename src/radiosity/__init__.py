@@ -75,6 +75,12 @@ def _gather(*of, **options):
     return Gather.of(*of, **options)
 
 
+def _sight(*of):
+    from .sensors.sight import sight
+
+    return sight(*of)
+
+
 def _adapt(*of, **options):
     from .run.adapt import adapt
 
@@ -109,6 +115,7 @@ HOOKS["export"] = _export  # of `Solution.export`
 HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)` and `solve(scene, adaptive=True)`
 HOOKS["cut at contacts"] = _cut_at_contacts  # of `subdivide(scene, contacts=True)`
 HOOKS["gather"] = _gather  # of pictures with a final gather
+HOOKS["sight"] = _sight  # of `solve(scene, importance=...)`
 HOOKS["cluster"] = _on_cluster  # of `solve(scene, cluster=...)`
 HOOKS["connected"] = _connected  # of what solves and traces on one cluster
 HOOKS["sensing"] = _sensing  # of `measure(scene, sensors, cluster=...)`

@@ -10,7 +10,7 @@ from cyclopts import Group, Parameter
 from ..errors import MethodError, OutputError, printable
 from . import interrupts, outputs
 from .exchange import named_numbers
-from .options import Count, Length, Outputs, Share
+from .options import Count, Flag, Length, Outputs, Share
 from .places import NOWHERE, PlaceOptions, observer_of, sensors_of
 from .solve import NOT_REACHED
 from .solve_options import RUN, Machine, SceneOptions, Unset
@@ -26,6 +26,8 @@ class Tracing:
         error: Trace until the relative error is below this, such as 1% (the default); in 95 % of runs the true error then is. A
             run that ends above it has the exit status 3.
         error_of: What --error is the error of: the mean of each set of sensors, or the worst sensor.
+        importance: Share out the lines of the solution by what they add at the sensors: for sensors far from all lamps, which
+            must be surfaces (docs/importance.md).
         patch_size: Longest edge of a patch, in metres. Default: about 20 000 patches in all.
         cells: Cut every face into CELLS x CELLS patches.
     """
@@ -33,6 +35,7 @@ class Tracing:
     rays: Count = None
     error: Share = None
     error_of: Literal["mean", "worst"] = "mean"
+    importance: Flag = False
     patch_size: Length = None
     cells: Count = None
 
@@ -146,7 +149,7 @@ def _rate(loaded, observers: list[tuple[float, ...]], options: dict) -> int:
 
     from .progress import bar
 
-    asked = {key: value for key, value in options.items() if key != "error_of"}
+    asked = {key: value for key, value in options.items() if key not in ("error_of", "importance")}
     with bar() as progress:
         rated = rd.unified_glare_rating(
             loaded, [o[:3] for o in observers], [o[3:] for o in observers], **asked, progress=progress

@@ -48,7 +48,7 @@ def solve(
     ----------
     scene
         A scene file (.xml .glb .gltf .obj .ply .stl .mgf .rad .hbjson .ifc .vs3 .toml) or a built-in scene: cornell-box,
-        room, studio, labyrinth.
+        room, rooms, studio, labyrinth.
     method
         Name of a method; `radiosity methods` lists them. auto chooses one for the scene, by a short pilot run. The options
         below change a part of the method. Without a method they change random-walk.

@@ -23,6 +23,8 @@ class Problem:
         source: the scalar problem of the largest band of each row (contract 3).
         rows: what fires lines: the patches, and lights without area.
         lights: lights without area, or None.
+        importance: (n_patches,) float64, positive: what light from each patch is worth, by which lines are shared out; None: all
+            light is worth the same.
         prefers_sources: what emits gets a part of all lines, also by methods that would give it none.
     """
 
@@ -31,6 +33,7 @@ class Problem:
     source: Source
     rows: SourceRows
     lights: AllLights | None = None
+    importance: np.ndarray | None = None
     prefers_sources: bool = False
 
     @cached_property

@@ -9,6 +9,7 @@ from ..patches import Patches
 from ..scene.named import surfaces_called
 from ..solution.errors import SURE
 from ..solution.intervals import student
+from .aim import Aim
 from .snapshot import Snapshot
 
 SURFACE, MEAN = KINDS = ("surface:", "mean:")
@@ -23,35 +24,41 @@ class Target:
     Attributes:
         rows: the patches whose error it is.
         surfaces: (k,) int, the surfaces whose mean it is; None: the error is the RMS over the patches.
+        aim: what lines are shared out for, where the error is that of its value.
     """
 
     rows: np.ndarray | slice = field(default_factory=lambda: slice(None))
     surfaces: np.ndarray | None = None
+    aim: Aim | None = None
 
     @staticmethod
-    def of(patches: Patches, name: str | None) -> "Target":
+    def of(patches: Patches, name: str | None, aim: Aim | None = None) -> "Target":
         """Make the target from a text: ``surface:NAME`` is the RMS over the patches of a surface, ``mean:NAME`` its mean; None is
-        all patches.
+        what lines are shared out for (``aim``), or else all patches.
 
         Raises:
             MethodError: the text has another form, or there is no such surface.
         """
         if name is None:
-            return Target()
+            return Target() if aim is None else Target(np.flatnonzero(aim.share), aim=aim)
         rows = rows_of(patches, name)
         return Target(rows, np.unique(patches.surface[rows]) if str(name).startswith(MEAN) else None)
 
     def error(self, snapshot: Snapshot) -> float:
         """Return the relative error, the largest of the bands; NaN where unknown."""
+        if self.aim is not None:
+            return snapshot.error_of_sum(self.aim.share, radiosity=self.aim.radiosity)
         return snapshot.error(self.rows) if self.surfaces is None else snapshot.error_of_mean(self.rows, self.surfaces)
 
     def judged(self, snapshot: Snapshot) -> bool:
         """Return whether the error comes from enough lines."""
+        if self.aim is not None:
+            return snapshot.judged_sum(self.aim.share)
         return snapshot.judged(self.rows) if self.surfaces is None else snapshot.judged_mean(self.rows)
 
     def margin(self, snapshot: Snapshot) -> float:
         """Return how many times the stated error the true one may be; for a mean by Student's distribution."""
-        return snapshot.margin(self.rows) if self.surfaces is None else student(SURE, snapshot.replicates)
+        return snapshot.margin(self.rows) if self.surfaces is None and self.aim is None else student(SURE, snapshot.replicates)
 
 
 def rows_of(patches: Patches, name: str) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 from ..algorithms.in_parts import in_parts
@@ -82,7 +83,9 @@ def _merged(given: list[Solution]) -> Solution:
     from .run import Run
 
     device = first.provenance.get("device", "auto")
-    run = Run(first.patches, _method(first), _budget(given), _whole(parts), device, record=Record)
+    aim = first.provenance.get("importance")
+    record = Record if aim is None else partial(Record, importance=(aim, first.provenance["importance_lines"]))
+    run = Run(first.patches, _method(first), _budget(given), _whole(parts), device, record=record)
     for solution in given:
         different = differences(solution.provenance, run.record.provenance, FACTS, ("then", "now"))
         if different:

@@ -36,6 +36,7 @@ class AbstractRecord(ABC, Generic[R]):
         device: its name.
         budget: as it was given, without what was not.
         choice: what is known of the choice of the method, where it was left to the program.
+        importance: what lines are shared out for, and the lines of the pilot that found how.
         kind: what the results are called.
         has_errors: True where results have an error, which a run may tell or aim at.
     """
@@ -46,6 +47,7 @@ class AbstractRecord(ABC, Generic[R]):
     device: str
     budget: dict
     choice: dict | None = None
+    importance: tuple[str, int] | None = None
     kind: ClassVar[str] = SOLUTION
     has_errors: ClassVar[bool] = True
 
@@ -79,6 +81,7 @@ class AbstractRecord(ABC, Generic[R]):
             "tracing": TRACING,
             "budget": self.budget,
             **({} if self.choice is None else {"auto": self.choice}),
+            **({} if self.importance is None else dict(zip(("importance", "importance_lines"), self.importance, strict=True))),
             "versions": versions(),
         }
 
@@ -105,7 +108,7 @@ class Record(AbstractRecord[Solution]):
             mean,
             error,
             snapshot.arrivals,
-            snapshot.lines + int((self.choice or {}).get("pilot_lines", 0)),
+            snapshot.lines + int((self.choice or {}).get("pilot_lines", 0)) + (self.importance or ("", 0))[1],
             seconds,
             snapshot.quanta,
             self.part.replicates,

@@ -7,6 +7,8 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Generic
 
+import numpy as np
+
 from ..algorithms.base import AbstractAlgorithm, AbstractMeanTally, Interrupted
 from ..algorithms.in_parts import InParts, InTurn, in_parts
 from ..algorithms.merging import merge as merge_states
@@ -24,6 +26,7 @@ from ..solution.status import NOT_REACHED
 from ..tally import unmet
 from ..tracing.geometry import Geometry
 from . import memory_estimate
+from .aim import Aim
 from .baseline_budget import warn_of_missing
 from .budget import Budget, Progressed, next_quanta, on_ladder, rung_after
 from .checkpoint import Checkpoint
@@ -63,6 +66,7 @@ class Run(Generic[R]):
         checkpoint: Checkpoint | None = None,
         error_of: str | None = None,
         choice: Choice | None = None,
+        importance: Any = None,
         *,
         record: Callable[..., AbstractRecord[R]],
         problem: Problem | None = None,
@@ -91,17 +95,37 @@ class Run(Generic[R]):
         self.rung = part.rung(method.order, self.problem.source.share)
         part.check(method, budget, self.rung)
         self.teller, self.stop = Teller(budget, listener, 0.0 if choice is None else choice.seconds), Stop()
-        self.error_of, self.target = error_of, Target.of(patches, error_of)
         self.teller.tell("compiling")
         if choice is not None and budget.rays is not None:  # lines of the pilot are lines
             self.budget = replace(budget, rays=max(budget.rays - choice.extra_lines, 1))
         self.device = choose(device)
-        given = {name: value for name, value in {**vars(budget), "error_of": error_of}.items() if value is not None}
-        self.record = record(patches, method, part, self.device.name, given, None if choice is None else choice.facts)
-        if resume is not None:
-            check_same(resume.provenance, self.record.provenance, self.record.kind)
         made = None if choice is None else choice.geometry
         self.geometry = Geometry(self.problem.patches, self.device) if made is None else made
+        aim = None if importance is None else self._share_out(importance)
+        self.error_of, self.target = error_of, Target.of(patches, error_of, None if aim is None else aim[0])
+        given = {name: value for name, value in {**vars(budget), "error_of": error_of}.items() if value is not None}
+        facts = {} if aim is None else {"importance": (aim[0].name, aim[1])}
+        self.record = record(patches, method, part, self.device.name, given, None if choice is None else choice.facts, **facts)
+        if resume is not None:
+            check_same(resume.provenance, self.record.provenance, self.record.kind)
+
+    def _share_out(self, importance: Any) -> tuple[Aim, int]:
+        """Share lines out by importance, and return what for, and the lines that the pilot took.
+
+        A run that goes on has the importance of its state.
+        """
+        aim = Aim.of(importance, self.geometry, self.problem.patches)
+        if self.resume is not None:
+            values = self.resume.state.get("importance")
+            self.problem = replace(self.problem, importance=None if values is None else np.asarray(values))
+            return aim, int(self.resume.provenance.get("importance_lines", 0))
+        assert isinstance(self.method, Method)  # `aim.method_of`
+        self.teller.tell("importance")
+        found = aim.shared(self.problem, self.geometry, self.method, self.part.seed)
+        self.problem = replace(self.problem, importance=found.values)
+        if self.budget.rays is not None:
+            self.budget = replace(self.budget, rays=max(self.budget.rays - found.lines, 1))
+        return aim, found.lines
 
     def solve(self) -> R:
         """Run stage after stage until the budget is used up, or until Ctrl-C."""

@@ -4,7 +4,19 @@ from ..errors import MethodError
 
 OLDER = {"randomisation": "shared", "basis": "constant"}  # of solutions written before there was a choice
 # like devices, like bits; a line set has a geometry and sources in place of a scene: its light does not matter
-SAME = ("scene", "geometry", "sources", "cut", "seed", "replicates", "first_replicate", "all_replicates", "device", "tracing")
+SAME = (
+    "scene",
+    "geometry",
+    "sources",
+    "cut",
+    "seed",
+    "replicates",
+    "first_replicate",
+    "all_replicates",
+    "device",
+    "tracing",
+    "importance",
+)
 WHOLE = {"first_replicate": 0}  # where nothing is said
 
 

@@ -189,6 +189,34 @@ class Snapshot:
         lit, blind = mean > 0, (mean <= 0) & (error > 0)
         return float((error[lit] / mean[lit]).max()) if lit.any() and not blind.any() else float("nan")
 
+    def sum_over(self, share: np.ndarray, *, radiosity: bool) -> np.ndarray:
+        """Return a weighted sum over patches in each replicate, (replicates, n_bands) W/m² or lm/m².
+
+        Args:
+            share: (n_patches,) weights.
+            radiosity: the sum of radiosity, emission included; False: of irradiance.
+        """
+        groups, found = self.problem.groups, []
+        weights = share / self.problem.patches.area
+        for group in range(groups.n_groups):
+            values, unit = self.tally.irradiance(self.problem, self.state, group)
+            rows = [groups.scatter.of_rows(row, group) if radiosity else row for row in values]
+            emitted = float(groups.emission[:, group] @ share) if radiosity else 0.0
+            found.append(np.array([float(row @ weights) for row in rows]) * unit + emitted)
+        return np.stack([found[g] * s for g, s in zip(groups.index, groups.scale, strict=True)], axis=-1)
+
+    def error_of_sum(self, share: np.ndarray, *, radiosity: bool) -> float:
+        """Return the relative standard error of a weighted sum (see `sum_over`), the largest of the bands; NaN where unknown."""
+        mean, error = mean_and_error(self.sum_over(share, radiosity=radiosity))
+        lit = mean > 0
+        return float((error[lit] / mean[lit]).max()) if lit.any() else float("nan")
+
+    def judged_sum(self, share: np.ndarray) -> bool:
+        """Return whether a weighted sum comes from `FEW` hits or more in each replicate."""
+        hits, power = self.arrivals, share[:, None] * self.irradiance[0]
+        part = power / np.maximum(power.sum(axis=0), 1e-300)
+        return bool(power.any() and (FEW * self.replicates * (part**2 / np.maximum(hits, 1)[:, None]).sum(axis=0) <= 1).all())
+
     def judged_mean(self, rows: np.ndarray | slice) -> bool:
         """Return whether some patches have `FEW` hits or more, counted as in `judged`."""
         patches, mean = self.problem.patches, self.irradiance[0]

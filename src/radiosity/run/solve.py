@@ -53,6 +53,7 @@ def solve(
     watch: Callable[[Solution], None] | None = None,
     resume: Solution | None = None,
     error_of: str | None = None,
+    importance: Any = None,
     adaptive: bool | int = False,
     checkpoint: str | Path | Checkpoint | None = None,
     checkpoint_every: float = 30.0,
@@ -92,6 +93,10 @@ def solve(
             budget counts its lines. The result is that of one run with as many quanta in the end. Runs whose results depend on
             their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
             from a stage that is a power of two.
+        importance: share lines out for one result, without a bias: "surface:NAME" (or a pattern; the mean irradiance over it),
+            "camera" or "camera:2" of the scene, "sensors" of the scene's file, a `Camera` or `Sensors` (the mean radiosity that
+            they see). ``error`` then is that of this result, unless error_of says another. Other patches have larger errors.
+            For scenes whose lights are surfaces, and incremental iterations, which "auto" takes (docs/importance.md).
         adaptive: True, or a number of patches: the scene is cut first where light varies, by `adapt` with the same seed, and
             then solved. The pilots that find the mesh come on top of the budget. To go on from its solution (``resume``), leave
             it out: the mesh is kept.
@@ -140,6 +145,7 @@ def solve(
                 progress=progress,
                 resume=resume,
                 error_of=error_of,
+                importance=importance,
                 checkpoint=checkpoint,
                 checkpoint_every=checkpoint_every,
             )
@@ -165,6 +171,7 @@ def prepared(
     progress=None,
     resume=None,
     error_of=None,
+    importance=None,
     checkpoint=None,
     checkpoint_every=30.0,
 ) -> "Run[Solution]":
@@ -195,6 +202,10 @@ def prepared(
     if error_of is not None and error is None:
         raise MethodError("error_of says whose error is to be reached; give the error, too (error=0.01, --error 1%)")
     choice = None
+    if importance is not None:
+        from .aim import method_of
+
+        chosen = method_of(chosen, scene)
     if isinstance(chosen, Auto):
         from .choice import choice_for
 
@@ -208,7 +219,7 @@ def prepared(
     from .record import Record
     from .run import Run
 
-    run = Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of, choice, record=Record)
+    run = Run(scene, chosen, budget, part, device, progress, resume, keeper, error_of, choice, importance, record=Record)
     tell(scene.scene)  # what searches the faces comes after the memory estimate
     local = chosen.lines == "local" or chosen.first_shot if isinstance(chosen, Method) else chosen.factors == "lines"
     if local:

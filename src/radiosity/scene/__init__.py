@@ -15,7 +15,7 @@ def load_scene(name, *, max_reflectance: float = 0.95, strict: bool = False, all
 
     Args:
         name: path of a .xml (Mitsuba), .glb, .gltf, .obj, .ply, .stl, .mgf, .rad (Radiance), .hbjson (honeybee), .ifc, .vs3
-            (View3D) or .toml file, or a built-in scene: ``cornell-box``, ``room``, ``studio``, ``labyrinth``.
+            (View3D) or .toml file, or a built-in scene: ``cornell-box``, ``room``, ``rooms``, ``studio``, ``labyrinth``.
         max_reflectance: larger reflectances in the file are brought down to this, with one warning.
         strict: faults in a file that could be skipped with a warning are errors.
         allow_outside: the file may name others (includes, meshes, textures) that lie outside its folder.

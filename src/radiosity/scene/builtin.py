@@ -3,6 +3,7 @@
 import numpy as np
 
 from .model import Scene
+from .rooms import rooms
 from .shapes import box, join, quad
 from .studio import studio
 
@@ -102,6 +103,7 @@ def labyrinth(mean_reflectance: float = 0.5, cells: int = 4) -> Scene:
 SCENES = {
     "cornell-box": cornell_box,
     "room": room,
+    "rooms": rooms,
     "studio": studio,
     "labyrinth": labyrinth,
     "labyrinth-0.1": lambda: labyrinth(0.1),

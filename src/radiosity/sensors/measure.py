@@ -34,6 +34,7 @@ def measure(
     error: float | None = None,
     error_of: str = "mean",
     groups: bool | dict[str, list[str]] = False,
+    importance: bool = False,
     replicates: int | None = None,
     seed: int = 0,
     device: str = "auto",
@@ -56,6 +57,8 @@ def measure(
         groups: True measures the light of each group by itself, so that it can be dimmed afterwards (`Measurement.dimmed`):
             luminaires by their group (or name), suns, the sky, and surfaces that emit by name. A dictionary makes groups of names
             or patterns; what it leaves out is the group "others".
+        importance: the lines of the solution are shared out by what they add at the sensors: for sensors far from all lamps. The
+            lamps are surfaces (docs/importance.md).
         replicates: independent randomised runs, those of the solution by default; from 2 on there are standard errors.
         seed: with the same inputs, the same bits.
         device, progress, memory, cluster: as of `solve`.
@@ -88,7 +91,8 @@ def measure(
         begun = perf_counter()
 
         def one(part: Scene | Patches | Solution, budget: Budget) -> Measurement:
-            return traced(part, sensors, budget, error_of, replicates, number, device, progress, cluster=client)[1]
+            options = {"cluster": client, "importance": importance}
+            return traced(part, sensors, budget, error_of, replicates, number, device, progress, **options)[1]
 
         if groups is False:
             found = one(scene, Budget(rays=rays, error=error))

@@ -32,6 +32,7 @@ MOST = 1 << 20  # lines of a sensor in each replicate
 AT_ONCE = 1 << 24  # lines of a launch: between launches a run can be interrupted
 SHARE = 0.5  # of the lines goes to the solution, where there is none yet; and of the error, at the end
 ROUGH, ROUGHEST = 10.0, 0.2  # times the error of sensors, at most: the error of a solution of all patches, at first
+IMPORTANT = 0.7  # of the error of sensors: that of a solution for them
 FINER = 0.25  # of its error is that of the next one
 BEHIND = 0.5  # share of lines that meet backs: a sensor is likely inside of something
 
@@ -105,13 +106,27 @@ def traced(
     *,
     direct: bool = True,
     cluster: Any = None,
+    importance: bool = False,
 ) -> tuple[Solution, Measurement]:
     """Solve where there is no solution yet, and trace the lines of sensors.
 
     Each sensor sees many patches, so that a rough solution is mostly enough. Where it is not, it goes on. An error that is not
     reached is told.
+
+    Args:
+        importance: lines of the solution are shared out for the sensors, and its error is that of what they see.
+
+    Raises:
+        MethodError: importance for a solution that is there already.
     """
     options: dict[str, Any] = {"seed": seed, "device": device, "progress": progress, "cluster": cluster}
+    if importance:
+        if isinstance(given, Solution):
+            raise MethodError(
+                "importance shares out the lines of a solution, and this one is there already: give the scene, or solve it with "
+                "importance=sensors"
+            )
+        options["importance"] = sensors
 
     def measured(solution: Solution) -> Measurement:
         left = (
@@ -128,7 +143,7 @@ def traced(
         solution = solve(given, rays=rays, replicates=replicates, **options)
         found = measured(solution)
     else:
-        error = min(ROUGH * budget.error, ROUGHEST)
+        error = IMPORTANT * budget.error if importance else min(ROUGH * budget.error, ROUGHEST)
         solution = solve(given, error=error, replicates=replicates, **options)
         found = measured(solution)
         while found.status == "not reached" and solution.status == "complete" and error > SHARE * budget.error:

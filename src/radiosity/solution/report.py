@@ -23,6 +23,7 @@ def report(solution) -> str:
         f"{len(solution.patches)} patches",
         f"method    {solution.provenance['method']}, seed {solution.provenance['seed']}",
         *_chosen(solution),
+        *_importance(solution),
         f"lines     {solution.rays:,} in {solution.seconds:.2f} s ({number(rate, '.1f')} million a second), {_counted(solution)}",
         f"error     {error}",
         f"status    {_status(solution)}",
@@ -48,6 +49,11 @@ def report(solution) -> str:
 def _chosen(solution) -> list[str]:
     auto = solution.provenance.get("auto")
     return [f"chosen    {auto['chosen']}: {auto['why']}"] if auto else []
+
+
+def _importance(solution) -> list[str]:
+    name = solution.provenance.get("importance")
+    return [f"shared    lines are shared out for {printable(name)}; other patches have larger errors"] if name else []
 
 
 def _counted(solution) -> str:

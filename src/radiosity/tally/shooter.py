@@ -110,8 +110,8 @@ class Shooter:
 
         Args:
             counts: (total,) UInt32, lines that each patch number fires now.
-            weights: (total * n_groups,) Int32, what each line of a patch number adds to the slot that it hits; with a basis of
-                more functions (total * n_columns,) Float, the coefficients of a polynomial.
+            weights: (total * n_groups,) Int32 or Int64, what each line of a patch number adds to the slot that it hits; with a
+                basis of more functions (total * n_columns,) Float, the coefficients of a polynomial.
             ends: what lines add at both ends, in place of ``weights``.
             pairs: called for every launch with patch numbers and the slots that their lines hit, (m,) uint32 each; the
                 arrays are valid until it returns.
@@ -172,7 +172,7 @@ class Shooter:
         for g in range(self.groups if self.basis.size == 1 else 0):
             here, there = number * self.groups + g, landed * self.groups + g
             if ends is None:
-                self._add(types.Int64(dr.gather(types.Int, weights, here)), there, real, mode)
+                self._add(types.Int64(dr.gather(type(weights), weights, here)), there, real, mode)
                 continue
             both = dr.gather(types.Float, ends.density, number) + dr.gather(types.Float, ends.density, landed)
             forth, back = (dr.gather(types.Float, ends.carried, at) / both for at in (here, there))

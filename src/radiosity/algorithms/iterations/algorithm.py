@@ -28,6 +28,7 @@ class Iteration(AbstractAlgorithm[IterationState]):
                 "what sees the patch; estimator 'bidirectional' needs them equal: take collision"
             )
         self.exchange = Exchange(self.geometry, self.problem, method, self.seed, self.replicates)
+        self.importance = self.problem.importance
         self.control = Control(self.exchange) if method.control_variate else None
         if method.order == "incremental":
             self.scheme: Incremental | Regular = Incremental(self.exchange, self.problem, self.control)
@@ -60,6 +61,7 @@ class Iteration(AbstractAlgorithm[IterationState]):
             missed=missed,
             fired_apart=apart,
             step=self.exchange.step,
+            importance=self.importance,
             regular=scheme if isinstance(scheme, RegularState) else None,
             incremental=scheme if isinstance(scheme, IncrementalState) else None,
             control=None if self.control is None else self.control.capture(),
@@ -68,6 +70,7 @@ class Iteration(AbstractAlgorithm[IterationState]):
     def read(self, arrays: Arrays, sizes: Sizes) -> IterationState:
         wanted = {"incremental" if isinstance(self.scheme, Incremental) else "regular"}
         wanted |= {"fired_apart"} if self.exchange.turns > 1 else set()
+        wanted |= {"importance"} if self.importance is not None else set()
         wanted |= {"control"} if self.control is not None else set()
         if not IterationState.lacking(arrays, sizes, wanted):
             state = IterationState.read(arrays, sizes, wanted)
@@ -77,7 +80,8 @@ class Iteration(AbstractAlgorithm[IterationState]):
 
     def restore(self, state: IterationState) -> None:
         self.exchange.shooter.write(state.arrivals, state.fired, state.missed, state.fired_apart)
-        self.exchange.step = state.step
+        self.exchange.step, self.importance = state.step, state.importance
+        self.exchange.share_out_by(state.importance)
         if self.control is not None and state.control is not None:
             self.control.restore(state.control)
         if isinstance(self.scheme, Incremental):

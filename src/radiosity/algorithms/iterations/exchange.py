@@ -5,6 +5,7 @@ floor(C_i + r) - floor(C_(i-1) + r) lines, where C_i is the sum of expectations 
 numbers next to c_i, and its mean is c_i.
 """
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -24,7 +25,15 @@ from ..state import Sizes
 BITS = 30
 LINE = 2**BITS  # fixed point units of one expected line
 MOST = 1 << 29  # lines of a replicate in one iteration, or of its probing lines: what they carry fits in 64 bits
+LEAST_UNITS = 2**12  # of a line, however important: so its power is rounded by less than 0.02 %
 TURNS = 2  # sequences that steps take in turn where both ends of a line score (docs/iterations.md)
+
+
+def units_of_a_quantum(importance: np.ndarray | None) -> int:
+    """Return the fixed point units of a quantum: LINE, or more where lines carry less, so that each has `LEAST_UNITS` or more."""
+    if importance is None:
+        return LINE
+    return LINE << max(math.ceil(math.log2(float(importance.max()) * LEAST_UNITS / LINE)), 0)
 
 
 class Exchange:
@@ -43,6 +52,8 @@ class Exchange:
         beyond: (total * columns,) UInt32, the entry of the other side of each; None where nothing diffuses light.
         emitted: (total * columns,) Float64, E_i A_i over Phi.
         column: (total * columns,) UInt32, replicate * n_columns + column of each entry.
+        unit: fixed point units of a quantum.
+        importance: (total,) Float64, LINE times the lines of a unit that leaves each patch; None: a quantum is a line everywhere.
         step: the number of steps so far: each has rounding offsets of its own.
         turns: the number of sequences of points that steps take in turn; a warm-up has as many others.
         first: the first of the sequences that are used now.
@@ -72,6 +83,8 @@ class Exchange:
         if self.basis.size > 1:  # emission is constant on a patch
             emitted = self._by_function(emitted) * (np.arange(self.columns) % self.basis.size == 0)
         self.emitted = self._tiled(emitted)
+        self.importance: Any = None
+        self.share_out_by(problem.importance)
         self.replicate = self.shooter.tracer.replicate(dr.arange(self.types.UInt32, self.total))
         every = np.arange(replicates)
         slots = np.concatenate([np.repeat(every, self.n), every, every])
@@ -80,6 +93,22 @@ class Exchange:
         self.column = self.by_patch(self.replicate) * self.columns + row % self.columns
         dr.eval(self.replicate, self.column)
         self.step = 0
+
+    def share_out_by(self, importance: np.ndarray | None) -> None:
+        """Share lines out by the importance of patches, (n_patches,) float64."""
+        self.unit = units_of_a_quantum(importance)
+        if importance is not None:
+            self.importance = self._tiled(importance[:, None] * (LINE / self.unit))
+
+    def lines_of(self, power):
+        """Return the expected lines of powers in units of a quantum / `unit`, (total,) UInt64 times LINE.
+
+        Where lines are shared out by importance, a patch with power expects at least 1 / LINE, so that no power is left out.
+        """
+        largest = self.largest(power)
+        if self.importance is None:
+            return self.types.UInt64(largest)
+        return dr.select(largest > 0, self.types.UInt64(dr.maximum(largest * self.importance, 1.0)), 0)
 
     def scattered(self, values):
         """Return what patches send on of received values, (total * columns,) Float64."""
@@ -190,7 +219,8 @@ class Exchange:
         share = power / self.by_patch(dr.select(lines > 0, lines, 1.0))
         if self.basis.size > 1:
             return self.shoot(counts, types.Float(share)), None
-        weights = types.Int(dr.round(share))
+        kind = types.Int if self.importance is None else types.Int64  # a line of little importance carries many quanta
+        weights = kind(dr.round(share))
         dr.eval(weights)
         return self.shoot(counts, weights), lambda: self._left(weights, counts)
 

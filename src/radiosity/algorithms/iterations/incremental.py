@@ -20,7 +20,7 @@ from ...device.backend import upload
 from ...problem.model import Problem
 from ..base import Swept
 from .control import SHARE, Control, source_constant
-from .exchange import LINE, Exchange
+from .exchange import Exchange
 from .polynomials import end_of_polynomials
 from .state import IncrementalState
 
@@ -29,7 +29,7 @@ EXACT = 1 << 32  # quanta up to which all that arrives on a patch is a whole num
 
 
 class Incremental:
-    """Power received and unsent of all replicates, in units of a quantum / LINE.
+    """Power received and unsent of all replicates, in units of a quantum / `Exchange.unit`.
 
     Attributes:
         quanta, begun: N of the stage, and how much of it has been emitted.
@@ -84,7 +84,7 @@ class Incremental:
             self.probing = self.control.probe(max(more // SHARE, 1))
             # B - beta solves the equation of the source E - (1 - rho f) beta
             source += np.array(exchange.scattered(self.control.received()) - self.control.constant())
-        new = np.rint(source * (float(more) * LINE))
+        new = np.rint(source * (float(more) * exchange.unit))
         self.unsent = upload(types.Float64, np.array(self.unsent) + new)
         if self.quanta <= EXACT:
             self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.columns).sum(axis=1)
@@ -97,7 +97,7 @@ class Incremental:
         exchange, types = self.exchange, self.exchange.types
         if not dr.any(self.unsent != 0):
             return 0  # no step is counted: a run that continues here calls this twice
-        expected = types.UInt64(exchange.largest(self.unsent))
+        expected = exchange.lines_of(self.unsent)
         if exchange.basis.size > 1:
             self.unsent, expected = end_of_polynomials(exchange, self.unsent, self.quanta)
         lines, fired = exchange.send(self.unsent, expected)
@@ -110,7 +110,7 @@ class Incremental:
     @property
     def scale(self) -> float:
         """One unit of the received power over Phi."""
-        return 1.0 / (float(self.quanta) * LINE)
+        return 1.0 / (float(self.quanta) * self.exchange.unit)
 
     def capture(self) -> IncrementalState:
         """Return copies of the power."""

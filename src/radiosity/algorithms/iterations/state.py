@@ -110,6 +110,7 @@ class IterationState(AbstractState):
         fired_apart: (sequences, replicates, n_patches), uint32 or uint64, where several sequences are taken in turn; ``fired`` is
             the sum.
         step: the number of steps so far.
+        importance: (n_patches,) float64, by which lines are shared out.
     """
 
     arrivals: np.ndarray = array("replicates", "rows")
@@ -117,6 +118,7 @@ class IterationState(AbstractState):
     missed: np.ndarray = array(2, "replicates")
     fired_apart: np.ndarray | None = array("any", "replicates", "rows", optional=True)
     step: int = number(int, merged=_steps)
+    importance: np.ndarray | None = array("rows", optional=True, merged=alike)
     regular: RegularState | None = part(RegularState, optional=True)
     incremental: IncrementalState | None = part(IncrementalState, optional=True)
     control: ControlState | None = part(ControlState, optional=True)

@@ -10,7 +10,7 @@ from ...problem.quanta import Source
 from ...solution.books import Books, by_difference, exact_sum, exact_totals
 from ..base import AbstractTally, line_of_quanta
 from .control import moments_kept
-from .exchange import LINE
+from .exchange import units_of_a_quantum
 from .state import IncrementalState, IterationState
 
 
@@ -38,7 +38,12 @@ class IterationTally(AbstractTally[IterationState]):
         return _received(problem, state, group, self.basis.size, function)[0]
 
     def line(self, problem: Problem, state: IterationState, group: int) -> np.ndarray | float:
-        """Return the power of a line from the number of lines traced, which in short stages is larger than that of quanta."""
+        """Return the power of a line from the number of lines traced, which in short stages is larger than that of quanta.
+
+        Where lines are shared out by importance, it is that of a line from a patch as important as the one that it hits.
+        """
+        if state.importance is not None:
+            return line_of_quanta(problem, state.quanta, group) / state.importance
         return line_of_quanta(problem, self.lines(problem, state) // len(state.fired), group)
 
     def books(self, problem: Problem, state: IterationState, group: int) -> dict:
@@ -82,6 +87,6 @@ def _exact(problem: Problem, state: IterationState, scheme: IncrementalState, gr
     assert scheme.emitted is not None
     assert scheme.left is not None
     emitted, fired = (exact_sum(power[:, group].astype(np.uint64)) << 32 for power in (scheme.emitted, scheme.left))
-    watts = problem.source.power / state.quanta / LINE / 2**32 / replicates
+    watts = problem.source.power / state.quanta / units_of_a_quantum(state.importance) / 2**32 / replicates
     escaped, lost = (exact_sum(row) << 32 for row in missed)
     return Books(emitted, fired, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()
