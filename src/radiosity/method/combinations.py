@@ -4,7 +4,7 @@ from ..errors import MethodError
 
 # The orders that each kind of run takes; an order that no list names is refused
 FIRING_ORDERS = ("depth-first", "breadth-first", "staged", "well-distributed")
-WALK_ORDERS = ("depth-first", "breadth-first", "staged")
+WALK_ORDERS = ("depth-first", "breadth-first", "staged", "sorted")
 ITERATIONS = ("incremental", "regular")
 GLOBAL_ORDERS = ("multipath", "matrix", "regular")
 
@@ -30,6 +30,8 @@ def _local(method) -> str:
                 "it solves the discrete equation only"
             )
         return method.order if method.order in ("matrix", "gather") else "iteration"
+    if method.order == "sorted":
+        _refuse_sorted(method)
     fires = method.equation == "discrete" and method.estimator == "collision" and method.absorption in ("auto", "rounded")
     if fires and method.order in FIRING_ORDERS:
         return "firing"
@@ -60,6 +62,18 @@ def _local(method) -> str:
             raise MethodError("estimator 'gathering' goes back along walks whose hits wavefronts have kept; take breadth-first")
         return "gathering"
     return "walks"
+
+
+def _refuse_sorted(method) -> None:
+    if method.equation != "continuous":
+        raise MethodError(
+            "order 'sorted' sorts particles by where on a face they are, which the discrete equation forgets; take --equation "
+            "continuous, or another order"
+        )
+    if method.absorption == "fractional":
+        raise MethodError("order 'sorted' decides itself which particles go on; leave absorption out")
+    if method.estimator == "gathering":
+        raise MethodError("order 'sorted' is for particles that shoot; take another estimator, or --order breadth-first")
 
 
 def _global(method) -> str:

@@ -4,6 +4,7 @@ ORDERS = {
     "depth-first": "each walk is followed to its end",
     "breadth-first": "wavefront after wavefront: all light reflected k times before any reflected k + 1 times",
     "staged": "breadth-first in stages of ever more, weaker lines; a picture after each",
+    "sorted": "breadth-first; before each wavefront particles are sorted by place, and take their numbers in that order",
     "well-distributed": "in stages of half the quantum each; a patch fires what it lacks to its share",
     "incremental": "iterations that send the light not sent yet, in ever fewer lines",
     "regular": "iterations that send all light anew, averaged",

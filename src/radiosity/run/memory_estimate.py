@@ -23,6 +23,7 @@ REACHED = 100  # bytes a cell within a kernel, while planes are fitted; 76 to 10
 SMOOTHED, SMOOTHED_ONE = 650, 80  # bytes a patch, and a patch in a replicate, while values are smoothed; 8 of a group are kept
 TURNS = 12  # bytes a patch in a replicate, and 8 more in each group of bands: what steps in turns keep apart
 SKY, THROUGH = 165, 90  # bytes an entry of a sky's table, and of tables of its lines through openings, at their peak
+SORTED = 150e6  # bytes of particles that are sorted together, whose keys are copied
 PAIR = 24  # bytes a pair of patches that is counted, while counts are merged
 
 
@@ -66,6 +67,8 @@ def memory_needed(method: Method, patches: Patches, groups: int, replicates: int
     groups *= size
     total = fixed + FACE * patches.scene.n_faces + n * (one.patch + one.band * size * len(patches.scene.bands))
     total += n * replicates * (one.replicate + one.group * groups)
+    if method.order == "sorted":
+        total += SORTED
     if method.estimator == "bidirectional":
         total += n * replicates * (TURNS + 8 * groups)
     if method.reconstruction == "local-linear":

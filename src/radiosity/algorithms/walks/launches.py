@@ -38,6 +38,24 @@ class AbstractWalks(AbstractAlgorithm[S]):
     def _look(self) -> None:
         """Note which counters wrapped around."""
 
+    def _chunks(self, begun: Begun, limit: int) -> int:
+        """Return the number of chunks of walks that begin together."""
+        return -(-begun.batch.total // chunk(self.geometry.device.types))
+
+    def _launches(self, begun: Begun, before: int, done: int, limit: int) -> Iterator[tuple[Any, int | None]]:
+        """Yield what `_follow` takes of walks that begin together, and the chunks done with it: None within a chunk.
+
+        Args:
+            before: N of the stage before.
+            done: chunks that were done before.
+            limit: most lanes of a launch.
+        """
+        types, whole = self.geometry.device.types, chunk(self.geometry.device.types)
+        at = done * whole
+        for launch in begun.batch.launches(types, at, limit=limit):
+            at += launch.lanes
+            yield launch, None if at % whole and at < begun.batch.total else -(-at // whole)
+
     @abstractmethod
     def _follow(self, launch: Launch, largest: int) -> int:
         """Follow all walks of a launch until they end, and return the number of their lines."""
@@ -57,19 +75,17 @@ class AbstractWalks(AbstractAlgorithm[S]):
     def advance(self, quanta: int, swept: Swept) -> None:
         if quanta != self._quanta:
             self._before, self._quanta, self._done, self._finished = self._quanta, quanta, 0, False
-        types, passed, lines = self.geometry.device.types, 0, 0
-        whole = chunk(types)
+        passed, lines = 0, 0
         # of very long walks, fewer in a launch, so that no counter wraps around between two looks
         limit = 1 << max(int(2 * PERIOD * self.problem.source.least_absorbed), 2).bit_length() - 1
         for begun in self._sources(self._before, self._quanta):
-            chunks = -(-begun.batch.total // whole)
-            at = min(max(self._done - passed, 0), chunks) * whole
-            for launch in begun.batch.launches(types, at, limit=limit):
+            chunks = self._chunks(begun, limit)
+            for launch, done in self._launches(begun, self._before, min(max(self._done - passed, 0), chunks), limit):
                 self._enter(begun.block)
-                lines, at = lines + self._follow(launch, begun.largest), at + launch.lanes
-                if at % whole and at < begun.batch.total:
+                lines += self._follow(launch, begun.largest)
+                if done is None:
                     continue  # within a chunk
-                self._done, self._unseen = passed + -(-at // whole), self._unseen + lines
+                self._done, self._unseen = passed + done, self._unseen + lines
                 if self._unseen > PERIOD:
                     self._look()
                     self._unseen = 0

@@ -19,6 +19,7 @@ from ...tally.far_sides import FarSides
 from ...tracing.hits import first_hit, place_of
 from ...tracing.line_tracer import LineTracer
 from ...tracing.ray_generation import BACK, Frame
+from .sorting import Array
 
 SEGMENTS = 64  # number of randomisations; the orders of later segments still differ
 INDEX_BITS = 32
@@ -98,14 +99,35 @@ class PathSegments:
 
     def later(self, particles: ParticleBank, segment, active: Any = True) -> Step:
         """Trace segment number ``segment`` (UInt32, 1 and up), from where the ``active`` particles are."""
-        tracer, types = self.tracer, self.tracer.types
+        tracer = self.tracer
         replicate = tracer.replicate(particles.walk)
         patch = particles.walk - replicate * tracer.n_opaque
-        row = (replicate * SEGMENTS + (segment & (SEGMENTS - 1))) * 2
-        randomisation = [word for half in (0, 1) for word in dr.gather(types.Array4u, self.randomisations, row + half)]
+        randomisation = self._words(replicate, segment)
         index = shuffled(particles.index, key(randomisation, segment))
         numbers = tracer.numbers.points(index, patch + segment * tracer.n_opaque, randomisation, INDEX_BITS)
         numbers = self._moved(numbers, patch + segment * tracer.n_opaque)
+        return self._leave(particles, numbers, replicate, active)
+
+    def in_order(self, particles: ParticleBank, segment, array: Array) -> Step:
+        """Trace segment number ``segment`` of sorted particles: the k-th of them takes the k-th point behind those of earlier
+        walks."""
+        tracer, types = self.tracer, self.tracer.types
+        index = array.before + dr.arange(types.UInt32, particles.size) + 1
+        stream = segment ^ mix(array.block)
+        numbers = tracer.numbers.points(index, stream, self._words(array.replicate, segment), INDEX_BITS)
+        return self._leave(particles, self._moved(numbers, stream), array.replicate, True)
+
+    def part(self, segment, array: Array):
+        """Return where the cuts lie that tell which sorted particles go on after a segment, UInt32: other cuts in each array."""
+        return mix(key(self._words(array.replicate, segment), segment + GOLDEN) + array.before + mix(array.block))
+
+    def _words(self, replicate, segment) -> list:
+        """Return the randomisation of a segment of a replicate."""
+        row = (replicate * SEGMENTS + (segment & (SEGMENTS - 1))) * 2
+        return [word for half in (0, 1) for word in dr.gather(self.tracer.types.Array4u, self.randomisations, row + half)]
+
+    def _leave(self, particles: ParticleBank, numbers: list, replicate, active: Any) -> Step:
+        tracer = self.tracer
         if self.continuous:
             face, s, t = particles.place
             line = Frame.of(tracer.geometry, face).leave(s, t, numbers)

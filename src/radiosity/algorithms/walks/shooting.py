@@ -9,10 +9,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
+import numpy as np
 
 from ...device.backend import frozen
 from ...device.launches import shared
 from ...errors import MethodError
+from ...sampling.numbers import DIMENSIONS
 from ...tally.far_sides import FarSides
 from ...tally.hit_counts import HitCounts
 from ...tally.hit_tally import DENSE, AbstractHitTally, hit_tally
@@ -28,6 +30,7 @@ from .fractions import Fractions
 from .launches import AbstractWalks
 from .particles import ParticleBank, PathSegments, Step
 from .scores import Scores
+from .sorting import FEW, Array, arrays, cuts, order, ranges
 from .source_sampling import Begun, SourceSampling
 from .state import WalkState
 from .tally import WalkTally
@@ -83,14 +86,28 @@ class Walks(AbstractWalks[WalkState]):
 
     @property
     def stage_independent(self) -> bool:
-        return self.fractions is None
+        return self.fractions is None and self.method.order != "sorted"
 
     def _sources(self, before: int, quanta: int) -> Iterator[Begun]:
         if self.fractions is not None:
             return self.fractions.batches(before, quanta)
         return self.source_sampling.batches(self.tracer, before, quanta)
 
-    def _follow(self, launch: Launch, largest: int) -> int:
+    def _chunks(self, begun: Begun, limit: int) -> int:
+        if self.method.order != "sorted":
+            return super()._chunks(begun, limit)
+        return len(ranges(self.tracer, begun.batch, limit))
+
+    def _launches(self, begun: Begun, before: int, done: int, limit: int) -> Iterator[tuple[Any, int | None]]:
+        if self.method.order == "sorted":
+            walks = self.source_sampling.count(before).sum(axis=1, dtype=np.int64)
+            yield from arrays(self.tracer, begun.batch, walks, done, limit)
+        else:
+            yield from super()._launches(begun, before, done, limit)
+
+    def _follow(self, launch: Launch | Array, largest: int) -> int:
+        array = launch if isinstance(launch, Array) else None
+        launch = launch.launch if isinstance(launch, Array) else launch
         types, segment, lines, bits = self.types, 1, launch.lanes, self.tracer.numbers.bits_for(largest)
         number, index, record = launch.read(types)
         if self.fractions is not None:
@@ -99,8 +116,12 @@ class Walks(AbstractWalks[WalkState]):
         self.scores.count_fired(weights, launch.lanes, launch.real(types))
         step = self.segments.first(number, index, record, bits)
         adding = Adding.of(self.hits, launch.width)
-        particles, alive = self._settle(ParticleBank(number, index, (), weights), step, launch.real(types), 1, adding)
+        particles, real = ParticleBank(number, index, (), weights), launch.real(types)
+        if array is not None:
+            particles, step = self._in_order(particles, step, real, 1, array)
+        particles, alive = self._settle(particles, step, real, 1, adding)
         few = TAILS[self.geometry.device.name] if self.method.order == "breadth-first" else launch.width
+        few = few if array is None else FEW
         while True:
             rows = dr.compress(alive)
             if dr.width(rows) == 0:
@@ -112,11 +133,27 @@ class Walks(AbstractWalks[WalkState]):
             lines += particles.size
             self.scores.count_fired(particles.weights, particles.size)
             number = dr.opaque(types.UInt32, segment, particles.size)
-            step = self.segments.later(particles, number)
+            step = self.segments.later(particles, number) if array is None else self.segments.in_order(particles, number, array)
             segment += 1
+            if array is not None:
+                particles, step = self._in_order(particles, step, True, segment, array)
             particles, alive = self._settle(particles, step, True, segment, adding)
         adding.hits.settle()
         return lines
+
+    def _in_order(self, particles: ParticleBank, step: Step, real, segment: int, array: Array) -> tuple[ParticleBank, Step]:
+        """Return particles in the order of their places, where the number of each tells which go on (`sorting.cuts`)."""
+        tracer, types = self.tracer, self.types
+        dr.eval(step.landed, step.place, particles.columns())
+        size = dr.width(step.landed)
+        rows = order(self.geometry, step.place, real & (step.landed < tracer.total), size)
+        landed, *place = (dr.gather(type(column), column, rows) for column in (step.landed, *step.place))
+        on = landed < tracer.total
+        patch = landed - array.replicate * tracer.n_opaque
+        chances = dr.select(on, dr.gather(types.Float, self.scores.survival, patch, on), 0)
+        number = cuts(types, chances, self.segments.part(dr.opaque(types.UInt32, segment), array))
+        dr.eval(landed, place, number)
+        return particles.at(rows), Step(landed, [number] * DIMENSIONS, tuple(place))
 
     def _settle(self, particles: ParticleBank, step, real, segment: int, adding: Adding) -> tuple[ParticleBank, Any]:
         """Score hits and decide which particles go on, in a kernel of its own."""
