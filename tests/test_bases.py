@@ -91,11 +91,15 @@ def lit_by_a_wall(rho: float = 0.0) -> rd.Scene:
     return cube(rho, [[1.0]] + [[0.0]] * 5)
 
 
-@pytest.mark.parametrize("name", [*SOME[:2], pytest.param("regular, everything", marks=pytest.mark.slow)])
+DIRECT = {name: VARIANTS[name] for name in ("incremental", "incremental, control variate", "regular, everything")}
+DIRECT |= {"particles": {"equation": "continuous"}}
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow) if "," in name else name for name in DIRECT])
 def test_moments_are_those_of_the_direct_light(name):
     """The light of one wall on black ones: a closed form at points, integrated with the functions by quadrature."""
     patches, basis = rd.subdivide(lit_by_a_wall(), cells=2), BASES["quadratic"]
-    solution = rd.solve(patches, rd.Method(**VARIANTS[name], basis="quadratic"), rays=400_000, replicates=16, seed=2)
+    solution = rd.solve(patches, rd.Method(**DIRECT[name], basis="quadratic"), rays=400_000, replicates=16, seed=2)
     a, b, w = gauss(12)
     functions = basis.at(a, b, True)
     rows = np.flatnonzero(patches.face > 0)
@@ -203,6 +207,48 @@ def falling(scene: rd.Scene, points: np.ndarray, normals: np.ndarray) -> np.ndar
     return from_points(points, normals, np.tile(scene.vertices[scene.faces[0]], (len(points), 1, 1)))
 
 
+@pytest.mark.parametrize(("bands", "choices"), [(1, {}), (2, {"estimator": "survival", "order": "depth-first"})])
+def test_particles_count_moments_beside_their_hits(bands, choices, tmp_path):
+    """Means have the bits that they have without a basis; coefficients are those of iterations, whose patches are small."""
+    scene = cube([[0.5] * bands] * 6, [[1.0, 0.2][:bands]] + [[0.0, 0.1][:bands]] * 5)
+    patches, budget = rd.subdivide(scene, cells=2), {"rays": 100_000, "replicates": 16}
+    method = rd.Method(equation="continuous", basis="linear", **choices)
+    found = rd.solve(patches, method, **budget)
+    assert np.array_equal(found.irradiance, rd.solve(patches, replace(method, basis="constant"), **budget).irradiance)
+    other = rd.solve(patches, "stochastic-jacobi", basis="linear", **budget, seed=2)
+    error = np.hypot(found.irradiance_coefficients_standard_error, other.irradiance_coefficients_standard_error)
+    z = (found.irradiance_coefficients - other.irradiance_coefficients) / error
+    assert np.sqrt(np.mean(z**2)) < 1.4
+    if bands == 1:
+        part = rd.solve(patches, method, quanta=2**12, replicates=2)
+        part.save(tmp_path / "x.npz")
+        on = rd.solve(patches, method, quanta=2**13, replicates=2, resume=rd.load_solution(tmp_path / "x.npz"))
+        whole = rd.solve(patches, method, quanta=2**13, replicates=2)
+        assert np.array_equal(on.irradiance_coefficients, whole.irradiance_coefficients)
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param("constant", marks=pytest.mark.slow), "linear", pytest.param("quadratic", marks=pytest.mark.slow)]
+)
+def test_a_refine_check_knows_what_polynomials_leave_out(name):
+    """On black walls lit by one: what is left out within patches is that of a closed form, for each degree."""
+    rho = 1e-3  # so that there is a radiosity, and hardly more light than the lamp's
+    scene = lit_by_a_wall(rho)
+    coarse = rd.subdivide(scene, cells=2)
+    fine = halved(halved(halved(coarse)))
+    rows, (u, v), parent = np.flatnonzero(fine.face > 0), middles(fine), parents(fine, coarse)
+    exact = falling(scene, fine.centroid[rows], fine.normal[rows])
+    check = rd.refine_check(coarse, "stochastic-jacobi", basis=name, rays=300_000, replicates=4)
+    solution = check.coarse
+    light = solution.irradiance[parent[rows], 0]
+    if solution.basis.size > 1:
+        polynomials = Polynomials(coarse, solution.basis, solution.irradiance, solution.irradiance_coefficients)
+        light = polynomials.at(parent[rows], u[rows], v[rows])[:, 0]
+    left_out = np.sum((light - exact) ** 2) * fine.area[-1]
+    stated = coarse.area @ check.square_within[:, 0] / rho**2
+    assert stated == pytest.approx(left_out, rel=0.35)
+
+
 def middles(patches: rd.Patches) -> tuple[np.ndarray, np.ndarray]:
     """Face coordinates of the middles of parallelograms."""
     column, row, _ = patches.place
@@ -257,5 +303,5 @@ def test_states_have_a_column_for_each_function():
 
 @pytest.mark.parametrize("choices", [{}, {"order": "gather"}, {"order": "matrix"}, {"lines": "global", "order": "regular"}])
 def test_other_methods_refuse_a_basis(choices):
-    with pytest.raises(rd.MethodError, match="basis 'linear' is for iterations"):
+    with pytest.raises(rd.MethodError, match="basis 'linear' is for iterations of local lines"):
         rd.Method(basis="linear", **choices)

@@ -113,10 +113,11 @@ def _refuse_options(method, found: str) -> None:
             "reconstruction 'smooth' is for values that are means over the lines of each patch: take --order gather; hits are "
             "smoothed by reconstruction 'local-linear', which needs equation continuous"
         )
-    if method.basis != "constant" and found != "iteration":
+    walks = found == "walks" and method.equation == "continuous" and method.reconstruction == "patches"
+    if method.basis != "constant" and found != "iteration" and not walks:
         raise MethodError(
-            f"basis '{method.basis}' is for iterations of local lines, which add up what lines bring as polynomials: take "
-            "--order incremental or regular (--method stochastic-jacobi), or leave basis out"
+            f"basis '{method.basis}' is for iterations of local lines (--method stochastic-jacobi) and for particles that go on "
+            "from where they hit (--method particle-tracing): take one of these, or leave basis out"
         )
     fires = found == "firing" and method.order == "breadth-first" and method.points == "halton"
     if method.coherent and found != "gather" and not fires:

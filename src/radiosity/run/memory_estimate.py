@@ -13,6 +13,7 @@ from ..device import memory
 from ..factors.lines import FEW
 from ..method import Baseline, Method
 from ..patches import Patches
+from ..patches.bases import BASES
 from ..problem.lights.through import COLUMNS, ENTRIES, PLANES, ROWS
 from ..solution.local_linear import Regions
 from .budget import Budget, first_stage
@@ -61,7 +62,9 @@ def memory_needed(method: Method, patches: Patches, groups: int, replicates: int
     """
     one, n = MEMORY_ESTIMATES[method.machine], len(patches)
     fixed = one.fixed * max(1.0, (os.cpu_count() or 1) / 4)  # launches grow with the cores
-    total = fixed + FACE * patches.scene.n_faces + n * (one.patch + one.band * len(patches.scene.bands))
+    size = BASES[method.basis].size  # a group of bands, and a band, has as many numbers as there are functions
+    groups *= size
+    total = fixed + FACE * patches.scene.n_faces + n * (one.patch + one.band * size * len(patches.scene.bands))
     total += n * replicates * (one.replicate + one.group * groups)
     if method.estimator == "bidirectional":
         total += n * replicates * (TURNS + 8 * groups)

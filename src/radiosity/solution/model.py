@@ -138,8 +138,10 @@ class Solution:
 
     @property
     def signed(self) -> bool:
-        """True where lines take power away as well as bring it: there was a control variate."""
-        return bool(self.provenance.get("choices", {}).get("control_variate"))
+        """True where lines take power away as well as bring it: there was a control variate, or they carry polynomials."""
+        choices = self.provenance.get("choices", {})
+        iterated = choices.get("equation") == "discrete" and self.basis.size > 1
+        return bool(choices.get("control_variate")) or iterated
 
     @property
     def by_own_lines(self) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 from .csv_rows import write_rows
 from .model import Solution
 from .percent import UNKNOWN, percent
+from .within import apart, noise
 
 MOST_ROWS = 24
 ORDER = 1.0  # order of the change of patch means in the patch size, see docs/errors.md
@@ -63,11 +64,20 @@ class RefineCheck:
     def square_within(self) -> np.ndarray:
         """The estimated mean square of B(x) less its mean over the patch, which a constant leaves out, (n_patches, n_bands).
 
-        The four children show three quarters of it, where B is linear.
+        The four children show three quarters of it, where B is linear. What polynomials of degree d leave out is B(x) less the
+        polynomial; the children show 1 - 4^-(d + 1) of it.
         """
+        if self.coarse.basis.size > 1:
+            return self._left_out - self.change**2 + self.change_error**2
         apart = self.fine.radiosity - self.fine_mean[self.parent]
         noise = self._mean(self.fine.standard_error**2) - self.fine_error**2
         return (self._mean(apart**2) - noise) * (4 / 3)
+
+    @cached_property
+    def _left_out(self) -> np.ndarray:
+        """The estimated mean square of B(x) less the polynomial of its patch, mean and all, (n_patches, n_bands)."""
+        square = self._mean(apart(self.coarse, self.fine, self.parent) - noise(self.fine)) - noise(self.coarse)
+        return square / (1 - 4.0 ** -(self.coarse.basis.degree + 1))
 
     def _mean(self, values: np.ndarray) -> np.ndarray:
         area, n = self.fine.patches.area, len(self.coarse.patches)

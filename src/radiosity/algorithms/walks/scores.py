@@ -5,11 +5,13 @@ import numpy as np
 
 from ...device.backend import frozen, upload
 from ...method.model import Method
+from ...patches.bases import BASES
 from ...problem.model import Problem
 from ...tally.wraps import Wraps
 from ...tracing.line_tracer import LineTracer
 from ..merge_rules import words
 from .state import WalkState
+from ...tracing.spots import Spot
 
 UNIT = 2**24  # fixed point units of a quantum: as fine as a weight in single precision
 
@@ -29,6 +31,9 @@ class Scores:
         carries: True where particles have powers of their own; else all carry one quantum.
         weighted: True where ``received`` is kept; else only hits are counted.
         received: UInt64, group g of a slot at slot * n_groups + g, in `UNIT`, modulo 2^64; ``upper`` has the upper words.
+        basis: of the light on patches.
+        moments: Int64, the scores times the K - 1 functions of the basis after the first, where hits lie: those of group g of a
+            slot from (slot * n_groups + g) * (K - 1) on, in `UNIT`; None where the basis has one function.
         fired: power that left along lines, summed from the lines' side, for each group.
     """
 
@@ -55,11 +60,15 @@ class Scores:
         if self.weighted:
             self.received = dr.opaque(types.UInt64, 0, tracer.slots * self.n)
             self.upper = Wraps(types, 64)
+        self.basis, self.moments = BASES[method.basis], None
+        if self.basis.size > 1:
+            self.moments = dr.opaque(types.Int64, 0, tracer.slots * self.n * (self.basis.size - 1))
         self.fired = [0] * self.n
 
     def arrays(self) -> tuple:
         """The arrays that kernels write to."""
-        return (self.received,) if self.weighted else ()
+        received = (self.received,) if self.weighted else ()
+        return received if self.moments is None else (*received, self.moments)
 
     def born(self, number) -> tuple:
         """Return the power that particles of patch numbers carry at first."""
@@ -86,11 +95,24 @@ class Scores:
         """Add power to ``fired``."""
         self.fired = [before + new for before, new in zip(self.fired, power, strict=True)]
 
-    def deposit(self, weights, slot, patch, probability, alive, real, mode) -> None:
-        """Score lines that hit slots; called in a kernel. Slots of no patch score what the lines bring."""
+    def deposit(self, weights, slot, patch, probability, alive, real, mode, spot: Spot | None = None) -> None:
+        """Score lines that hit slots; called in a kernel. Slots of no patch score what the lines bring.
+
+        Args:
+            spot: where they hit patches; only where there are moments.
+        """
+        one = self.tracer.types.Float(1)
+        if spot is not None:
+            on = real & (slot < self.tracer.total)
+            functions = self.basis.functions(spot.a, spot.b, spot.select)[1:]
+            for g in range(self.n):
+                score = self._score(weights[g] if self.carries else one, probability, alive) * float(UNIT)
+                for k, value in enumerate(functions):
+                    column = (slot * self.n + g) * len(functions) + k
+                    moment = self.tracer.types.Int64(dr.round(score * value))
+                    dr.scatter_add(self.moments, moment, column, active=on, mode=mode)
         if not self.weighted:
             return
-        one = self.tracer.types.Float(1)
         for g in range(self.n):
             brought = weights[g] if self.carries else one
             (score,) = self.fixed((self._score(brought, probability, alive),))
@@ -153,3 +175,16 @@ class Scores:
             upper = np.concatenate([np.ravel(np.zeros(low.shape, np.uint32) if x is None else x) for low, x in pairs])
         flat = self.upper.of(np.concatenate([rows.ravel(), missed.ravel()]), upper)
         self.received = upload(self.tracer.types.UInt64, flat)
+    def read_moments(self) -> np.ndarray | None:
+        """Copy the moments of patches to the host, (replicates, n_patches, n_groups, K - 1) int64."""
+        if self.moments is None:
+            return None
+        each = self.n * (self.basis.size - 1)
+        flat = frozen(self.moments)[: self.tracer.total * each]
+        return flat.reshape(self.tracer.replicates, self.tracer.n, self.n, self.basis.size - 1)
+
+    def write_moments(self, moments: np.ndarray | None) -> None:
+        """Set the moments to what `read_moments` returned."""
+        if moments is not None:
+            behind = np.zeros(2 * self.tracer.replicates * self.n * (self.basis.size - 1), np.int64)
+            self.moments = upload(self.tracer.types.Int64, np.concatenate([moments.ravel(), behind]))

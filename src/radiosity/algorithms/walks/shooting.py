@@ -19,12 +19,14 @@ from ...tally.hit_tally import DENSE, AbstractHitTally, hit_tally
 from ...tracing.lanes import Launch, sums
 from ...tracing.line_tracer import LineTracer
 from ...tracing.refill import follow, lanes_for
+from ...tracing.spots import Spot
+from ...tracing.spots import spot as spot_on
 from ..base import AbstractTally
 from ..state import Arrays, Sizes
 from .density import DensityTally
 from .fractions import Fractions
 from .launches import AbstractWalks
-from .particles import ParticleBank, PathSegments
+from .particles import ParticleBank, PathSegments, Step
 from .scores import Scores
 from .source_sampling import Begun, SourceSampling
 from .state import WalkState
@@ -133,11 +135,18 @@ class Walks(AbstractWalks[WalkState]):
         else:
             alive = on & (probability > 0) & self.fractions.go_on(particles.index, segment)
         adding.hits.add(step.landed, [], real)
-        self.scores.deposit(particles.weights, step.landed, patch, probability, alive, real, adding.mode)
+        spot = None if self.scores.moments is None else self._spot(step)
+        self.scores.deposit(particles.weights, step.landed, patch, probability, alive, real, adding.mode, spot)
         factor = None if self.fractions is None else self.fractions.factor(segment)
         across = self.scores.across(step.numbers[4], patch, on)
         weights = self.scores.reflected(particles.weights, patch, on, factor, across)
         return ParticleBank(particles.walk, particles.index, self.segments.from_side(step.place, across), weights), alive
+
+    def _spot(self, step: Step) -> Spot:
+        """Return where lines hit patches, of walks that go on from there."""
+        _, s, t = step.place
+        _, place = self.tracer.record(dr.select(step.landed < self.tracer.total, step.landed, 0))
+        return spot_on(self.geometry, place, s, t)
 
     def _to_the_end(self, particles: ParticleBank, segment: int, adding: Adding) -> int:
         """Follow particles in one launch, and return the number of their lines."""
@@ -166,10 +175,12 @@ class Walks(AbstractWalks[WalkState]):
 
     def _state(self, **progress: Any) -> WalkState:
         arrivals, missed = self.hits.read()
-        return WalkState(arrivals=arrivals, missed=missed, **self.scores.read(), **progress)
+        counts = {"arrivals": arrivals, "missed": missed, "moments": self.scores.read_moments()}
+        return WalkState(**counts, **self.scores.read(), **progress)
 
     def read(self, arrays: Arrays, sizes: Sizes) -> WalkState:
-        wanted = ("received", "received_missed") if self.scores.weighted else ()
+        wanted = {"received", "received_missed"} if self.scores.weighted else set()
+        wanted |= {"moments"} if self.scores.moments is not None else set()
         if WalkState.lacking(arrays, sizes, wanted):
             raise MethodError("the solution to go on from lacks the counts of its run; start anew")
         return WalkState.read(arrays, sizes, wanted)
@@ -177,8 +188,9 @@ class Walks(AbstractWalks[WalkState]):
     def _put_back(self, state: WalkState) -> None:
         self.hits.write(state.arrivals, state.missed)
         self.scores.write(state)
+        self.scores.write_moments(state.moments)
 
     @property
     def tally(self) -> AbstractTally[WalkState]:
-        counted = WalkTally(self.method.estimator == "collision", self.fractions is not None)
+        counted = WalkTally(self.method.estimator == "collision", self.fractions is not None, self.scores.basis)
         return DensityTally(counted) if self.method.reconstruction == "local-linear" else counted

@@ -37,12 +37,14 @@ class WalkState(AbstractLaunchState):
         received, received_missed: (replicates, n_patches, groups) and (2, replicates, groups) uint64, scores, modulo 2^64; where
             more than hits is kept.
         fired_power_upper, received_upper, received_missed_upper: upper words of these, where some are not zero.
+        moments: (replicates, n_patches, groups, K - 1) int64, scores times the functions of a basis of K; only with such a basis.
     """
 
     fired_power: np.ndarray = array("groups", merged=fired_low)
     received: np.ndarray | None = array("replicates", "rows", "groups", optional=True)
     received_missed: np.ndarray | None = array(2, "replicates", "groups", optional=True)
     fired_power_upper: np.ndarray | None = array("groups", optional=True, merged=fired_upper, zeros=True)
+    moments: np.ndarray | None = array("replicates", "rows", "groups", "any", optional=True)
     received_upper: np.ndarray | None = array("replicates", "rows", "groups", optional=True, zeros=True)
     received_missed_upper: np.ndarray | None = array(2, "replicates", "groups", optional=True, zeros=True)
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...patches.bases import CONSTANT, Basis
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...solution.books import Books, by_difference, exact_sum, exact_totals
@@ -19,10 +20,12 @@ class WalkTally(AbstractTally[WalkState]):
     Attributes:
         collisions: True where every hit scores what it brings, so that the energy balance closes in whole numbers.
         chosen: True where a replicate has N walks, not a number rounded for each patch.
+        basis: of the light on patches.
     """
 
     collisions: bool
     chosen: bool
+    basis: Basis = CONSTANT
 
     def lines(self, problem: Problem, state: WalkState) -> int:
         return exact_sum(state.arrivals) + exact_sum(state.missed)
@@ -35,6 +38,11 @@ class WalkTally(AbstractTally[WalkState]):
         if state.received is not None:
             return state.about("received", (..., group)), quantum / UNIT
         return state.arrivals, quantum
+
+    def moment(self, problem: Problem, state: WalkState, group: int, function: int) -> np.ndarray:
+        assert state.moments is not None
+        unit = 1.0 if state.received is not None else 1.0 / UNIT  # that of the hits or of the scores
+        return state.moments[..., group, function - 1] * unit
 
     def books(self, problem: Problem, state: WalkState, group: int) -> dict:
         replicates, quanta = len(state.arrivals), state.quanta

@@ -1,0 +1,103 @@
+"""Errors of light that is constant, linear or quadratic on patches, on even meshes and on ones that follow the light.
+
+The light at points is gathered, as in benchmarks/meshes.py; "sampling" is the part of the error that the replicates tell.
+Constants have four times the patches of polynomials. "smooth" are the points on those patches of the even mesh in which the mesh
+that the reference reads, which follows the light, has the fewest patches, and no contact line: half of all points by area. "edges"
+are the others: edges of shadows, contacts and lamps.
+
+python benchmarks/bases.py [--scenes cornell-box room] [--patches 1200 5000] [--points 1500]
+"""
+
+import argparse
+import warnings
+from dataclasses import replace
+
+import numpy as np
+from meshes import EACH, LEAST, READ, Places, patch_at, solved, used
+
+import radiosity as rd
+from radiosity.patches.polynomials import Polynomials
+
+LINES = 8000  # of a patch, for each number of constants on it
+METHOD = {"method": "stochastic-jacobi-control-variate", "estimator": "bidirectional"}
+ROW = "  {:>8} {:>10} {:>8} {:>16} {:>16} {:>16} {:>6}"
+
+
+def values(solution: rd.Solution, at: np.ndarray, places: Places) -> tuple[np.ndarray, np.ndarray]:
+    """Return irradiance at points of patches, and the square of its error by sampling, (count, n_bands) each."""
+    patches, error = solution.patches, solution.irradiance_standard_error[at] ** 2
+    if solution.basis.size == 1:
+        return solution.irradiance[at], error
+    light = Polynomials(patches, solution.basis, solution.irradiance, solution.irradiance_coefficients)
+    origin, first, second = (edge[patches.face[at]] for edge in patches.scene.frames)
+    edges = np.stack([first, second], axis=2)
+    u, v = np.einsum("mij,mj->mi", np.linalg.pinv(edges), places.points - origin).T
+    a, b = light.place(at, u, v)
+    functions = solution.basis.at(a, b, patches.scene.is_quad[patches.face[at]])[:, 1:]
+    error = error + np.einsum("mnk,mk->mn", solution.irradiance_coefficients_standard_error[at] ** 2, functions**2)
+    return np.maximum(light.at_places(at, a, b), 0), error
+
+
+def errors(solution: rd.Solution, places: Places, truth: rd.Measurement, groups: list[np.ndarray]) -> list[tuple[float, float]]:
+    """Return the RMS error and its part by sampling, relative, of each group of points."""
+    at = patch_at(solution.patches, places.points, places.normals)
+    known = (at >= 0) & np.isfinite(truth.standard_error).all(axis=1)
+    rho, light = solution.patches.reflectance[at], truth.illuminance
+    found, noise = values(solution, np.maximum(at, 0), places)
+    square = (rho**2 * ((found - light) ** 2 - truth.standard_error**2)).sum(axis=1)
+    sampling, there = (rho**2 * noise).sum(axis=1), ((rho * light) ** 2).sum(axis=1)
+    rows = []
+    for group in groups:
+        weights = places.weights * (group & known)
+        rows.append(tuple(float(np.sqrt(max(weights @ one, 0.0) / (weights @ there))) for one in (square, sampling)))
+    return rows
+
+
+def smooth_places(coarse: rd.Patches, fine: rd.Patches, places: Places) -> np.ndarray:
+    """Return which points lie on patches in which a mesh that follows the light has fewest patches, (count,) bool."""
+    inside = patch_at(coarse, fine.centroid, fine.normal)
+    here, region = inside[inside >= 0], fine.scene.cut.region[fine.face][inside >= 0]
+    crowd = np.bincount(here, minlength=len(coarse)).astype(float)
+    least, most = np.full(len(coarse), np.inf), np.full(len(coarse), -np.inf)
+    np.minimum.at(least, here, region)
+    np.maximum.at(most, here, region)
+    crowd[most > least] = np.inf  # a contact line goes through the patch
+    at = patch_at(coarse, places.points, places.normals)
+    order = np.argsort(np.where(at < 0, np.inf, crowd[at]), kind="stable")
+    smooth = np.zeros(len(at), bool)
+    smooth[order] = np.cumsum(places.weights[order]) <= places.weights.sum() / 2
+    return smooth
+
+
+def compare(name: str, counts: list[int], points: int) -> None:
+    """Print the rows of a scene."""
+    scene = rd.load_scene(name, allow_outside=True)
+    scene = replace(scene, back=np.where(scene.back == rd.Back.PASSES, rd.Back.ABSORBS, scene.back).astype(np.uint8))
+    read = solved(rd.adapt(scene, len(rd.subdivide(scene, cells=1)) + READ, seed=7))
+    places = Places.of(read, points, np.random.default_rng(1))
+    truth = rd.measure(read, rd.Sensors.of(places.points, places.normals), rays=EACH * points, seed=2)
+    print(f"{name}: {scene.n_faces} faces; each error: total (sampling)", flush=True)
+    print(ROW.format("mesh", "basis", "patches", "all", "smooth", "edges", "CPU s"), flush=True)
+    for count in counts:
+        few, many = rd.subdivide(scene, about=count), rd.subdivide(scene, about=4 * count)
+        smooth = smooth_places(few, read.patches, places)
+        groups = [smooth | True, smooth, ~smooth]
+        for mesh, cut in (("even", (few, many)), ("follows", (rd.adapt(scene, len(few)), rd.adapt(scene, len(many))))):
+            for basis, patches in (("constant", cut[1]), ("linear", cut[0]), ("quadratic", cut[0])):
+                begun = used()
+                rays = max(LINES * 4 * count, LEAST)
+                solution = rd.solve(patches, **METHOD, basis=basis, rays=rays, seed=1)
+                seconds = used() - begun
+                shown = [f"{total:.2%} ({own:.2%})" for total, own in errors(solution, places, truth, groups)]
+                print(ROW.format(mesh, basis, len(patches), *shown, f"{seconds:.1f}"), flush=True)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", nargs="+", default=["cornell-box", "room"])
+    parser.add_argument("--patches", nargs="+", type=int, default=[1200, 5000])
+    parser.add_argument("--points", type=int, default=1500)
+    given = parser.parse_args()
+    warnings.simplefilter("ignore")
+    for scene_name in given.scenes:
+        compare(scene_name, given.patches, given.points)
