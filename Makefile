@@ -10,7 +10,7 @@ WORKERS := 2
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14 python; do \
 	"$$p" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo "$$p"; break; }; done)
 
-.PHONY: help demo test coverage bench bench-compare bench-error bench-heat bench-lightmap bench-pictures gallery bench-meshes validate docs check ci clean
+.PHONY: help demo test coverage bench bench-compare bench-error bench-heat bench-lightmap bench-pictures gallery bench-meshes bench-bases validate docs check ci clean
 
 help:
 	@echo 'make demo    solve a furnished room in colour and write a picture, a mesh and the numbers into $(OUT)/'
@@ -22,6 +22,7 @@ help:
 	@echo 'make bench-heat  CPU seconds of view factors to the error of other programs: half an hour (ARGS=--quick: minutes)'
 	@echo 'make bench-pictures  RMS errors of pictures for CPU seconds, beside a path tracer'
 	@echo 'make bench-meshes  discretisation errors of meshes that follow the light, beside even ones'
+	@echo 'make bench-bases  errors of constant, linear and quadratic light on patches'
 	@echo 'make bench-lightmap  CPU seconds of lightmaps to 1 % of error, beside Cycles (ARGS="--blender PYTHON", one that has bpy)'
 	@echo 'make gallery  take the pictures of docs/gallery.md anew, beside a path tracer'
 	@echo 'make validate  compare with exact solutions, Mitsuba and Radiance, and write docs/validation (ARGS=--quick: a minute)'
@@ -63,6 +64,9 @@ bench-pictures: $(VENV)/.developer
 
 bench-meshes: $(VENV)/.developer
 	$(BIN)/python benchmarks/meshes.py $(ARGS)
+
+bench-bases: $(VENV)/.developer
+	$(BIN)/python benchmarks/bases.py $(ARGS)
 
 bench-heat: $(VENV)/.peers
 	$(BIN)/python benchmarks/heat.py $(ARGS)

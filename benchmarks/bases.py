@@ -1,9 +1,8 @@
 """Errors of light that is constant, linear or quadratic on patches, on even meshes and on ones that follow the light.
 
 The light at points is gathered, as in benchmarks/meshes.py; "sampling" is the part of the error that the replicates tell.
-Constants have four times the patches of polynomials. "smooth" are the points on those patches of the even mesh in which the mesh
-that the reference reads, which follows the light, has the fewest patches, and no contact line: half of all points by area. "edges"
-are the others: edges of shadows, contacts and lamps.
+Constants have four times the patches of polynomials. "smooth" are the points on walls and boxes, where light has few edges;
+"edges" are the others: floors with shadows, ceilings behind lamps, lamps.
 
 python benchmarks/bases.py [--scenes cornell-box room] [--patches 1200 5000] [--points 1500]
 """
@@ -19,6 +18,7 @@ import radiosity as rd
 from radiosity.patches.polynomials import Polynomials
 
 LINES = 8000  # of a patch, for each number of constants on it
+SMOOTH = ("wall", "box", "block")  # words in names of surfaces
 METHOD = {"method": "stochastic-jacobi-control-variate", "estimator": "bidirectional"}
 ROW = "  {:>8} {:>10} {:>8} {:>16} {:>16} {:>16} {:>6}"
 
@@ -53,22 +53,6 @@ def errors(solution: rd.Solution, places: Places, truth: rd.Measurement, groups:
     return rows
 
 
-def smooth_places(coarse: rd.Patches, fine: rd.Patches, places: Places) -> np.ndarray:
-    """Return which points lie on patches in which a mesh that follows the light has fewest patches, (count,) bool."""
-    inside = patch_at(coarse, fine.centroid, fine.normal)
-    here, region = inside[inside >= 0], fine.scene.cut.region[fine.face][inside >= 0]
-    crowd = np.bincount(here, minlength=len(coarse)).astype(float)
-    least, most = np.full(len(coarse), np.inf), np.full(len(coarse), -np.inf)
-    np.minimum.at(least, here, region)
-    np.maximum.at(most, here, region)
-    crowd[most > least] = np.inf  # a contact line goes through the patch
-    at = patch_at(coarse, places.points, places.normals)
-    order = np.argsort(np.where(at < 0, np.inf, crowd[at]), kind="stable")
-    smooth = np.zeros(len(at), bool)
-    smooth[order] = np.cumsum(places.weights[order]) <= places.weights.sum() / 2
-    return smooth
-
-
 def compare(name: str, counts: list[int], points: int) -> None:
     """Print the rows of a scene."""
     scene = rd.load_scene(name, allow_outside=True)
@@ -76,12 +60,13 @@ def compare(name: str, counts: list[int], points: int) -> None:
     read = solved(rd.adapt(scene, len(rd.subdivide(scene, cells=1)) + READ, seed=7))
     places = Places.of(read, points, np.random.default_rng(1))
     truth = rd.measure(read, rd.Sensors.of(places.points, places.normals), rays=EACH * points, seed=2)
+    at = patch_at(read.patches, places.points, places.normals)
+    smooth = np.array([any(word in name for word in SMOOTH) for name in scene.names])[read.patches.surface[at]]
+    groups = [smooth | True, smooth, ~smooth]
     print(f"{name}: {scene.n_faces} faces; each error: total (sampling)", flush=True)
     print(ROW.format("mesh", "basis", "patches", "all", "smooth", "edges", "CPU s"), flush=True)
     for count in counts:
         few, many = rd.subdivide(scene, about=count), rd.subdivide(scene, about=4 * count)
-        smooth = smooth_places(few, read.patches, places)
-        groups = [smooth | True, smooth, ~smooth]
         for mesh, cut in (("even", (few, many)), ("follows", (rd.adapt(scene, len(few)), rd.adapt(scene, len(many))))):
             for basis, patches in (("constant", cut[1]), ("linear", cut[0]), ("quadratic", cut[0])):
                 begun = used()

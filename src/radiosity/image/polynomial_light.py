@@ -18,6 +18,8 @@ from .quantity import Quantity
 
 UNLIKE = (0.02, 0.1)  # mean difference at a vertex, of the value: below the first polynomials are moved, above the second not
 
+NOISE = 2.0  # standard errors by which polynomials that meet may differ besides
+
 
 def vertex_values(patches: Patches, mesh: DisplayMesh, shown: Quantity) -> np.ndarray:
     """Return smoothed values of a quantity at the vertices of a mesh, (n_vertices, n)."""
@@ -56,7 +58,9 @@ def moves(light: Polynomials, mesh: DisplayMesh) -> np.ndarray:
     own = _at_corners(light)
     apart = mesh.smoothed_corners(own)[mesh.polygons] - own
     size = mesh.smoothed_corners(np.abs(own))
-    unlike = mesh.smoothed_corners(np.abs(apart)) / np.maximum(size, 1e-300)  # at each vertex
+    error = light.error_at_corners()
+    noise = 0.0 if error is None else NOISE * mesh.smoothed_corners(error)
+    unlike = np.maximum(mesh.smoothed_corners(np.abs(apart)) - noise, 0) / np.maximum(size, 1e-300)  # at each vertex
     share = np.clip((UNLIKE[1] - unlike.max(axis=1)) / (UNLIKE[1] - UNLIKE[0]), 0, 1)
     return apart * share[mesh.polygons][:, :, None]
 

@@ -67,7 +67,8 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
     own = (solution.patches.emission[:, rows] > 0).any(axis=1)
     if name == "luminance" and not solution.patches.scene.photometric:
         raise OutputError("luminance is of scenes in lm and lx; this one is in W: take radiance")
-    values, others = _values(solution, name)[:, rows], _others(solution, name, rows)
+    values, light = _values(solution, name)[:, rows], _light(solution, name)
+    light = None if light is None else light.columns(lambda column: column[:, rows])
     base = np.asarray(solution.radiosity, np.float64)[:, rows]
     if several and band is not None:
         title += f", {names[0]}"
@@ -75,8 +76,7 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         title += ", bands weighted as the eye does" if len(names) == 3 else ", mean of the bands"
         # errors of the bands come from the same lines, so they are added as if fully correlated: never too small
         values, base, names = tone.luminance(values)[:, None], tone.luminance(base)[:, None], ["all"]
-        others = None if others is None else tone.luminance(np.moveaxis(others, 1, 2))[:, None]
-    light = None if others is None else Polynomials(solution.patches, solution.basis, values, others)
+        light = None if light is None else light.columns(_one_column)
     if name != "relative_error":
         return Quantity(values, title, _unit(solution, name), tuple(names), own, name in ("radiosity", *OF_DIRECTIONS), light)
     ratio = np.divide(values, base, out=np.full(values.shape, np.nan), where=base > 0)
@@ -101,14 +101,23 @@ def _values(solution, name: str) -> np.ndarray:
     return np.asarray(getattr(solution, "standard_error" if name == "relative_error" else name), np.float64)
 
 
-def _others(solution, name: str, rows: slice) -> np.ndarray | None:
-    """Return the coefficients of the light after its mean, (n_patches, n, K - 1); None where it is constant on patches."""
+def _one_column(values: np.ndarray) -> np.ndarray:
+    """Return bands reduced to one number, (n_patches, 1) or (n_patches, 1, K - 1)."""
+    return tone.luminance(np.moveaxis(values, 1, -1))[:, None]
+
+
+def _light(solution, name: str) -> Polynomials | None:
+    """Return the polynomials of a quantity in all bands, without their noise; None where light is constant on patches."""
     found = getattr(solution, "irradiance_coefficients", None)  # what is shown need not be a solution
     if name not in LIGHT or found is None:
         return None
+    patches, errors = solution.patches, solution.irradiance_coefficients_standard_error
     if name == "irradiance":
-        return found[:, rows]
-    return solution.radiosity_coefficients[:, rows] / (np.pi if name in OF_DIRECTIONS else 1.0)
+        light = Polynomials(patches, solution.basis, solution.irradiance, found, (solution.irradiance_standard_error, errors))
+        return light.without_noise
+    errors = solution.standard_error, patches.scatter.of_moments(errors)
+    light = Polynomials(patches, solution.basis, solution.radiosity, solution.radiosity_coefficients, errors)
+    return (light.columns(lambda column: column / np.pi) if name in OF_DIRECTIONS else light).without_noise
 
 
 def _unit(solution, name: str) -> str:

@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import MethodError
 from ..hooks import HOOKS
 from ..patches.bases import CONSTANT, Basis, of_size
 from ..patches.model import Patches
+from ..patches.polynomials import Polynomials
 from ..scene.model import Back
 from . import intervals, means
 from .brief import brief
@@ -100,6 +102,24 @@ class Solution:
     def radiosity_coefficients(self) -> np.ndarray | None:
         """The coefficients after the mean of the radiosity on each patch, (n_patches, n_bands, K - 1); None with constants."""
         return None if self.irradiance_coefficients is None else self.patches.scatter.of_moments(self.irradiance_coefficients)
+
+    def at(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray, quantity: str = "radiosity") -> np.ndarray:
+        """Return the light at points of patches, (m, n_bands): of polynomials the value there, else that of the patch.
+
+        Args:
+            patch: (m,) numbers of patches.
+            u, v: (m,) coordinates of the points along the first and second edge of their faces, 0 to 1.
+            quantity: "radiosity" or "irradiance".
+
+        Raises:
+            MethodError: another quantity.
+        """
+        if quantity not in ("radiosity", "irradiance"):
+            raise MethodError(f"quantity '{quantity}' is not known at points; known are radiosity, irradiance")
+        mean, others = getattr(self, quantity), getattr(self, f"{quantity}_coefficients")
+        if others is None:
+            return mean[patch]
+        return Polynomials(self.patches, self.basis, mean, others).at(np.asarray(patch), np.asarray(u), np.asarray(v))
 
     @property
     def bands(self) -> tuple[str, ...]:
