@@ -9,9 +9,9 @@ from ...patches.bases import BASES
 from ...problem.model import Problem
 from ...tally.wraps import Wraps
 from ...tracing.line_tracer import LineTracer
+from ...tracing.spots import Spot
 from ..merge_rules import words
 from .state import WalkState
-from ...tracing.spots import Spot
 
 UNIT = 2**24  # fixed point units of a quantum: as fine as a weight in single precision
 
@@ -175,6 +175,7 @@ class Scores:
             upper = np.concatenate([np.ravel(np.zeros(low.shape, np.uint32) if x is None else x) for low, x in pairs])
         flat = self.upper.of(np.concatenate([rows.ravel(), missed.ravel()]), upper)
         self.received = upload(self.tracer.types.UInt64, flat)
+
     def read_moments(self) -> np.ndarray | None:
         """Copy the moments of patches to the host, (replicates, n_patches, n_groups, K - 1) int64."""
         if self.moments is None:
