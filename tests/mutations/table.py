@@ -2814,4 +2814,25 @@ MISTAKES = (
         ("test_plane_fit.py",),
         "light is smoothed across contact lines",
     ),
+    Mistake(
+        "algorithms/iterations/polynomials.py",
+        "kept[replicate] = 2.0 *",
+        "kept[replicate] = 1.0 *",
+        ("test_bases.py",),
+        "iterations of polynomials drop their rest, and half of what stays",
+    ),
+    Mistake(
+        "tally/moments.py",
+        "self._add(back, number, group, here, add)",
+        "self._add(back, number, group, there, add)",
+        ("test_bases.py",),
+        "what comes back along a line is counted with the functions of its other end",
+    ),
+    Mistake(
+        "patches/polynomials.py",
+        "[0, 2, 1, 1])):",
+        "[0, 1, 2, 2])):",
+        ("test_bases_shown.py",),
+        "corners of triangles seen from behind have each other's values",
+    ),
 )
