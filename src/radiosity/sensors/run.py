@@ -34,6 +34,7 @@ SHARE = 0.5  # of the lines goes to the solution, where there is none yet; and o
 ROUGH, ROUGHEST = 10.0, 0.2  # times the error of sensors, at most: the error of a solution of all patches, at first
 IMPORTANT = 0.7  # of the error of sensors: that of a solution for them
 FINER = 0.25  # of its error is that of the next one
+PATIENT = 3  # stages, where the solution is made for the sensors
 BEHIND = 0.5  # share of lines that meet backs: a sensor is likely inside of something
 
 
@@ -49,6 +50,8 @@ class Run:
         seed, device, progress: see `measure`.
         direct: the light of lamps, suns and the sky counts; False: only what surfaces reflect.
         cluster: a client of workers that trace the lines; None: here.
+        patience: stages in which the error must fall, or else the error of the solution is what is left. One stage alone may
+            find more by chance, and a solution that is good enough would be made anew.
     """
 
     solution: Solution
@@ -60,6 +63,7 @@ class Run:
     device: str
     progress: Listener | None
     direct: bool = True
+    patience: int = 1
     cluster: Any = None
 
     def measured(self) -> Measurement:
@@ -83,7 +87,9 @@ class Run:
             light = reflected(solution, geometry, problem)
             tracing = Tracing.of(geometry, problem, self.sensors, light, count, Seed(self.seed), direct=self.direct)
             with sensing_on(self.cluster, tracing, problem, geometry.device.name):
-                values, status, reached = _staged(tracing, self.budget, problem, self.sensors, teller, stop, self.error_of)
+                values, status, reached = _staged(
+                    tracing, self.budget, problem, self.sensors, teller, stop, self.error_of, self.patience
+                )
         inside = tracing.behind() > BEHIND
         found = Measurement.of(solution, self.sensors, problem, values, inside, tracing.traced, perf_counter() - begun, status)
         return found if reached or status != "complete" else replace(found, status="not reached")
@@ -127,12 +133,14 @@ def traced(
                 "importance=sensors"
             )
         options["importance"] = sensors
+    patience = PATIENT if importance else 1
 
     def measured(solution: Solution) -> Measurement:
         left = (
             budget if budget.rays is None or isinstance(given, Solution) else Budget(rays=max(budget.rays - solution.rays, 1.0))
         )
-        return Run(solution, sensors, left, error_of, replicates, seed, device, progress, direct, cluster).measured()
+        options = {"patience": patience, "cluster": cluster}
+        return Run(solution, sensors, left, error_of, replicates, seed, device, progress, direct, **options).measured()
 
     if isinstance(given, Solution):
         solution, found = given, measured(given)
@@ -149,7 +157,8 @@ def traced(
         while found.status == "not reached" and solution.status == "complete" and error > SHARE * budget.error:
             error = max(error * FINER, SHARE * budget.error)
             method = Method(**solution.provenance["choices"])
-            solution = solve(solution.patches, method, error=error, replicates=replicates, resume=solution, **options)
+            before = None if importance else solution  # its last stage was no rung, so that no run goes on from it
+            solution = solve(solution.patches, method, error=error, replicates=replicates, resume=before, **options)
             found = measured(solution)
     if solution.status == "interrupted":
         found = replace(found, status="interrupted")
@@ -165,10 +174,12 @@ def traced(
     return solution, found
 
 
-def _staged(tracing: Tracing, budget: Budget, problem: Problem, sensors: Sensors, teller: Teller, stop: Stop, error_of: str):
+def _staged(
+    tracing: Tracing, budget: Budget, problem: Problem, sensors: Sensors, teller: Teller, stop: Stop, error_of: str, patience: int
+):
     """Trace stage by stage. Return values of the last complete one, a status, and whether the target was reached."""
     planes, values, each = tracing.receivers.receivers, None, float(FIRST)
-    replicates, before = tracing.receivers.replicates, np.inf
+    replicates, before = tracing.receivers.replicates, [np.inf] * patience
     teller.begin(0)
     if budget.rays is not None:
         each = max(budget.rays / (planes * replicates), 2.0)
@@ -191,6 +202,6 @@ def _staged(tracing: Tracing, budget: Budget, problem: Problem, sensors: Sensors
         teller.complete(tracing.traced, max(int(each), 1), now)
         if now <= budget.error:
             return values, "complete", True
-        if each >= MOST or (now > 0.9 * before and each > 1 << 12):
+        if each >= MOST or (now > 0.9 * before[0] and each > 1 << 12):
             return values, "complete", False
-        before, each = now, 2 * each
+        before, each = [*before[1:], now], 2 * each
