@@ -20,11 +20,11 @@ from ...device.backend import upload
 from ...problem.model import Problem
 from ..base import Swept
 from .control import SHARE, Control, source_constant
-from .exchange import Exchange
+from .exchange import LINE, Exchange
 from .polynomials import end_of_polynomials
 from .state import IncrementalState
 
-MOST = 1 << 31  # quanta whose power is sent at once
+MOST = 1 << 31  # quanta whose power is sent at once; fewer, and `EXACT` too, where their units are finer
 EXACT = 1 << 32  # quanta up to which all that arrives on a patch is a whole number
 
 
@@ -70,14 +70,19 @@ class Incremental:
     def exact(self) -> bool:
         """True where power is carried in whole numbers from its source to its end."""
         exchange = self.exchange
-        return not exchange.two_ended and self.control is None and exchange.basis.size == 1 and self.quanta <= EXACT
+        return not exchange.two_ended and self.control is None and exchange.basis.size == 1 and self.quanta <= EXACT // self.finer
+
+    @property
+    def finer(self) -> int:
+        """How many times as many units a quantum has as it has where lines are not shared out by importance."""
+        return self.exchange.unit // LINE
 
     def _emit(self) -> None:
         """Add emission, up to that of the stage."""
         exchange, types = self.exchange, self.exchange.types
-        more = min(self.quanta - self.begun, MOST)
+        more = min(self.quanta - self.begun, MOST // self.finer)
         self.begun += more
-        if self.quanta > EXACT:
+        if self.quanta > EXACT // self.finer:
             self.received = types.Float64(self.received)
         source = np.array(exchange.emitted)
         if self.control is not None and self.control.beta.any():
@@ -86,7 +91,7 @@ class Incremental:
             source += np.array(exchange.scattered(self.control.received()) - self.control.constant())
         new = np.rint(source * (float(more) * exchange.unit))
         self.unsent = upload(types.Float64, np.array(self.unsent) + new)
-        if self.quanta <= EXACT:
+        if self.quanta <= EXACT // self.finer:
             self.emitted += new.astype(np.int64).reshape(exchange.replicates, exchange.n, exchange.columns).sum(axis=1)
 
     def step(self) -> int:
