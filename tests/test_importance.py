@@ -143,6 +143,15 @@ def test_the_error_of_what_lines_are_for_is_reached(rooms, desk):
     assert "shared out for surface:desk" in desk.report()
 
 
+def test_sensors_see_a_billionth_of_the_brightest_light(rooms, desk):
+    """What they gather from the same solution is what falls on the desk; units of the usual size would lose a third."""
+    top = (rooms.surface == rooms.scene.names.index("desk")) & (rooms.normal[:, 2] > 0.5)
+    exact = float(desk.irradiance[top, 0] @ rooms.area[top] / rooms.area[top].sum())
+    points = [(18.5 + 0.2 * i, 1.5 + 0.2 * k, 0.745) for i in range(4) for k in range(6)]
+    found = rd.measure(desk, rd.Sensors.of(points), rays=100_000)
+    assert float(found.illuminance.mean()) == pytest.approx(exact, rel=0.05)
+
+
 def test_a_run_goes_on_to_the_same_bits(lit, tmp_path):
     """The importance is part of the state: files, parts of a run and what goes on have the same."""
     patches, _ = lit

@@ -24,6 +24,8 @@ from .receivers import Receivers
 OfLines = tuple[list, list, list]  # see `Tracing.sums`
 PILOT = 16  # lines of each kind of each plane
 LEAST = 0.1  # of the mean: the least share of lines of a packet
+DARK = 256.0  # units of a line in the mean: with fewer, rounding would be a part of what a sensor sees
+FINEST, ROOM = 12, 35  # bits: of finer units, and of a line in the mean, so that sums of 2^24 lines and more fit in 64 bits
 POWER = 0.435  # shares go as variance to this power, as those of patches do (`algorithms.gather.shares`)
 
 
@@ -37,10 +39,11 @@ class Setup:
     seed: Seed
     direct: bool = True
     faces: np.ndarray | None = None
+    finer: int = 1
 
     def tracing(self, geometry: Geometry, problem: Problem) -> "Tracing":
         """Return sums that have begun, without a pilot: for lines that somebody else shares out."""
-        given = {"direct": self.direct, "faces": self.faces, "pilot": 0}
+        given = {"direct": self.direct, "faces": self.faces, "pilot": 0, "finer": self.finer}
         return Tracing.of(geometry, problem, self.sensors, self.reflected, self.replicates, self.seed, **given)
 
 
@@ -84,6 +87,7 @@ class Tracing:
         direct: bool = True,
         faces: np.ndarray | None = None,
         pilot: int = PILOT,
+        finer: int = 1,
     ) -> "Tracing":
         """Run the pilot.
 
@@ -92,6 +96,7 @@ class Tracing:
             direct: the light of lamps, suns and the sky counts; False: only what surfaces reflect.
             faces: that sensors lie on, see `Receivers`.
             pilot: its lines of each kind of each plane, 2 or more; 0: without it, both kinds have half of the lines.
+            finer: see `Lines`; a pilot finds it anew.
         """
         geometry.prepare()
         types, method = geometry.device.types, PRESETS["gather"].method
@@ -106,17 +111,18 @@ class Tracing:
             cosine, _ = trial.cosine(none, few, read=mean, squares=True)
             shadow = trial.shadow(none, few if direct else none, squares=True)
             variance = np.stack([_variance(one, sums, pilot) for sums in (cosine, shadow)])
+            finer = _finer(np.stack([one.patch_values(np.array(total)) for total in cosine[: trial.groups]]) / pilot * trial.unit)
         shares = _shares(variance, one.sizes, has_targets=direct and chances.targets > 0)
         receivers = one if replicates == 1 else Receivers(geometry, replicates, sensors=sensors, seed=seed, faces=faces)
         lines = Lines.of(receivers, chances, problem, method, seed, (Purpose.SENSORS, Purpose.SENSORS_SHADOW))
-        lines = lines if direct else _without_direct(lines)
+        lines = replace(lines if direct else _without_direct(lines), finer=finer)
         whole = np.broadcast_to(reflected, (replicates, *reflected.shape[1:]))
         read = [upload(types.Float, whole[..., column].astype(np.float32)) for column in range(whole.shape[2])]
         kinds: tuple[Any, ...] = (types.UInt64, types.Int64)
         brought, met = (Sums(receivers, kind, lines.groups) for kind in kinds)
         missed = [dr.zeros(types.UInt64, receivers.lanes) for _ in range(2)]
         traced = 2 * pilot * one.receivers
-        counts, setup = np.zeros((2, one.count), np.int64), Setup(sensors, reflected, replicates, seed, direct, faces)
+        counts, setup = np.zeros((2, one.count), np.int64), Setup(sensors, reflected, replicates, seed, direct, faces, finer)
         return Tracing(receivers, lines, read, shares, counts, brought, met, missed, setup, traced)
 
     def advance(self, each: float) -> None:
@@ -180,6 +186,17 @@ class Tracing:
 def _on_device(kind: Any, columns: list) -> list:
     """Return columns of whole numbers as device arrays; those of other machines come as numpy arrays."""
     return [upload(kind, one) if isinstance(one, np.ndarray) else one for one in columns]
+
+
+def _finer(units: np.ndarray) -> int:
+    """Return how much finer units must be so that the light of the darkest sensor is not lost in their rounding.
+
+    Args:
+        units: what a line of each sensor finds in the mean of the pilot, in the usual units.
+    """
+    if units.min() >= DARK:
+        return 1
+    return 1 << int(np.clip(ROOM - np.log2(max(float(units.max()), 1.0)), 0, FINEST))
 
 
 def _without_direct(lines: Lines) -> Lines:

@@ -41,6 +41,7 @@ class Lines:
         streams: randomisations of the replicates, for cosine lines and for shadow rays.
         keys: those of the first block of each.
         most: the largest value that a cosine line may read, for fixed point.
+        finer: units of cosine lines are so many times finer than usual, where they find little light.
     """
 
     packets: Packets
@@ -50,6 +51,7 @@ class Lines:
     streams: tuple[Blocks, Blocks]
     keys: tuple[Any, Any]
     most: float
+    finer: int = 1
 
     @staticmethod
     def of(packets: Packets, chances: Chances, problem: Problem, method: Method, seed: Seed | int, purposes) -> "Lines":
@@ -77,7 +79,7 @@ class Lines:
     @property
     def unit(self) -> float:
         """Fixed point units of the value 1 of a cosine line."""
-        return UNITS / self.most
+        return UNITS / self.most * self.finer
 
     @property
     def types(self):
@@ -224,7 +226,7 @@ class Lines:
 
     def _fixed(self, kind, value):
         """Return whole numbers of 64 bits."""
-        return kind(self.types.Int(value)) if self.targets.small else kind(value)
+        return kind(self.types.Int(value)) if self.targets.small and self.finer == 1 else kind(value)
 
     def _summed(self, count, body, zeros: list, keep=None) -> list:
         """Return the sums of a loop over ``count`` lines of each lane."""
