@@ -17,6 +17,8 @@ from radiosity.lab.bits import bits
 from radiosity.lab.calibration import LEVELS, coverage
 from radiosity.lab.discretisation import discretisation
 from radiosity.lab.experiments import EXPERIMENTS, module
+from radiosity.lab.measure import Series
+from radiosity.lab.results import Results
 from radiosity.lab.run import run
 from radiosity.lab.start import starts
 from radiosity.lab.study import Arm, Protocol
@@ -104,11 +106,43 @@ def test_order_has_no_influence(study, scenes):
             assert ray.value - walk.value < WIDER * np.hypot(ray.half, walk.half), scene
 
 
-@pytest.mark.parametrize("number", [n for n in EXPERIMENTS if hasattr(module(n), "SCENES")])
+BEYOND = (8, 9)  # of the open ends of the paper
+
+
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(n, marks=[pytest.mark.slow] * (n in BEYOND)) for n in EXPERIMENTS if hasattr(module(n), "SCENES")],
+)
 def test_every_claim_has_a_verdict_and_figures(study, number):
     for claim in module(number).claims(study(number)):
         assert claim.agrees in (True, False, None)
         assert any(character.isdigit() for character in claim.found) or "bit" in claim.found
+
+
+def made_up(number, slope):
+    """Return results of an experiment whose errors fall with given exponents: ``slope`` of the arm's name."""
+    lines, found = 2.0 ** np.arange(10, 21), {}
+    for scene in module(number).SCENES:
+        for arm in module(number).ARMS:
+            noise = 1 + 0.01 * np.random.default_rng(len(arm.name)).standard_normal((5, len(lines)))
+            errors = lines ** slope(arm.name) * noise
+            found[scene, arm.name] = Series(lines, lines / 1e6, errors, errors, np.full_like(errors, np.nan))
+    return Results(found)
+
+
+EXPECTED = {  # slopes with which all claims agree, slopes with which some do not and their verdicts, and all other slopes
+    8: ({"spans, Sobol": -0.602}, {"spans, Sobol": -0.5}, [False, False, False], -0.6),
+    9: ({"sorted, Halton": -0.65, "sorted, Sobol": -0.65}, {"sorted, Halton": -0.45}, [False, True, False], -0.5),
+}
+
+
+@pytest.mark.parametrize("number", BEYOND)
+def test_claims_about_open_ends_follow_from_slopes_and_errors(number):
+    good, bad, verdicts, other = EXPECTED[number]
+    for slope, expected in ((good, [True, True, True]), (bad, verdicts)):
+        claims = module(number).claims(made_up(number, lambda name, slope=slope: slope.get(name, other)))
+        assert [claim.agrees for claim in claims] == expected
+        assert all(scene in claim.found for claim in claims for scene in module(number).SCENES)
 
 
 def test_lines_are_met_and_errors_have_every_replicate(study):

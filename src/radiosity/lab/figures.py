@@ -73,6 +73,8 @@ def convergence(
                 look = _look(number, len(arms)) | {"color": colour, "linestyle": "-" if arm.quasi else "--", "label": arm.name}
                 _curve(panel, series.seconds if seconds else series.lines, errors, look)
             _guide(panel)
+        for panel in panels[len(scenes) :]:
+            panel.set_axis_off()
         handles, labels = panels[0].get_legend_handles_labels()
         columns = min(4 if max(map(len, labels)) < NARROW else 3, len(labels))
         figure.legend(handles, labels, fontsize=8.5, loc="outside lower center", ncols=columns, handlelength=3.5)
