@@ -1496,8 +1496,8 @@ MISTAKES = (
     ),
     Mistake(
         "run/same.py",
-        '"sources", "cut", "seed"',
-        '"sources", "seed"',
+        '    "cut",\n    "seed",',
+        '    "seed",',
         ("test_checkpoint.py", "test_solve.py"),
         "another cut is gone on from",
     ),
