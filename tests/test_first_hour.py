@@ -263,7 +263,9 @@ def test_legends_of_light_have_its_units(photometric, monkeypatch, quantity, uni
     legend = false_color._legend
     monkeypatch.setattr(false_color, "_legend", lambda *given: labels.append(given[2]) or legend(*given))
     rd.image.render(photometric, false_color=True, quantity=quantity, width=30, camera=rd.Camera((0.5, -2, 0.5), (0.5, 0.5, 0.5)))
-    assert labels[0].replace("\n", " ").endswith(unit)
+    label, *arrow = labels[0].replace("\n", " ").split("; ")
+    assert label.endswith(unit)
+    assert arrow in ([], ["arrow: brighter than 99 % of the view without lamps"])
 
 
 def test_luminance_is_of_light(room):

@@ -71,7 +71,7 @@ def test_there_are_no_other_tables(ours):
 
 
 def test_imports_of_a_file_are_found(ours):
-    assert ours.edges["patches.subdivide"] == {"errors", "hooks", "scene.model", "patches.cells", "patches.model"}
+    assert ours.edges["patches.subdivide"] == {"errors", "hooks", "pieces", "scene.model", "patches.cells", "patches.model"}
     assert "image" in ours.edges[""]  # within a function
     assert {"sampling.numbers.sobol", "sampling.numbers.random"} <= ours.edges["cli.methods"]  # by the beginning of their names
     assert recording(Package(ours.root / "device")) == {"recorded"}
