@@ -314,3 +314,20 @@ def _closed() -> tuple[np.ndarray, np.ndarray]:
     """Corners and faces of a unit cube."""
     corners = np.array([np.asarray(face) for face in box((0, 0, 0), (1, 1, 1), inward=True)])
     return corners.reshape(-1, 3), np.arange(24).reshape(6, 4)
+
+
+def test_light_below_whole_units_is_within_the_stated_error():
+    """A receiver sees only a sheet that reflects next to nothing: lines count none of it, and no interval is [0, 0]."""
+    lamp, sheet = [(0, 0, 1), (0, 1, 1), (1, 1, 1), (1, 0, 1)], [(0, 0, 0), (3, 0, 0), (3, 1, 0), (0, 1, 0)]
+    screen, receiver = [(1, 0, 0.5), (1, 1, 0.5), (1, 1, 1), (1, 0, 1)], [(1, 0, 1), (1, 1, 1), (3, 1, 1), (3, 0, 1)]
+
+    def solved(reflectance):
+        scene = lit([(lamp, [0], [1]), (sheet, [reflectance], [0]), (screen, [0], [0]), (receiver, [0], [0])])
+        found = rd.solve(rd.subdivide(scene, cells=1), "gather", rays=100_000, replicates=4, seed=1)
+        return found.irradiance[3, 0], found.irradiance_standard_error[3, 0]
+
+    value, error = solved(0.3)
+    assert value > 5 * error > 0
+    dim, bound = solved(3e-11)  # light reaches the receiver from the sheet alone, in proportion to its reflectance
+    assert dim == 0
+    assert bound > value * 1e-10

@@ -14,6 +14,7 @@ from .pilot import LINES
 from .state import GatherState
 
 ROUNDED = 2.0**-20  # of a value: less is lost in single precision
+DIM = 2.0**-10  # of a value: where whole units of lines may take more, that counts, too
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,9 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         return (np.maximum(left, first * of_all) + state.unsolved.mean()) * problem.patches.area
 
     def bias_of_sums(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
-        rounded = ROUNDED * self.irradiance(problem, state, group)[0].mean(axis=0)
+        value = self.irradiance(problem, state, group)[0].mean(axis=0)
+        half = problem.patches.area * most_read(problem) / (2 * UNITS)  # of a unit of each cosine line: a dim line counts as none
+        rounded = ROUNDED * value + np.where(half > DIM * value, half, 0.0)
         return self._bias_of_stored(problem, state, group) + rounded
 
     def bias(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
