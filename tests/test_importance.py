@@ -171,6 +171,28 @@ def test_a_run_goes_on_to_the_same_bits(lit, tmp_path):
     assert merged.provenance["importance"] == "surface:wall 3"
 
 
+def test_a_pilot_that_takes_all_lines_leaves_as_many(rooms):
+    """A run of next to no lines would show a dark desk. Whoever asked for few lines is told."""
+    given = {"importance": "surface:desk", "replicates": 2, "seed": 4}
+    with pytest.warns(rd.RadiosityWarning, match=r"the pilot that finds importance took [\d,]+ lines, and 20,000 were asked for"):
+        few = rd.solve(rooms, rays=20_000, **given)
+    pilot = few.provenance["importance_lines"]
+    assert 1.7 * pilot < few.rays < 2.6 * pilot
+    assert few.surface_power[0][:, rooms.scene.names.index("desk"), 0].all()
+
+
+def test_a_run_to_lines_goes_on_to_its_lines(lit):
+    """Those of the pilot count in a run that goes on as in one that was not stopped."""
+    patches, _ = lit
+    given = {"importance": "surface:wall 3", "replicates": 2, "seed": 4}
+    rung = first_rung("incremental", 2, Problem.of(patches).source.share)
+    short = rd.solve(patches, quanta=rung, **given)
+    whole = rd.solve(patches, rays=6_000_000, **given)
+    longer = rd.solve(patches, rays=6_000_000, resume=short, **given)
+    assert (longer.irradiance == whole.irradiance).all()
+    assert longer.rays == whole.rays
+
+
 def test_sensors_and_cameras_see_by_closed_forms():
     """A sensor in the middle of a unit cube that looks up: the ceiling has 4 times the factor of a corner (Howell, B-4)."""
     from radiosity.algorithms.importance.sight import shares_seen

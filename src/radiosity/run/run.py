@@ -39,7 +39,7 @@ from .progress import Listener, Stop, Teller
 from .record import AbstractRecord
 from .result import R
 from .same import check_same
-from .shortfall import warn_of_few_ends, warn_of_more, warn_of_target
+from .shortfall import warn_of_few_ends, warn_of_importance, warn_of_more, warn_of_target
 from .snapshot import Snapshot
 
 MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
@@ -118,14 +118,16 @@ class Run(Generic[R]):
         if self.resume is not None:
             values = self.resume.state.get("importance")
             self.problem = replace(self.problem, importance=None if values is None else np.asarray(values))
-            return aim, int(self.resume.provenance.get("importance_lines", 0))
-        assert isinstance(self.method, Method)  # `aim.method_of`
-        self.teller.tell("importance")
-        found = aim.shared(self.problem, self.geometry, self.method, self.part.seed)
-        self.problem = replace(self.problem, importance=found.values)
+            lines = int(self.resume.provenance.get("importance_lines", 0))
+        else:
+            assert isinstance(self.method, Method)  # `aim.method_of`
+            self.teller.tell("importance")
+            found = aim.shared(self.problem, self.geometry, self.method, self.part.seed)
+            self.problem, lines = replace(self.problem, importance=found.values), found.lines
         if self.budget.rays is not None:
-            self.budget = replace(self.budget, rays=max(self.budget.rays - found.lines, 1))
-        return aim, found.lines
+            warn_of_importance(lines, self.budget)
+            self.budget = replace(self.budget, rays=max(self.budget.rays - lines, lines))
+        return aim, lines
 
     def solve(self) -> R:
         """Run stage after stage until the budget is used up, or until Ctrl-C."""
