@@ -30,8 +30,8 @@ def warn_of_importance(lines: int, budget: Budget) -> None:
     """Warn of a pilot for importance that took more than half of the lines asked for: the run then has as many again."""
     if budget.rays is not None and lines > budget.rays / 2:
         warnings.warn(
-            f"the pilot that finds importance took {lines:,} lines, and {budget.rays:,.0f} were asked for in all: the run traces as "
-            "many again; give more lines, or larger patches",
+            f"the pilot that finds importance took {lines:,} lines, and {budget.rays:,.0f} were asked for in all: the run "
+            "traces as many again; give more lines, or larger patches",
             RadiosityWarning,
             stacklevel=6,
         )
