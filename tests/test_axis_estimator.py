@@ -61,7 +61,7 @@ class TestContract:
 
     @each(varied, "estimator", "absorption", slow=lambda method: not discrete(method))
     def test_the_mean_is_exact_between_unlike_walls(self, method):
-        if discrete(method):
+        if discrete(method) and method.basis == "constant":  # polynomials are nearer to the light itself, see test_bases
             assert off_of_unlike_walls(method) < BOUND
 
 

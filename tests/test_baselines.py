@@ -16,7 +16,10 @@ from radiosity.device import memory
 from radiosity.method.schemes import SOLVERS
 
 # coarse hemicubes and few samples say that they are off; one test looks for it
-pytestmark = pytest.mark.filterwarnings("ignore:.*out of balance:radiosity.RadiosityWarning")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:.*out of balance:radiosity.RadiosityWarning"),
+    pytest.mark.filterwarnings("ignore:.*lamps shine on a face near:radiosity.RadiosityWarning"),
+]
 
 FACTORS = ("polygons", "hemicube", "lines")
 SCHEMES = ("full-matrix", "progressive")

@@ -71,28 +71,22 @@ def after(quanta: int, **known) -> Progressed:
     ],
 )
 def test_what_comes_next(budget, quanta, expected):
-    assert next_quanta(Budget(**budget), 2, 1024, after(quanta), math.inf, replay=False) == expected
+    assert next_quanta(Budget(**budget), 2, 1024, after(quanta), replay=False) == expected
 
 
 def test_an_error_that_is_reached_ends_a_run():
     for error in (0.05, 0.04):
-        assert next_quanta(Budget(error=0.05), 2, 1024, after(2048, error=error), math.inf, replay=False) is None
+        assert next_quanta(Budget(error=0.05), 2, 1024, after(2048, error=error), replay=False) is None
 
 
 def test_seconds_that_are_left_become_lines():
     """A stage fires about half of all lines so far, in its seconds; of what they would make of the rest, nine tenths."""
     at = after(4096, seconds=1.0, stage_seconds=0.5)
-    found = next_quanta(Budget(seconds=1.2), 2, 1024, at, math.inf, replay=False)
+    found = next_quanta(Budget(seconds=1.2), 2, 1024, at, replay=False)
     assert found == round(4096 * (1 + 0.9 * 0.2 / 0.5 / 2))
 
 
-def test_counters_that_are_full_end_a_run():
-    budget, at = Budget(quanta=5000), after(4096)  # 20 lines a quantum and replicate-pair: 10 in each of two
-    assert next_quanta(budget, 2, 1024, at, 50_000, replay=False) == 5000
-    assert next_quanta(budget, 2, 1024, at, 49_999, replay=False) is None
-
-
 def test_what_depends_on_stages_goes_on_from_rungs_alone():
-    assert next_quanta(Budget(quanta=10_000), 2, 1024, after(5000), math.inf, replay=True) is None
-    assert next_quanta(Budget(quanta=10_000), 2, 1024, after(5000), math.inf, replay=False) == 8192
-    assert next_quanta(Budget(quanta=10_000), 2, 1024, after(4096), math.inf, replay=True) == 8192
+    assert next_quanta(Budget(quanta=10_000), 2, 1024, after(5000), replay=True) is None
+    assert next_quanta(Budget(quanta=10_000), 2, 1024, after(5000), replay=False) == 8192
+    assert next_quanta(Budget(quanta=10_000), 2, 1024, after(4096), replay=True) == 8192

@@ -93,6 +93,7 @@ def test_a_stray_object_at_a_thousand_kilometres_leaves_millimetres_apart():
     assert solution.irradiance[1, 0] == pytest.approx(parallel(1, 1), abs=5 * solution.irradiance_standard_error[1, 0] + 1e-4)
 
 
+@pytest.mark.filterwarnings("ignore:.*lamps shine on a face near:radiosity.RadiosityWarning")
 def test_a_plain_of_a_hundred_kilometres_under_a_lamp_reflects_as_a_small_one():
     """Particles go on from where they land, 2 cm under the lamp; an ulp at the plain's corners is 4 mm."""
     received = []

@@ -186,7 +186,7 @@ def test_spans_are_those_that_numpy_finds(kind, passing):
     spans, count = spans_of(patches, kind, replicates=2), 3000
     pairs = spans.draw(1, 77, count)
     types, tree = choose("cpu").types, spans.geometry.bvh
-    words = [upload(types.UInt32, np.full(count, w, np.uint32)) for w in np.array(spans._randomisation)[8:]]
+    words = [upload(types.UInt32, np.full(count, w, np.uint32)) for w in np.array(spans._words(0))[8:]]
     index = upload(types.UInt32, np.arange(78, 78 + count, dtype=np.uint32))
     numbers = spans._numbers.points(index, types.UInt32(0), words, 32)
     make = global_lines.by_two_points if kind == "global" else global_lines.by_disc

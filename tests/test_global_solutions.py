@@ -18,6 +18,7 @@ from radiosity.algorithms.global_lines.mixing import Mixed
 from radiosity.device.backend import choose, frozen, upload
 from radiosity.problem.model import Problem
 from radiosity.scene.shapes import quad
+from radiosity.tally.wraps import Wraps
 from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.global_lines.spans import CODES, ESCAPED, LOST, ONE_WAY, Spans
 
@@ -171,6 +172,7 @@ def test_exchange_is_what_whole_numbers_say(random):
         upload(types.UInt32, rho),
         upload(types.UInt64, source),
         *(upload(types.UInt64, np.zeros(2 * n, np.uint64)) for _ in range(2)),
+        Wraps(types, 64),
     )
     both = (upload(types.UInt32, np.concatenate(ends)) for ends in (ones, others))
     sums = exchange.run(*both, np.array(lengths), n)

@@ -54,7 +54,7 @@ def test_a_mesh_cut_along_a_lamp_holds_its_light(turn):
     scene = ceiling_and_lamp(turn=turn)
     even, cut = rd.subdivide(scene, cells=8), rd.subdivide(cut_at_contacts(scene, 100, 50), about=100)
     exact = 2 * RHO * (1 - seen(GAP))
-    with pytest.warns(rd.RadiosityWarning, match="'lamp at ceiling': lamps shine on a face from 0.001 m.*--contacts"):
+    with pytest.warns(rd.RadiosityWarning, match=r"'lamp at ceiling': lamps shine on a face near them \(0.001 m\).*--contacts"):
         assert leaks(even) > 0.1
     assert 0 <= leaks(cut) < exact + 1e-3
     assert exact < 3e-3
@@ -82,7 +82,7 @@ def test_check_tells_of_lamps_whose_light_patches_spread():
         return [finding.message for finding in rd.check(scene).findings if finding.kind == "near lamps"]
 
     (text,) = told(ceiling_and_lamp(side=0.05))
-    assert text.startswith("'lamp at ceiling': lamps shine on a face from 0.001 m")
+    assert text.startswith("'lamp at ceiling': lamps shine on a face near them (0.001 m)")
     assert told(ceiling_and_lamp(side=0.05, two_sided=False)) == []
     assert told(ceiling_and_lamp(side=0.05, gap=0.02)) == []
 

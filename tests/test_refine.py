@@ -7,6 +7,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli.app import run as command
+from radiosity.patches.bases import CONSTANT
 from radiosity.patches.nesting import halved, parents
 from radiosity.run import run
 from radiosity.solution.refinement import RefineCheck
@@ -45,7 +46,9 @@ def test_estimates_have_no_bias(random):
     error = np.sqrt(shared**2 + own**2)
     moved = 0.04  # how much means change when patches are halved: a half of the error, as errors fall with the patch size
     solved = [
-        SimpleNamespace(patches=patches, radiosity=values[:, None], standard_error=np.full((len(patches), 1), noise))
+        SimpleNamespace(
+            patches=patches, basis=CONSTANT, radiosity=values[:, None], standard_error=np.full((len(patches), 1), noise)
+        )
         for patches, values, noise in (
             (coarse, 5 + slope * coarse.centroid[:, 0] - moved + before * random.normal(size=len(coarse)), before),
             (fine, value, error),

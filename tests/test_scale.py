@@ -85,6 +85,7 @@ def metres(report: Report) -> np.ndarray:
     return np.array([float(x) for f in report.findings for x in re.findall(r"\(([^() ]*) m\)", f.message)])
 
 
+@pytest.mark.filterwarnings("ignore:.*lamps shine on a face near:radiosity.RadiosityWarning")
 @pytest.mark.parametrize(("name", "exponent"), [(name, (-13, 20)[i % 2]) for i, name in enumerate(SCENES)])
 def test_powers_of_two_leave_every_bit(load, solved, name, exponent):
     scene, scale = load(name), 2.0**exponent
@@ -111,6 +112,7 @@ PLACES = {"small": (1e-4, (3, -2, 5)), "large": (1e6, (-3, 0.2, 4)), "far": (1.0
 USUAL = (("corridor.mgf", "far"), ("office2/office2.mgf", "small"))  # the others of these two with the slow tests
 
 
+@pytest.mark.filterwarnings("ignore:.*lamps shine on a face near:radiosity.RadiosityWarning")
 @pytest.mark.parametrize(
     ("name", "scale", "move"),
     [

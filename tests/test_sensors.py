@@ -175,6 +175,7 @@ def test_what_cannot_be_reached_is_told(shaded):
     assert found.status == "not reached"
 
 
+@pytest.mark.filterwarnings("ignore:.*lamps shine on a face near:radiosity.RadiosityWarning")
 def test_sensors_on_a_large_tilted_floor_are_not_below_it():
     """Near the centre of coordinates the floor's plane is rounded by more than a point there."""
     turned = np.linalg.qr(np.random.Generator(np.random.Philox(1)).normal(size=(3, 3)))[0]

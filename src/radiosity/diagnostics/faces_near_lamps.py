@@ -43,6 +43,7 @@ def faced(patches: Patches, points: np.ndarray, ways: np.ndarray):
     scene = patches.scene
     corners = scene.vertices[np.where(scene.faces < 0, scene.faces[:, 2:3], scene.faces)]
     sizes = patches.sizes
+    emits = np.bincount(patches.face, patches.emission.max(axis=1), scene.n_faces) > 0
     reach = NEAR_LAMP * sizes[:, None]
     boxes = corners.min(axis=1) - reach, corners.max(axis=1) + reach
     parts = []
@@ -55,7 +56,10 @@ def faced(patches: Patches, points: np.ndarray, ways: np.ndarray):
         u = np.einsum("ij,ij->i", np.cross(way, second), cross) / square
         v = np.einsum("ij,ij->i", np.cross(first, way), cross) / square
         inside = (u >= 0) & (v >= 0) & np.where(scene.is_quad[face], (u <= 1) & (v <= 1), u + v <= 1)
-        facing = np.einsum("ij,ij->i", ways[row], normal) * np.sign(height) < -PARALLEL
+        # of a face that touches, rounding alone says on which side the point is; the point's own face is one
+        touching = np.abs(height) <= TOUCHES * scene.plane_reach[face]
+        facing = np.einsum("ij,ij->i", ways[row], normal) * np.where(touching, 1.0, np.sign(height)) < -PARALLEL
+        facing &= ~(touching & emits[face])
         radiates = (height > 0) | (scene.back[face] == Back.RADIATES)
         near = np.abs(height) <= NEAR_LAMP * sizes[face]
         keep = inside & near & facing & radiates

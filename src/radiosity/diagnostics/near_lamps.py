@@ -64,8 +64,8 @@ def near_lamps(patches: Patches, device: str = "auto") -> NearLamps | None:
 def told(found: NearLamps) -> str:
     """Return what to say of them."""
     return (
-        f"{shown(found.names, 5)}: lamps shine on a face from {found.distance:.2g} m, and patches there are up to "
-        f"{found.size:.2g} m large; those that a lamp covers in part give back some {found.share:.1%} of all light where they "
+        f"{shown(found.names, 5)}: lamps shine on a face near them ({found.distance:.3g} m), whose patches are large "
+        f"({found.size:.3g} m); those that a lamp covers in part give back some {found.share:.1%} of all light where they "
         "are not covered: the scene becomes too bright, which no error shows; take --contacts or --adaptive, which cut the face "
         "along such lamps, or smaller patches, or let the lamps emit on one side only"
     )

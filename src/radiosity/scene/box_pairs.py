@@ -20,7 +20,9 @@ def box_pairs(one: tuple[np.ndarray, np.ndarray], two: tuple[np.ndarray, np.ndar
     if not len(low) or not len(from_):
         return
     width = (to - from_).max(axis=0)
-    axis = int(np.argmax((to.max(axis=0) - from_.min(axis=0)) / np.maximum(width, 1e-300)))
+    spread = to.max(axis=0) - from_.min(axis=0)
+    small = np.divide(width, spread, out=np.ones(3), where=spread > 0)
+    axis = int(np.lexsort((-spread, small))[0])
     order = np.argsort(from_[:, axis], kind="stable")
     start = from_[order, axis]
     begin = np.searchsorted(start, low[:, axis] - width[axis], "left")
