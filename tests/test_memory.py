@@ -212,7 +212,7 @@ def test_memory_does_not_grow_with_the_number_of_lines():
     assert many.memory - few.memory < memory_estimate.MEMORY_ESTIMATES["firing"].fixed
 
 
-@pytest.mark.parametrize("method", ["gather", "random-walk"])
+@pytest.mark.parametrize("method", [pytest.param("gather", marks=pytest.mark.slow), "random-walk"])
 def test_large_images_of_a_sky_count(method):
     """1.6 million entries took 165 bytes each at the peak; lines through openings have tables of their own."""
     floor = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.5, 0.0, photometric=True)
