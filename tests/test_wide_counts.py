@@ -13,6 +13,7 @@ import radiosity as rd
 from radiosity.algorithms.firing.state import BandState, FiringState
 from radiosity.algorithms.gather.packets import Packets
 from radiosity.algorithms.gather.sums import Sums
+from radiosity.algorithms.global_lines import pooling
 from radiosity.algorithms.merging import merge
 from radiosity.algorithms.state import Sizes
 from radiosity.algorithms.table import make
@@ -428,3 +429,15 @@ def test_no_number_of_lines_is_too_large():
     assert next_quanta(Budget(error=0.01), 8, 1024, at, replay=False) == 2**41
     assert next_quanta(Budget(error=0.01), 8, 1024, replace(at, error=np.nan), replay=False) is None
     assert next_quanta(Budget(error=0.01, rays=10**15), 8, 1024, replace(at, error=np.nan), replay=False) == 2**41
+
+
+def test_sums_of_global_lines_that_are_full_end_a_run(monkeypatch):
+    """What was traced is kept, and the status says what to do; sums that wrapped around would be wrong without a word."""
+    patches, options = rd.subdivide(rd.load_scene("room"), cells=1), {"replicates": 2, "seed": 1}
+    method = rd.Method(lines="global", order="regular")
+    whole = rd.solve(patches, method, quanta=2**17, **options)
+    monkeypatch.setattr(pooling, "FULL", int(whole.state["received"].max()) // 3)
+    ended = rd.solve(patches, method, quanta=2**20, **options)
+    assert "global lines are full" in ended.status
+    assert 0 < ended.quanta < 2**20
+    assert (ended.irradiance == rd.solve(patches, method, quanta=ended.quanta, **options).irradiance).all()

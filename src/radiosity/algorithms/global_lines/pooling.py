@@ -11,7 +11,7 @@ from ...sampling.streams import Seed
 from ...tally.unmet import means, sides
 from ...tracing.global_lines.ends import Ends, of_lines
 from ...tracing.global_lines.spans import ESCAPED, LOST, Pairs, Spans
-from ..base import AbstractAlgorithm, Swept
+from ..base import AbstractAlgorithm, Interrupted, Swept
 from ..state import Arrays, Sizes
 from . import first_shot
 from .first_shot import FirstShot
@@ -24,6 +24,7 @@ MEMORY, BUNDLES = 16, 64  # least iterations, or bundles, that count for the rad
 SHARE = 8  # or an eighth of all iterations so far, where that is more
 BATCH = 1 << 20  # spans of all replicates between two looks at the clock
 WARM = 1 << 21  # most lines of all halves together in the warm-up, but at least one iteration
+FULL = 1 << 61  # units of a sum: one more batch adds less, and 2^63 do not fit
 SWEEPS, SETTLED = 200, 1e-4  # most steps of the warm-up; it ends earlier where the whole change is this share of 1 - rho
 ARRAYS = ("carried", "recent", "recent_ends", "fresh", "fresh_ends", "received", "ends", "escaped", "lost")
 
@@ -99,6 +100,7 @@ class Pooling(AbstractAlgorithm[PoolingState]):
         spans = max(float(self.spans.ends_per_line.sum()) / 2, 1e-3) * self.iteration * self.halves
         batch = max(1, round(BATCH / spans)) * self.iteration
         while self.done < lines_of_half(quanta):
+            self._check()
             swept(self._gather(min(batch - self.done % batch, lines_of_half(quanta) - self.done)))
 
     @property
@@ -169,6 +171,18 @@ class Pooling(AbstractAlgorithm[PoolingState]):
                 self.recent_ends *= kept
         self.done += count
         return int(self.ends.sum()) - ends_before
+
+    def _check(self) -> None:
+        """End the run before sums of 64 bits are full.
+
+        Raises:
+            Interrupted: they are.
+        """
+        if int(self.received.max(initial=0)) >= FULL:
+            raise Interrupted(
+                f"the sums of global lines are full after {self.done:,} lines of half a replicate; take more replicates, "
+                "or local lines"
+            )
 
     def _exchanged(self, values: np.ndarray) -> np.ndarray:
         """Return values with the two halves of each replicate exchanged."""
