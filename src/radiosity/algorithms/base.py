@@ -137,8 +137,14 @@ class AbstractTally(ABC, Generic[S]):
         """
 
     def moment(self, problem: Problem, state: S, group: int, function: int) -> np.ndarray:
-        """Return moments of a group, (replicates, n_patches), in the unit of `irradiance`: of one of the functions of `basis`."""
-        raise NotImplementedError
+        """Return moments of a group, (replicates, n_patches), in the unit of `irradiance`: of one of the functions of `basis`.
+
+        Raises:
+            IndexError: the basis has no such function; a constant has the mean alone.
+        """
+        if function:
+            raise IndexError(f"function {function} of a basis of one function")
+        return self.irradiance(problem, state, group)[0]
 
     def line(self, problem: Problem, state: S, group: int) -> np.ndarray | float:
         """Return the power that one more line from the lights would bring where it hits, W or lm, one number or (n_patches,).

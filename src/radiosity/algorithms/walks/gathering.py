@@ -27,6 +27,7 @@ from ...tracing.line_tracer import LineTracer
 from ..base import AbstractMeanTally
 from ..state import Arrays, Sizes
 from .launches import AbstractWalks
+from .of_blocks import OfBlocks
 from .particles import ParticleBank, PathSegments
 from .source_sampling import Begun, SourceSampling
 from .state import GatheringState
@@ -73,13 +74,10 @@ class Gathering(AbstractWalks[GatheringState]):
         )
         self.met = dr.opaque(types.UInt64, 0, self.tracer.total * self.n)
         self.fired_upper, self.met_upper = Wraps(types), Wraps(types, 64)
-        self._of_block = {0: (self.tracer, self.segments)}
+        self._of_blocks = OfBlocks(self.tracer, self.segments)
 
     def _enter(self, block: int) -> None:
-        if block not in self._of_block:
-            tracer, segments = self._of_block[0]
-            self._of_block = {0: (tracer, segments), block: (tracer.of_block(block), segments.in_block(block))}
-        self.tracer, self.segments = self._of_block[block]
+        self.tracer, self.segments = self._of_blocks.at(block)
 
     def _look(self) -> None:
         self.hits.look()

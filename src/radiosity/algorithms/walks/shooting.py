@@ -28,6 +28,7 @@ from ..state import Arrays, Sizes
 from .density import DensityTally
 from .fractions import Fractions
 from .launches import AbstractWalks
+from .of_blocks import OfBlocks
 from .particles import ParticleBank, PathSegments, Step
 from .scores import Scores
 from .sorting import FEW, Array, arrays, cuts, order, ranges
@@ -70,13 +71,10 @@ class Walks(AbstractWalks[WalkState]):
         self.source_sampling = SourceSampling.of_power(self.problem, self.seed, self.replicates)
         self.fractions = Fractions.of(self.tracer, self.problem) if self.method.absorption == "fractional" else None
         self.scores = Scores(self.tracer, self.problem, self.method)
-        self._of_block = {0: (self.tracer, self.segments)}
+        self._of_blocks = OfBlocks(self.tracer, self.segments)
 
     def _enter(self, block: int) -> None:
-        if block not in self._of_block:
-            tracer, segments = self._of_block[0]
-            self._of_block = {0: (tracer, segments), block: (tracer.of_block(block), segments.in_block(block))}
-        self.tracer, self.segments = self._of_block[block]
+        self.tracer, self.segments = self._of_blocks.at(block)
         if self.fractions is not None:
             self.fractions.tracer = self.tracer
 
