@@ -16,10 +16,11 @@ from pathlib import Path
 import numpy as np
 
 import radiosity as rd
-from radiosity.cluster import barrier, crew
+from radiosity.cluster import barrier, crew, post, wavefronts
 from radiosity.cluster.connect import connected
 
 WORKERS = 2
+SENT = ("Lines", "Hits", "Brought", "Outcome", "Share", "FiringState", "OwnRows", "Shot", "Landed", "WalkState", "GatherLines")  # values that hold arrays
 
 
 def own_seconds() -> float:
@@ -32,7 +33,7 @@ class Counted:
 
     def __init__(self):
         self.units = self.sent = self.received = 0
-        for kind, taken in ((crew.DaskCrew, "_take"), (barrier.Barrier, "_note")):
+        for kind, taken in ((crew.DaskCrew, "_take"), (barrier.Barrier, "note")):
             self._count(kind, taken)
 
     def _count(self, kind, taken) -> None:
@@ -56,41 +57,61 @@ class Counted:
         return found
 
 
+def count_messages() -> None:
+    """Count the messages that this worker sends to others, and their bytes."""
+    deliver, counts = post.deliver, [0, 0]
+
+    async def counted(worker, address, hits, message):
+        counts[0] += 1
+        counts[1] += 0 if hits is None else hits.nbytes
+        await deliver(worker, address, hits, message)
+
+    post.deliver, vars(post)["messages"] = counted, counts
+
+
+def messages() -> list[int]:
+    return list(vars(post)["messages"])
+
+
 def size(value) -> int:
     """The bytes of all arrays within a value."""
     if isinstance(value, np.ndarray):
         return value.nbytes
     if isinstance(value, dict):
         return sum(map(size, value.values()))
-    if isinstance(value, list):
+    if isinstance(value, (list, tuple)):
         return sum(map(size, value))
-    return size(vars(value)) if type(value).__name__ in ("Lines", "Hits", "Brought", "Outcome", "Share", "FiringState") else 0
+    return size(vars(value)) if type(value).__name__ in SENT else 0
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--lines", type=float, nargs="+", default=[1e7, 1e8])
     parser.add_argument("--replicates", type=int, nargs="+", default=[8, 1])
+    parser.add_argument("--barriers", action="store_true", help="let each wavefront of a cut replicate end with a barrier")
+    parser.add_argument("--method", default="random-walk")
     parser.add_argument("--scene", default="room")
     parser.add_argument("--patches", type=int, default=20_000)
     parser.add_argument("--repeat", type=int, default=2)
     parser.add_argument("-o", "--output", type=Path)
     given = parser.parse_args()
     patches, counted = rd.subdivide(rd.load_scene(given.scene)), Counted()
+    wavefronts.ROWS = len(patches) if given.barriers else wavefronts.ROWS
     with connected(f"local:{WORKERS}") as client:
+        client.run(count_messages)
         for replicates in given.replicates:
-            measured(patches, client, counted, 1e6, replicates, 1)  # compiles kernels
+            measured(patches, client, counted, given.method, 1e6, replicates, 1)  # compiles kernels
             for lines in given.lines:
-                row = measured(patches, client, counted, lines, replicates, given.repeat)
+                row = measured(patches, client, counted, given.method, lines, replicates, given.repeat)
                 print(json.dumps(row), flush=True)
                 if given.output:
                     with given.output.open("a") as file:
                         file.write(json.dumps(row) + "\n")
 
 
-def measured(patches, client, counted, lines: float, replicates: int, repeat: int) -> dict:
+def measured(patches, client, counted, method: str, lines: float, replicates: int, repeat: int) -> dict:
     alone, here, there, walls, waits = [], [], [], [], []
-    options = {"rays": lines, "replicates": replicates, "method": "random-walk"}
+    options = {"rays": lines, "replicates": replicates, "method": method}
     for _ in range(repeat):
         begun, clock = own_seconds(), time.perf_counter()
         rd.solve(patches, **options)
@@ -98,10 +119,13 @@ def measured(patches, client, counted, lines: float, replicates: int, repeat: in
         walls.append(time.perf_counter() - clock)
         begun, before = own_seconds(), sum(client.run(own_seconds).values())
         counted.taken()
+        posted = np.sum(list(client.run(messages).values()), axis=0)
         clock = time.perf_counter()
         rd.solve(patches, **options, cluster=client)
         waits.append(time.perf_counter() - clock)
         units = counted.taken()
+        more = np.sum(list(client.run(messages).values()), axis=0) - posted
+        units |= {"messages": int(more[0]), "bytes of messages": int(more[1])}
         here.append(own_seconds() - begun)
         there.append(sum(client.run(own_seconds).values()) - before)
     best = int(np.argmin(np.add(here, there)))
@@ -109,7 +133,9 @@ def measured(patches, client, counted, lines: float, replicates: int, repeat: in
         "scene": patches.scene.source,
         "patches": len(patches),
         "lines": lines,
+        "method": method,
         "replicates": replicates,
+        "barriers": len(patches) == wavefronts.ROWS,
         "alone": round(min(alone), 2),
         "driver": round(here[best], 2),
         "workers": round(there[best], 2),

@@ -16,9 +16,10 @@ from radiosity.algorithms.splitting import divisible, split
 from radiosity.image import render
 from radiosity.run import budget
 from radiosity.run.solve import prepared
+from radiosity.tracing import lanes
 
 distributed = pytest.importorskip("distributed", reason="distributed is not installed")
-from radiosity.cluster import barrier, connect, crew, sensing, wavefronts, worker  # noqa: E402
+from radiosity.cluster import barrier, connect, crew, post, sensing, steps, wavefronts, worker  # noqa: E402
 from radiosity.cluster.job import Job  # noqa: E402
 
 QUANTA = 3 << 12  # stages at 4096 (of 5 replicates), 8192 and 12288
@@ -120,11 +121,17 @@ CUT = {
 }
 
 
+def cut_small(monkeypatch, rows: int) -> None:
+    """Cut wavefronts of few lines; ``rows`` of a worker at least, where there are to be no barriers."""
+    for name, value in {"FEWEST": 64, "LEAST": 16, "ROWS": rows}.items():
+        monkeypatch.setattr(wavefronts, name, value)
+    monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 64})
+
+
 @some(["grey", "colours"], ["depth-first", "random numbers"])
 def test_one_replicate_on_two_workers(client, name, monkeypatch):
     scene, choices, options = CUT[name]
-    monkeypatch.setattr(wavefronts, "FEWEST", 64)
-    monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 256})
+    cut_small(monkeypatch, rows=10_000)  # each wavefront ends with a barrier
     patches, units = rd.subdivide(rd.load_scene(scene), cells=2), []
     submit = barrier.Barrier._submit
     monkeypatch.setattr(barrier.Barrier, "_submit", lambda *of: (units.append(of[1]), submit(*of)))
@@ -134,6 +141,57 @@ def test_one_replicate_on_two_workers(client, name, monkeypatch):
     firsts = [one for unit in units for one in unit]
     assert any(np.isin(one.rows, other.rows).any() for one, other in pairwise(firsts))  # lines of one row went to both
     assert_same(found, solved(patches, "random-walk", **given))
+
+
+@pytest.mark.parametrize("heard", [True, False])
+def test_two_workers_without_barriers(client, heard, monkeypatch):
+    """Each fires rows of its own and sends hits to the other; what it is never told of is fired afterwards."""
+    cut_small(monkeypatch, rows=1)
+    tasks, came = [], []
+    submit, take = barrier.Barrier._submit, post.WorkerPost.take
+    monkeypatch.setattr(barrier.Barrier, "_submit", lambda *of: (tasks.append(of[1]), submit(*of)))
+    monkeypatch.setattr(post.WorkerPost, "take", lambda this: came.append(take(this)) or (came[-1] if heard else 0))
+    patches, given = rd.subdivide(rd.load_scene("room"), cells=2), {"replicates": 1, "quanta": 20_000}
+    found = solved(patches, "random-walk", cluster=client, **given)
+    own = [one[0] for one in tasks if isinstance(one, tuple)]
+    assert {one.own for one in own} == {0, 1}
+    assert sum(map(np.sum, came)) > 1000
+    assert_same(found, solved(patches, "random-walk", **given))
+
+
+def test_a_worker_that_is_lost_without_barriers_costs_their_lines(client, monkeypatch):
+    """Then the others' lines do not count either: some follow from hits that nobody has."""
+    cut_small(monkeypatch, rows=1)
+    outcome, lost = barrier.Barrier._outcome, []
+
+    def lose(this, future):
+        found = outcome(this, future)
+        fails = found is not None and found.what[0].fired is not None and len(lost) < 2
+        return lost.append(found) if fails else found
+
+    monkeypatch.setattr(barrier.Barrier, "_outcome", lose)
+    patches, given = rd.subdivide(rd.load_scene("room"), cells=2), {"replicates": 1, "quanta": 20_000}
+    found = solved(patches, "random-walk", cluster=client, **given)
+    assert len(lost) == 2
+    assert_same(found, solved(patches, "random-walk", **given))
+
+
+STEPS = ["regular", "incremental", "continuous", "gather"]
+MORE_STEPS = ["two ends", "control variate", "warm-up", "gathering", "fractional", "sorted", "density", "incremental, two ends"]
+OTHERS = {"gather": rd.PRESETS["gather"].method, "sorted": rd.Method(equation="continuous", order="sorted")}
+
+
+@some(STEPS, MORE_STEPS)
+def test_steps_of_one_replicate_on_two_workers(client, coloured, name, monkeypatch):
+    method = (PARTS | TOGETHER | INCREMENTAL | OTHERS)[name]
+    monkeypatch.setattr(steps, "FEWEST", 64)
+    monkeypatch.setattr(lanes, "CHUNK", 512)
+    units, submit = [], barrier.Barrier._submit
+    monkeypatch.setattr(barrier.Barrier, "_submit", lambda *of: (units.append(of[1]), submit(*of)))
+    given = {"replicates": 1, "quanta": 20_000}
+    found = solved(coloured, method, cluster=client, **given)
+    assert len(units) >= 8
+    assert_same(found, solved(coloured, method, **given))
 
 
 @pytest.mark.parametrize("scene", ["room"])

@@ -72,7 +72,7 @@ class Barrier:
                     if found is None:
                         waiting.append(unit)
                         continue
-                    self._note(lines_of(unit), found)
+                    self.note(lines_of(unit), found)
                     yield from found.what
             for unit in [*waiting, *(unit for unit, _ in active.values())]:
                 yield from self.here(unit)
@@ -81,13 +81,46 @@ class Barrier:
                 with suppress(Exception):  # the scheduler may have gone
                     future.cancel()
 
-    def _submit(self, unit: Any, address: str, active: dict) -> None:
+    def together(self, units: dict[str, Any], work: Callable[..., Brought], end: Callable[[], None]) -> list[Brought]:
+        """Return what units bring that workers do together, each by its address: all of them, or nothing.
+
+        Args:
+            work: as of the class.
+            end: tells the workers to return early, where one of them has gone.
+        """
+        active, found, told = {}, list[Brought](), False
+        try:
+            for address, unit in units.items():
+                self._submit(unit, address, active, work)
+            while active:
+                with aside():
+                    self.crew.awake.wait(AWAKE)
+                self.crew.awake.clear()
+                workers = self.workers()
+                for future, (_, address) in list(active.items()):
+                    if future.status == "pending" and address in workers:
+                        continue
+                    del active[future]
+                    outcome = self._outcome(future)
+                    found += [] if outcome is None else [outcome]
+                if len(found) + len(active) < len(units) and not told:
+                    told = True
+                    end()
+        finally:
+            for future in active:
+                with suppress(Exception):  # the scheduler may have gone
+                    future.cancel()
+        return found if len(found) == len(units) else []
+
+    def _submit(self, unit: Any, address: str, active: dict, work: Callable[..., Brought] | None = None) -> None:
         name = f"radiosity-{uuid.uuid4().hex}"
-        future = self.crew.client.submit(self.work, self.crew.job.key, unit, pure=False, workers=[address], key=name)
+        given = {"pure": False, "workers": [address], "key": name}
+        future = self.crew.client.submit(work or self.work, self.crew.job.key, unit, **given)
         future.add_done_callback(lambda _: self.crew.awake.set())
         active[future] = (unit, address)
 
-    def _note(self, lines: int, found: Brought) -> None:
+    def note(self, lines: int, found: Brought) -> None:
+        """Note the rate of a worker, and refuse one that would give other bits."""
         self.crew.check(found.facts, found.address)
         rate, before = lines / max(found.seconds, 1e-6), self.rates.get(found.address)
         self.rates[found.address] = rate if before is None else (before + rate) / 2

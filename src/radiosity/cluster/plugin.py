@@ -4,17 +4,18 @@ from typing import Any
 
 from distributed import WorkerPlugin
 
-from . import worker
+from . import post, worker
 
 
 class JobPlugin(WorkerPlugin):
-    """Keeps a job on a worker until it is taken off."""
+    """Keeps a job on a worker until it is taken off, and opens the worker for the messages of others."""
 
     def __init__(self, job: Any):
         self.job, self.name = job, f"radiosity-{job.key}"
 
     def setup(self, worker: Any) -> None:
         put(self.job)
+        post.open_for(worker)
 
     def teardown(self, worker: Any) -> None:
         drop(self.job.key)

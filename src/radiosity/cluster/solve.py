@@ -5,7 +5,6 @@ from collections.abc import Callable
 from typing import Any
 
 from ..algorithms.base import AbstractAlgorithm
-from ..algorithms.firing.algorithm import Firing
 from ..algorithms.in_parts import InParts, in_parts
 from ..errors import DeviceError, RadiosityWarning, result_kept
 from ..run.part import together
@@ -15,7 +14,7 @@ from ..run.run import Run
 from .connect import connected
 from .crew import DaskCrew
 from .job import Job
-from .wavefronts import DaskFirer
+from .steps import cut
 
 
 def solve(cluster: Any, prepared: Callable[[], Run[R]]) -> R:
@@ -49,10 +48,10 @@ def solve(cluster: Any, prepared: Callable[[], Run[R]]) -> R:
 
 
 def _spread(whole: AbstractAlgorithm, crew: DaskCrew, run: Run) -> AbstractAlgorithm:
-    """Return the algorithm of a run: in parts of its replicates, or in cut wavefronts where there are more workers than those."""
+    """Return the algorithm of a run: in parts of its replicates, or in cut steps where there are more workers than those."""
     begun = run.resume is not None and in_parts(run.resume.state)
-    if isinstance(whole, Firing) and not whole.counters.coherent and not begun and len(crew.present()) > whole.replicates:
-        whole.counters.firer = DaskFirer(crew)
+    parts = 1 if crew.together else whole.replicates
+    if not begun and not getattr(run.method, "coherent", False) and len(crew.present()) > parts and cut(whole, crew):
         return whole
     return InParts(whole, crew, waits=not isinstance(run.record, Record))
 

@@ -12,9 +12,11 @@ import numpy as np
 
 from ..algorithms.base import Interrupted
 from ..algorithms.firing.elsewhere import Hits, Lines, fire_here
-from ..device.backend import threads
+from ..algorithms.firing.own_rows import OwnRows, fire_own
+from ..device.backend import frozen, threads
 from ..device.turn import turn
 from .job import Job, facts
+from .post import WorkerPost
 
 KEPT = 2  # algorithms that stay on a worker between two units, so that their states need not be sent
 
@@ -111,6 +113,42 @@ def fire(key: str, lines: list[Lines]) -> Brought:
     return bring(key, lambda job: list(fire_all(job, [owned_lines(one) for one in lines])))
 
 
+def fire_own_rows(key: str, unit: tuple[OwnRows, str, list[str]]) -> Brought:
+    """Fire lines of own rows, and tell other workers their hits, until nothing is due anywhere (`own_rows`).
+
+    Args:
+        unit: the task, the key of the work that the workers do together, and the addresses of these.
+
+    Raises:
+        Missing: this worker has no such job.
+    """
+    from distributed import get_worker
+
+    if key not in _jobs:
+        raise Missing("job")
+    (address, count), seconds, (task, work, addresses) = _here(), 0.0, unit
+    with turn(), threads(count):
+        counters = _counters(_jobs[key], task.replicate)
+        phase = frozen(counters.phase).copy()
+
+    def fire_some(lines: Lines) -> Hits:
+        nonlocal seconds
+        begun = time.perf_counter()
+        with turn(), threads(count):  # and not while it waits: workers may be threads of one process
+            hits = fire_here(counters, lines)
+        seconds += time.perf_counter() - begun
+        return hits
+
+    post = WorkerPost(get_worker(), work, task.own, addresses)
+    first = None if task.lines is None else owned_lines(task.lines)
+    try:
+        hits = fire_own(replace(task, lines=first), counters.source, phase, fire_some, post)
+    finally:
+        post.close()
+    keep((key, task.replicate, 0), "", counters)
+    return Brought([hits], seconds, address, facts())
+
+
 def sense(key: str, counts: tuple[np.ndarray, np.ndarray]) -> Brought:
     """Trace lines of sensors; see `bring`."""
     return bring(key, lambda job: [job.sums(*(np.array(one) for one in counts))])
@@ -134,11 +172,20 @@ def bring(key: str, act: Callable[[Any], list]) -> Brought:
 def fire_all(job: Job, lines: list[Lines]) -> Iterator[Hits]:
     """Yield the hits of lines, one replicate after the other; counters of some replicates stay for later wavefronts."""
     for one in lines:
-        place = (job.key, one.replicate, 0)
-        _, counters = _live.pop(place, ("", None))
-        counters = job.algorithm(one.replicate, 1).counters if counters is None else counters
+        counters = _counters(job, one.replicate)
         yield fire_here(counters, one)
-        _keep(place, "", counters)
+        keep((job.key, one.replicate, 0), "", counters)
+
+
+def _counters(job: Job, replicate: int) -> Any:
+    """Return counters of a replicate, which are no one else's until they are kept."""
+    counters = taken((job.key, replicate, 0))
+    return job.algorithm(replicate, 1).counters if counters is None else counters
+
+
+def taken(place: tuple[str, int, int]) -> Any:
+    """Return what a place holds, which is no one else's until it is kept again; None where it holds nothing."""
+    return _live.pop(place, ("", None))[1]
 
 
 def owned_lines(lines: Lines) -> Lines:
@@ -147,7 +194,8 @@ def owned_lines(lines: Lines) -> Lines:
     return replace(lines, **owned(arrays))
 
 
-def _keep(place: tuple[str, int, int], token: str, kept: Any) -> None:
+def keep(place: tuple[str, int, int], token: str, kept: Any) -> None:
+    """Keep an algorithm, counters or what else a place holds, and forget the oldest."""
     _live[place] = (token, kept)
     while len(_live) > KEPT:
         _live.popitem(last=False)
@@ -191,7 +239,7 @@ def advance(unit: Unit, arrays: Mapping[str, np.ndarray] | None) -> Outcome:
         except Interrupted as reason:
             ended = str(reason)
         state, token = algorithm.capture().arrays(), uuid.uuid4().hex
-        _keep((unit.job, unit.first, unit.count), token, algorithm)
+        keep((unit.job, unit.first, unit.count), token, algorithm)
     texts = tuple(dict.fromkeys(str(one.message) for one in told))
     return Outcome(state, token, lines, done, time.perf_counter() - begun, ended, texts, address, facts())
 

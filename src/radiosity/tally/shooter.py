@@ -19,12 +19,13 @@ from ..patches.bases import CONSTANT, Basis
 from ..sampling.blocks import BLOCK
 from ..sampling.streams import Purpose, Seed
 from ..tracing.geometry import Geometry
-from ..tracing.lanes import Batch, Launch
+from ..tracing.lanes import Batch, Launch, sums
 from ..tracing.line_tracer import LineTracer
 from ..tracing.spots import traced
 from .hit_counts import HitCounts
 from .hit_tally import DENSE
 from .moments import Moments
+from .shots import AbstractShots, shoot_elsewhere
 from .wraps import PERIOD, Wraps
 
 FEW = 1 << 13  # batches of at most this many lines share one kernel
@@ -59,6 +60,7 @@ class Shooter:
         basis: of the light on patches.
         received: (slots * n_columns,) Int64, power of the last shot. A slot has a column for each group of bands, or with a basis
             of K functions K columns for each: the power times each function, summed.
+        elsewhere: fires many lines elsewhere; None: here.
     """
 
     def __init__(
@@ -80,6 +82,7 @@ class Shooter:
         self._fired = [dr.opaque(self.types.UInt32, 0, self.total) for _ in range(sequences)]
         self._upper = [Wraps(self.types) for _ in range(sequences)]
         self.fired = self._fired[0]
+        self.elsewhere: AbstractShots | None = None
 
     @property
     def sequences(self) -> int:
@@ -133,6 +136,12 @@ class Shooter:
         if dr.width(rows) == 0:
             return 0, None
         now, fired = dr.gather(types.UInt32, counts, rows), dr.gather(types.UInt32, self.fired, rows)
+        if self.elsewhere is not None and pairs is None and self.upper.halves is None:
+            (lines,) = sums(types, now)
+            if lines >= self.elsewhere.least:
+                shoot_elsewhere(self, self.elsewhere, rows, now, weights, ends)
+                self._look()
+                return lines, None
         largest, blocks, left = dr.max(now + fired), None, None
         if self.upper.halves is not None:
             first = fired + 1

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...device.backend import frozen, upload
 from ...solution.books import exact_sum
+from ...tally.shots import between
 from ...tally.wraps import PERIOD
 from ...tracing.lanes import Wavefront
 
@@ -51,6 +52,7 @@ class Hits:
         replicate: as of `Lines`.
         arrivals, missed: (n_rows,) and (2,), hits, and lines that escaped and were lost.
         received, received_missed: (n_rows, groups) and (2, groups) uint64, their power; None where there is one group.
+        fired: (n_rows,) lines of each row that were fired after those that were given; None where there are none (`own_rows`).
     """
 
     replicate: int
@@ -58,6 +60,21 @@ class Hits:
     missed: np.ndarray
     received: np.ndarray | None
     received_missed: np.ndarray | None
+    fired: np.ndarray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Begun:
+    """The counters of a run of integers at a wavefront of all that is due: what may be fired after it follows from them.
+
+    Attributes:
+        quanta: N of the stage.
+        arrivals, fired: (replicates, n_rows), hit and fired counts; the lines of the wavefront count as fired.
+    """
+
+    quanta: int
+    arrivals: np.ndarray
+    fired: np.ndarray
 
 
 class AbstractFirer(ABC):
@@ -72,8 +89,12 @@ class AbstractFirer(ABC):
     over: bool = False
 
     @abstractmethod
-    def fire(self, lines: list[Lines]) -> Iterator[Hits]:
-        """Yield the hits of all lines, in any order and in any pieces."""
+    def fire(self, lines: list[Lines], begun: Begun | None) -> Iterator[Hits]:
+        """Yield the hits of all lines, in any order and in any pieces.
+
+        Args:
+            begun: where it is given, lines that these hits make due may be fired as well.
+        """
 
 
 def fire_elsewhere(counters: Any, wavefront: Wavefront, largest: int, firer: AbstractFirer) -> None:
@@ -92,11 +113,16 @@ def fire_elsewhere(counters: Any, wavefront: Wavefront, largest: int, firer: Abs
         powers = None if weights is None else weights[part]
         if high > low:
             found.append(Lines(replicate, rows.astype(np.uint32), fired[numbers[part]], counts[part], powers, largest, wide))
-    sums = _Sums.of(counters)
-    for hits in firer.fire(found):
-        sums = sums.after(counters, hits)
-    sums.put_back(counters)
     fired[numbers] += counts
+    sums, more = _Sums.of(counters), 0
+    alone = bands is not None or counters.panes is not None or wide or counters.parted
+    begun = None if alone else Begun(counters.quanta, sums.arrivals, fired.reshape(sums.arrivals.shape))
+    for hits in firer.fire(found, begun):
+        sums = sums.after(counters, hits)
+        if hits.fired is not None:
+            fired[hits.replicate * tracer.n : (hits.replicate + 1) * tracer.n] += hits.fired
+            more += int(hits.fired.sum(dtype=np.int64))
+    sums.put_back(counters)
     counters.fired = upload(type(counters.fired), counters.fired_upper.of(fired))
     if bands is not None and weights is not None:
         for replicate in range(tracer.replicates):
@@ -104,7 +130,7 @@ def fire_elsewhere(counters: Any, wavefront: Wavefront, largest: int, firer: Abs
             power = weights[own] * counts[own, None].astype(np.uint64)
             for group, column in enumerate(power.T):
                 bands.fired_before[group * tracer.replicates + replicate] += exact_sum(column)
-    counters.swept += wavefront.total
+    counters.swept += wavefront.total + more
     counters.look()
     counters.look_everywhere()
 
@@ -188,14 +214,12 @@ def _between(lines: list[Lines], low: int, high: int) -> list[Lines]:
     """Return the lines from the ``low``-th to below the ``high``-th of all."""
     found, before = [], 0
     for one in lines:
-        begins = before + np.cumsum(one.counts, dtype=np.int64) - one.counts
-        first, end = np.maximum(begins, low), np.minimum(begins + one.counts, high)
-        some = np.flatnonzero(first < end)
+        some, first, counts = between(one.counts, low - before, high - before)
         before += one.total
         if len(some):
-            counts = (end - first)[some].astype(one.counts.dtype)
-            fired = one.fired[some] + (first - begins)[some].astype(one.fired.dtype)
+            fired = one.fired[some] + first.astype(one.fired.dtype)
             weights = None if one.weights is None else one.weights[some]
+            counts = counts.astype(one.counts.dtype)
             found.append(replace(one, rows=one.rows[some], fired=fired, counts=counts, weights=weights))
     return found
 

@@ -16,9 +16,10 @@ from ...errors import MethodError
 from ...sampling.blocks import BITS, BLOCK
 from ...sampling.streams import Purpose
 from ...tally.wraps import Wraps
-from ..base import AbstractAlgorithm, Swept
+from ..base import AbstractAlgorithm, Interrupted, Swept
 from ..state import Arrays, Sizes
 from .chances import Chances
+from .elsewhere import AbstractLinesElsewhere, GatherLines
 from .lane_scatter import LaneScatter
 from .lines import UNITS, Lines
 from .near import Near
@@ -53,6 +54,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         self._quanta, self._done = 0, 0
         self._shares: Shares | None = None
         self._lines: Lines | None = None
+        self.elsewhere: AbstractLinesElsewhere | None = None  # traces cosine lines and shadow rays elsewhere; None: here
 
     @property
     def sizes(self) -> Sizes:
@@ -80,16 +82,20 @@ class Gather(AbstractAlgorithm[GatherState]):
 
     def _begin(self) -> None:
         """Run the pilot, and make the sums."""
-        method, types = self.method, self.types
-        self._shares = Pilot.of(self.geometry, self.problem, self.chances, method, self.seed).shares
-        purposes = (Purpose.NUMBERS, Purpose.SHADOW_RAYS)
-        self._lines = Lines.of(self.packets, self.chances, self.problem, method, self.seed, purposes)
+        types = self.types
+        self._shares = Pilot.of(self.geometry, self.problem, self.chances, self.method, self.seed).shares
+        self._lines = self.lines()
         self._scatter = LaneScatter.of_lanes(self.packets, self.problem.groups.scatter)
         self._brought, self._met = (Sums(self.packets, kind, self.groups) for kind in (types.UInt64, types.Int64))
         self._reading = Reading.nothing(types.Float, self.packets.lanes, self.groups, self.replicates)
         self._missed = [dr.zeros(types.UInt32, self.packets.lanes) for _ in range(2)]
         self._missed_upper, self._unseen = [Wraps(types) for _ in range(2)], 0
         self._hits, self._stored = dr.zeros(types.UInt32, self.packets.lanes), 0
+
+    def lines(self) -> Lines:
+        """Return what traces its lines."""
+        purposes = (Purpose.NUMBERS, Purpose.SHADOW_RAYS)
+        return Lines.of(self.packets, self.chances, self.problem, self.method, self.seed, purposes)
 
     def advance(self, quanta: int, swept: Swept) -> None:
         told = 0
@@ -100,8 +106,9 @@ class Gather(AbstractAlgorithm[GatherState]):
         assert shares is not None
         self._quanta = quanta
         corrections = shares.corrections(quanta)
+        more = 1 if self.elsewhere is None else self.elsewhere.slices
         while self._done < quanta:
-            step = max(SLICE * max(dr.thread_count() // 2, 1) // self.replicates, 1)
+            step = max(more * SLICE * max(dr.thread_count() // 2, 1) // self.replicates, 1)
             end = min([quanta, self._done + step, *(at for at in corrections if at > self._done)])
             told += self._trace(shares, end)
             self._done = end
@@ -109,6 +116,8 @@ class Gather(AbstractAlgorithm[GatherState]):
                 self._correct(shares)
             swept(told)
             told = 0
+            if self.elsewhere is not None and self.elsewhere.over:
+                raise Interrupted("interrupted")
 
     def _trace(self, shares: Shares, quanta: int) -> int:
         """Trace the lines up to N, and return their number."""
@@ -117,20 +126,48 @@ class Gather(AbstractAlgorithm[GatherState]):
         before = shares.counts(self._done) if self._done else np.zeros_like(shares.counts(0))
         more = shares.counts(quanta) - before
         if more[1].any():
-            self._brought.add(lines.shadow(before[1], more[1]))
+            self._shadow(lines, before[1], more[1])
         if more[0].any():
             storing = self._done < shares.stored_quanta
             if storing:
                 self._make_room(int((before + more)[0].max()))
-            read = None if storing else self._reading.reflected
-            met, missed = lines.cosine(before[0], more[0], read, self._hits if storing else None)
-            self._met.add(met)
-            self._missed = [total + more for total, more in zip(self._missed, missed, strict=True)]
+                self._add_cosine(*lines.cosine(before[0], more[0], None, self._hits))
+            else:
+                self._cosine(lines, before[0], more[0])
         dr.eval(self._brought.low, self._met.low, self._missed)
         self._unseen += int(more.max())
         if self._unseen > APART:
             self._look(int((before + more).max()))
         return int((more * self.packets.sizes).sum()) * self.replicates
+
+    def _shadow(self, lines: Lines, before: np.ndarray, more: np.ndarray) -> None:
+        """Trace shadow rays, from these counts of each packet on."""
+        sent = GatherLines("shadow", before, more)
+        if not self._pays(sent):
+            self._brought.add(lines.shadow(before, more))
+            return
+        assert self.elsewhere is not None
+        for sums in self.elsewhere.trace(sent):
+            self._brought.add([upload(self.types.UInt64, column) for column in sums[0]])
+
+    def _cosine(self, lines: Lines, before: np.ndarray, more: np.ndarray) -> None:
+        """Trace cosine lines that are not stored, from these counts of each packet on."""
+        if not self._pays(GatherLines("cosine", before, more)):
+            self._add_cosine(*lines.cosine(before, more, self._reading.reflected))
+            return
+        assert self.elsewhere is not None
+        read = [frozen(column) for column in self._reading.reflected]
+        for met, missed in self.elsewhere.trace(GatherLines("cosine", before, more, read)):
+            whole = ((self.types.Int64, met), (self.types.UInt32, missed))
+            self._add_cosine(*([upload(kind, column) for column in columns] for kind, columns in whole))
+
+    def _add_cosine(self, met: list, missed: list) -> None:
+        self._met.add(met)
+        self._missed = [total + more for total, more in zip(self._missed, missed, strict=True)]
+
+    def _pays(self, lines: "GatherLines") -> bool:
+        """Return whether lines are to be traced elsewhere."""
+        return self.elsewhere is not None and lines.total(self.packets.sizes) * self.replicates >= self.elsewhere.least
 
     def _look(self, most: int) -> None:
         """Set apart what sums cannot hold much longer, where a patch has ``most`` lines."""

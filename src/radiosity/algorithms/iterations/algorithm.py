@@ -6,7 +6,7 @@ K. U. Leuven 1999.
 """
 
 from ...errors import MethodError
-from ..base import AbstractAlgorithm, Swept
+from ..base import AbstractAlgorithm, Interrupted, Swept
 from ..state import Arrays, Sizes
 from .control import Control
 from .exchange import Exchange
@@ -48,7 +48,14 @@ class Iteration(AbstractAlgorithm[IterationState]):
         return False
 
     def advance(self, quanta: int, swept: Swept) -> None:
-        self.scheme.advance(quanta, swept)
+        shots = self.exchange.shooter.elsewhere
+
+        def told(lines: int) -> None:
+            swept(lines)
+            if shots is not None and shots.over:
+                raise Interrupted("interrupted")
+
+        self.scheme.advance(quanta, told)
 
     def capture(self) -> IterationState:
         scheme = self.scheme.capture()

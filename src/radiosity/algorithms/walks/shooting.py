@@ -6,6 +6,7 @@ of light", 3rd Eurographics Workshop on Rendering, 1992. Discrete: M. Sbert 1997
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Any
 
 import drjit as dr
@@ -96,12 +97,15 @@ class Walks(AbstractWalks[WalkState]):
             return super()._chunks(begun, limit)
         return len(ranges(self.tracer, begun.batch, limit))
 
-    def _launches(self, begun: Begun, before: int, done: int, limit: int) -> Iterator[tuple[Any, int | None]]:
+    def _launches(
+        self, begun: Begun, before: int, done: int, end: int | None, limit: int
+    ) -> Iterator[tuple[Any, int | None]]:
         if self.method.order == "sorted":
             walks = self.source_sampling.count(before).sum(axis=1, dtype=np.int64)
-            yield from arrays(self.tracer, begun.batch, walks, done, limit)
+            every = arrays(self.tracer, begun.batch, walks, done, limit)
+            yield from every if end is None else islice(every, max(end - done, 0))
         else:
-            yield from super()._launches(begun, before, done, limit)
+            yield from super()._launches(begun, before, done, end, limit)
 
     def _follow(self, launch: Launch | Array, largest: int) -> int:
         array = launch if isinstance(launch, Array) else None

@@ -29,6 +29,7 @@ class BreadthFirst(AbstractOrder):
                 if counters.panes is None and not counters.wide:
                     return
                 continue  # walks end on diffusing panes
+            before = counters.swept
             counters.fire(wavefront, largest)
-            swept(wavefront.total)
+            swept(counters.swept - before)  # of others, too, where they were fired elsewhere
             del wavefront  # frees its memory
