@@ -20,7 +20,8 @@ from radiosity.cluster import barrier, crew, post, wavefronts
 from radiosity.cluster.connect import connected
 
 WORKERS = 2
-SENT = ("Lines", "Hits", "Brought", "Outcome", "Share", "FiringState", "OwnRows", "Shot", "Landed", "WalkState", "GatherLines")  # values that hold arrays
+SENT = {"Lines", "Hits", "Brought", "Outcome", "Share", "FiringState", "OwnRows"}  # values that hold arrays
+SENT |= {"Shot", "Landed", "WalkState", "GatherLines"}  # of steps
 
 
 def own_seconds() -> float:

@@ -92,6 +92,21 @@ def test_killed_workers_lose_nothing(tmp_path):
         assert_same(solved(processes, kill, tmp_path / "run.npz"), alone())
 
 
+@pytest.mark.parametrize("method", ["random-walk", "particle-tracing", "gather", "stochastic-jacobi"])
+def test_a_worker_killed_while_two_work_at_one_replicate(method):
+    patches, options = rd.subdivide(rd.load_scene("room"), cells=3), {"quanta": 3 * 10**6, "replicates": 1, "seed": 5}
+    with Processes(2) as processes:
+
+        def kill():
+            processes.workers[0].kill()
+            processes.add()
+
+        listen, done = on_first_lines(lambda: threading.Timer(0.3, kill).start())  # while they trace
+        found = rd.solve(patches, method, **options, cluster=processes.address, progress=listen)
+        assert done
+    assert_same(found, rd.solve(patches, method, **options))
+
+
 def test_all_workers_killed(tmp_path):
     with Processes(2) as processes:
 
