@@ -16,11 +16,13 @@ from radiosity.algorithms.splitting import divisible, split
 from radiosity.image import render
 from radiosity.run import budget
 from radiosity.run.solve import prepared
+from radiosity.sensors import pixels
 from radiosity.tracing import lanes
 
 distributed = pytest.importorskip("distributed", reason="distributed is not installed")
-from radiosity.cluster import barrier, connect, crew, post, sensing, steps, wavefronts, worker  # noqa: E402
+from radiosity.cluster import barrier, connect, crew, post, room, sensing, steps, wavefronts, worker  # noqa: E402
 from radiosity.cluster.job import Job  # noqa: E402
+from radiosity.cluster.plugin import JobPlugin  # noqa: E402
 
 QUANTA = 3 << 12  # stages at 4096 (of 5 replicates), 8192 and 12288
 GREY = ["firing", "gathering", "regular", "local matrix"]
@@ -210,10 +212,34 @@ def test_sensors_are_those_of_one_machine(client, scene, monkeypatch):
 def test_a_final_gather_is_that_of_one_machine(client, monkeypatch):
     monkeypatch.setattr(sensing, "FEWEST", 64)
     box = rd.solve(rd.subdivide(rd.load_scene("cornell-box"), cells=1), "random-walk", quanta=2000, replicates=2)
+    monkeypatch.setattr(pixels, "PIECE", 64)
+    setup, brought = JobPlugin.setup, []
+    monkeypatch.setattr(JobPlugin, "setup", lambda this, worker: brought.append(type(this.job).__name__) or setup(this, worker))
     given = {"width": 12, "samples": 1, "final_gather": 8}
     alone, found = (render(box, **given, **more) for more in ({}, {"cluster": client}))
     assert alone.any()
     assert np.array_equal(found, alone)
+    assert brought.count("SceneJob") == 2  # one for each worker
+    assert brought.count("SensorJob") >= 4  # one for each worker and piece
+
+
+def test_heat_is_that_of_one_machine(client):
+    room, given = rd.subdivide(open_room(two_sided=True), cells=1), {"emissivity": 0.7, "surroundings": 280.0, "replicates": 3}
+    alone, found = (rd.radiative_exchange(room, {"*": 300}, rays=20_000, **given, **more) for more in ({}, {"cluster": client}))
+    assert np.array_equal(found.net, alone.net)
+    lines = rd.trace_lines(room, rays=2_000, replicates=2)
+    with pytest.raises(rd.MethodError, match="leave rays, error and cluster out"):
+        rd.radiative_exchange(lines, {"*": 300}, emissivity=0.7, surroundings=280.0, cluster=client)
+
+
+@pytest.mark.parametrize("replicates", [5, 1])
+def test_a_worker_with_too_little_memory_is_told_before_it_begins(client, replicates, monkeypatch):
+    monkeypatch.setattr(room, "left", lambda there: 2**20)
+    monkeypatch.setattr(wavefronts, "FEWEST", 64)
+    monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 64})
+    message = r"worker inproc://\S+ has too little memory: .* in \d replicates would take .* 1 MiB there"
+    with pytest.raises(rd.MethodError, match=message):
+        solved(rd.subdivide(rd.load_scene("room"), cells=1), "random-walk", cluster=client, replicates=replicates, quanta=2000)
 
 
 # ---- interruptions, and workers that come and go ------------------------------------------------------------------------

@@ -51,6 +51,7 @@ class Tracing:
         error_of: What --error is the error of: net:NAME or temperature:NAME. Default: all net heat, relative to the largest.
         patch_size: Longest edge of a patch, in metres. Default: about 2 000 patches in all.
         cells: Cut every face into CELLS x CELLS patches.
+        cluster: Trace on the workers of Dask, as of `radiosity solve`: tcp://HOST:PORT, or local:N.
     """
 
     rays: Count = None
@@ -58,6 +59,7 @@ class Tracing:
     error_of: str | None = None
     patch_size: Length = None
     cells: Count = None
+    cluster: str | None = None
 
 
 ConditionOptions = Annotated[Conditions, Parameter(name="*", group=Group("The conditions", sort_key=1))]

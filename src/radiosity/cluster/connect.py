@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from ..errors import DeviceError, MethodError, installing
+from .scenes import forget_scenes
 
 LOCAL = "local:"
 PROTOCOLS = ("tcp://", "tls://", "ucx://", "ws://", "wss://", "inproc://")
@@ -36,6 +37,15 @@ def connected(cluster: Any) -> Iterator[Any]:
     Raises:
         DeviceError: 'distributed' is not installed, or no scheduler answers. MethodError: it is none of these.
     """
+    with _client(cluster) as client:
+        try:
+            yield client
+        finally:
+            forget_scenes(client)
+
+
+@contextmanager
+def _client(cluster: Any) -> Iterator[Any]:
     if find_spec("distributed") is None:
         raise DeviceError(f"cluster {_named(cluster)} needs 'distributed', which is not installed; {installing('cluster')}")
     from distributed import Client

@@ -49,12 +49,14 @@ class DaskCrew(AbstractCrew):
         client: a `distributed.Client`.
         job: which every worker has.
         together: why all replicates must advance together; "" where they need not.
+        before: jobs that the job needs on workers, and which somebody else takes off them.
         lost: what happened to the cluster, where that has ended the run; else "".
     """
 
     client: Any
     job: Any  # a `Job`, or another value that has a key
     together: str = ""
+    before: tuple[Any, ...] = ()
     lost: str = ""
     _tokens: WeakKeyDictionary[Any, tuple[str, str]] = field(default_factory=WeakKeyDictionary)  # of states: token and worker
     _threads: dict[str, int] = field(default_factory=dict)
@@ -246,10 +248,15 @@ class DaskCrew(AbstractCrew):
     # ---- the job ---------------------------------------------------------------------------------------------------
 
     def register(self) -> None:
-        """Bring the job to all workers, those to come among them."""
+        """Bring the job, and those that it needs, to all workers."""
+        for job in (*self.before, self.job):
+            self.bring(job)
+
+    def bring(self, job: Any) -> None:
+        """Bring a job to all workers, those to come among them."""
         from .plugin import JobPlugin
 
-        self.client.register_plugin(JobPlugin(self.job))
+        self.client.register_plugin(JobPlugin(job))
 
     def release(self) -> None:
         """Take the job off the workers."""

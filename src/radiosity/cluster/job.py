@@ -24,6 +24,7 @@ class Job:
         method: the choices.
         seed: of the run.
         device: the name of the device that the run is of.
+        lines: of each replicate, where the memory of a run grows with them and they are known; else None.
         key: the name of the job on workers.
     """
 
@@ -31,6 +32,7 @@ class Job:
     method: Method | Baseline
     seed: Seed
     device: str
+    lines: float | None = None
     key: str = field(default_factory=lambda: uuid.uuid4().hex)
 
     @cached_property

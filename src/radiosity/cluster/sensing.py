@@ -10,35 +10,34 @@ from typing import Any
 
 import numpy as np
 
-from ..device.backend import choose
 from ..problem.model import Problem
 from ..sensors.tracing import OfLines, Setup, Tracing
-from ..tracing.geometry import Geometry
 from .barrier import Barrier
 from .crew import DaskCrew
-from .worker import sense
+from .scenes import scene_on
+from .worker import job_of, sense
 
 FEWEST = 1 << 17  # lines of a unit
 
 
 @dataclass(frozen=True, eq=False)
 class SensorJob:
-    """What workers need of a measurement.
+    """What workers need of a measurement, besides the scene.
 
     Attributes:
-        problem, setup: the scene, and the sensors.
-        device: the name of the device that the run is of.
+        scene: the key of the `SceneJob`.
+        setup: the sensors.
         key: the name of the job on workers.
     """
 
-    problem: Problem
+    scene: str
     setup: Setup
-    device: str
     key: str = field(default_factory=lambda: uuid.uuid4().hex)
 
     @cached_property
     def tracing(self) -> Tracing:
-        return self.setup.tracing(Geometry(self.problem.patches, choose(self.device)), self.problem)
+        scene = job_of(self.scene)
+        return self.setup.tracing(scene.geometry, scene.problem)
 
     def sums(self, before: np.ndarray, more: np.ndarray) -> OfLines:
         """Return the sums of lines, on the host."""
@@ -58,8 +57,9 @@ def on_host(sums: OfLines) -> OfLines:
 @contextmanager
 def sensing(client: Any, tracing: Tracing, problem: Problem, device: str) -> Iterator[None]:
     """Trace the lines of sensors on the workers of a client during a block."""
-    crew = DaskCrew(client, SensorJob(problem, tracing.setup, device))
-    crew.register()
+    scene = scene_on(client, problem, device)
+    crew = DaskCrew(client, SensorJob(scene.key, tracing.setup), before=(scene,))
+    crew.bring(crew.job)
     barrier = Barrier(crew, sense, lambda counts: [tracing.sums(*counts)])
     sizes = tracing.receivers.sizes * tracing.receivers.replicates
 

@@ -7,6 +7,7 @@ from typing import Any
 from ..algorithms.base import AbstractAlgorithm
 from ..algorithms.in_parts import InParts, in_parts
 from ..errors import DeviceError, RadiosityWarning, result_kept
+from ..run.memory_estimate import lines_of
 from ..run.part import together
 from ..run.record import Record
 from ..run.result import R
@@ -30,7 +31,9 @@ def solve(cluster: Any, prepared: Callable[[], Run[R]]) -> R:
     """
     with connected(cluster) as client:
         run = prepared()
-        crew = DaskCrew(client, Job(run.problem, run.method, run.part.seed, run.device.name), together(run.method))
+        lines = lines_of(run.method, run.budget, run.part.replicates)
+        each = None if lines is None else lines / run.part.replicates
+        crew = DaskCrew(client, Job(run.problem, run.method, run.part.seed, run.device.name, each), together(run.method))
         crew.register()
         try:
             run.spread = lambda whole: _spread(whole, crew, run)

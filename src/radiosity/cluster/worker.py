@@ -17,6 +17,7 @@ from ..device.backend import frozen, threads
 from ..device.turn import turn
 from .job import Job, facts
 from .post import WorkerPost
+from .room import check
 
 KEPT = 2  # algorithms that stay on a worker between two units, so that their states need not be sent
 
@@ -84,6 +85,17 @@ def put(job: Any) -> None:
     _jobs[job.key] = job
 
 
+def job_of(key: str) -> Any:
+    """Return a job that was kept.
+
+    Raises:
+        Missing: this worker has no such job.
+    """
+    if key not in _jobs:
+        raise Missing("job")
+    return _jobs[key]
+
+
 def drop(key: str) -> None:
     """Forget a job, and free what was made of it."""
     _jobs.pop(key, None)
@@ -124,11 +136,10 @@ def fire_own_rows(key: str, unit: tuple[OwnRows, str, list[str]]) -> Brought:
     """
     from distributed import get_worker
 
-    if key not in _jobs:
-        raise Missing("job")
+    job = job_of(key)
     (address, count), seconds, (task, work, addresses) = _here(), 0.0, unit
     with turn(), threads(count):
-        counters = _counters(_jobs[key], task.replicate)
+        counters = _counters(job, task.replicate)
         phase = frozen(counters.phase).copy()
 
     def fire_some(lines: Lines) -> Hits:
@@ -160,12 +171,10 @@ def bring(key: str, act: Callable[[Any], list]) -> Brought:
     Raises:
         Missing: this worker has no such job.
     """
-    begun = time.perf_counter()
-    if key not in _jobs:
-        raise Missing("job")
+    begun, job = time.perf_counter(), job_of(key)
     address, count = _here()
     with turn(), threads(count):
-        what = act(_jobs[key])
+        what = act(job)
     return Brought(what, time.perf_counter() - begun, address, facts())
 
 
@@ -180,7 +189,13 @@ def fire_all(job: Job, lines: list[Lines]) -> Iterator[Hits]:
 def _counters(job: Job, replicate: int) -> Any:
     """Return counters of a replicate, which are no one else's until they are kept."""
     counters = taken((job.key, replicate, 0))
-    return job.algorithm(replicate, 1).counters if counters is None else counters
+    return made(job, replicate, 1).counters if counters is None else counters
+
+
+def made(job: Job, first: int, count: int) -> Any:
+    """Return a new algorithm of some replicates, where there is memory for it."""
+    check(job, count)
+    return job.algorithm(first, count)
 
 
 def taken(place: tuple[str, int, int]) -> Any:
@@ -216,9 +231,7 @@ def advance(unit: Unit, arrays: Mapping[str, np.ndarray] | None) -> Outcome:
         Missing: this worker has no such job, or no such state.
     """
     begun, lines = time.perf_counter(), 0
-    job = _jobs.get(unit.job)
-    if job is None:
-        raise Missing("job")
+    job = job_of(unit.job)
 
     def swept(count: int) -> None:
         nonlocal lines
@@ -251,7 +264,7 @@ def _ready(job: Job, unit: Unit, arrays: Mapping[str, np.ndarray] | None) -> Any
         return algorithm
     if unit.token and arrays is None:
         raise Missing("state")
-    algorithm = job.algorithm(unit.first, unit.count)
+    algorithm = made(job, unit.first, unit.count)
     if arrays is not None:
         algorithm.restore(algorithm.read(owned(arrays), algorithm.sizes))
     return algorithm

@@ -9,7 +9,7 @@ from ..algorithms.walks.launches import Chunks
 from ..tally.shooter import Ends
 from ..tally.shots import Landed, Shot, shoot_here
 from .job import Job
-from .worker import Brought, bring, keep, owned, taken
+from .worker import Brought, bring, keep, made, owned, taken
 
 ALL = -1  # in place of a replicate: all of them
 
@@ -33,7 +33,7 @@ def shot_of(job: Job, unit: tuple[int, Shot]) -> Landed:
     """Return what a shot brings."""
     replicates, shot = unit
     place = (job.key, ALL, replicates)
-    algorithm = taken(place) or job.algorithm(0, replicates)
+    algorithm = taken(place) or made(job, 0, replicates)
     landed = shoot_here(algorithm.exchange.shooter, shot, Ends)
     keep(place, "", algorithm)
     return landed
@@ -45,7 +45,7 @@ def walks_of(job: Job, unit: tuple[int, Chunks]) -> tuple[Any, int]:
     place = (job.key, ALL, replicates)
     algorithm, begun = taken(place) or (None, None)
     if algorithm is None:
-        algorithm = job.algorithm(0, replicates)
+        algorithm = made(job, 0, replicates)
         begun = algorithm.capture()
     algorithm.restore(begun)
     found = algorithm.follow_chunks(chunks)
@@ -57,7 +57,7 @@ def gather_of(job: Job, unit: tuple[int, GatherLines]) -> Sums:
     """Return the sums of lines of a gather."""
     replicates, part = unit
     place = (job.key, ALL, replicates)
-    lines = taken(place) or job.algorithm(0, replicates).lines()
+    lines = taken(place) or made(job, 0, replicates).lines()
     found = trace_here(lines, part)
     keep(place, "", lines)
     return found

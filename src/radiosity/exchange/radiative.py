@@ -3,6 +3,7 @@
 import time
 import warnings
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from ..errors import MethodError, RadiosityWarning
 from ..patches import Patches, subdivide
 from ..run.budget import Budget
 from ..run.line_set.model import LineSet
+from ..run.on_cluster import on_cluster
 from ..run.progress import Listener
 from ..run.whole_number import whole
 from ..scene.model import Scene
@@ -49,6 +51,7 @@ def radiative_exchange(
     device: str = "auto",
     progress: Listener | None = None,
     memory: str | float | None = None,
+    cluster: Any = None,
 ) -> RadiativeExchange:
     """Solve for the heat that surfaces exchange by radiation.
 
@@ -74,7 +77,7 @@ def radiative_exchange(
             largest.
         replicates: independent randomised runs; from 2 on there are errors.
         seed: with the same inputs, the same bits.
-        device, progress, memory: as in `solve`.
+        device, progress, memory, cluster: as in `solve`.
 
     Raises:
         SceneError: a condition is missing, given twice, unknown or out of range; lines escape and there are no surroundings;
@@ -91,8 +94,8 @@ def radiative_exchange(
     if not isinstance(scene, (Scene, Patches, LineSet)):
         raise MethodError(f"radiative_exchange takes a Scene, Patches or a LineSet, not {type(scene).__name__}")
     lines = scene if isinstance(scene, LineSet) else None
-    if lines is not None and (rays is not None or error is not None):
-        raise MethodError("lines are there already: leave rays and error out, or give the patches")
+    if lines is not None and (rays is not None or error is not None or cluster is not None):
+        raise MethodError("lines are there already: leave rays, error and cluster out, or give the patches")
     cut = subdivide(scene, about=PATCHES) if isinstance(scene, Scene) else scene
     patches = cut.patches if isinstance(cut, LineSet) else cut
     conditions = Conditions.of(
@@ -110,18 +113,20 @@ def radiative_exchange(
     estimator = Estimator(patches, conditions)
     if lines is None or lines.method.lines == "local":
         warn_of_narrow(Geometry(patches, choose(device)), groups_of(patches, "surface"))
-    options = {"replicates": replicates, "seed": seed, "device": device, "progress": progress, "memory": memory}
+    options: dict[str, Any] = {"replicates": replicates, "seed": seed, "device": device, "progress": progress, "memory": memory}
     status = "complete"
-    if error is None:
-        if lines is None:
-            lines = trace(patches, conditions, RAYS if rays is None else rays, None, **options)
-            status = lines.status
-        found = estimator.estimate(lines.pairs)
-    else:
-        target = Target.of(patches.scene.names, estimator.floats, error, error_of)
-        if replicates < 2:
-            raise MethodError("an error can be reached with 2 replicates or more; one alone tells none")
-        lines, found, status = _until(target, estimator, rays, options)
+    with on_cluster(cluster) as client:  # one for all stages
+        options["cluster"] = client
+        if error is None:
+            if lines is None:
+                lines = trace(patches, conditions, RAYS if rays is None else rays, None, **options)
+                status = lines.status
+            found = estimator.estimate(lines.pairs)
+        else:
+            target = Target.of(patches.scene.names, estimator.floats, error, error_of)
+            if replicates < 2:
+                raise MethodError("an error can be reached with 2 replicates or more; one alone tells none")
+            lines, found, status = _until(target, estimator, rays, options)
     return _result(patches, conditions, found, lines, status, time.perf_counter() - begun)
 
 
