@@ -2870,4 +2870,18 @@ MISTAKES = (
         ("test_adding.py",),
         "words that wrap around in a sum of states are lost",
     ),
+    Mistake(
+        "cluster/room.py",
+        "    if wanted > there:\n",
+        "    if wanted > 100 * there:\n",
+        ("test_cluster.py",),
+        "workers begin parts that they have too little memory for",
+    ),
+    Mistake(
+        "cluster/scenes.py",
+        "        there.append(found)\n",
+        "",
+        ("test_cluster.py",),
+        "each piece of a final gather sends the scene again",
+    ),
 )
