@@ -2844,8 +2844,8 @@ MISTAKES = (
     ),
     Mistake(
         "cluster/wavefronts.py",
-        "arrivals[rows], fired[rows], LEAST, SECONDS))",
-        "arrivals[rows] * 0, fired[rows], LEAST, SECONDS))",
+        "*given, arrivals[rows], fired[rows],",
+        "*given, arrivals[rows] * 0, fired[rows],",
         ("test_cluster.py",),
         "workers without barriers forget the hits of earlier stages",
     ),

@@ -86,7 +86,7 @@ class Barrier:
 
         Args:
             work: as of the class.
-            end: tells the workers to return early, where one of them has gone.
+            end: tells the workers to return early, where one of them has gone or the run is to stop.
         """
         active, found, told = {}, list[Brought](), False
         try:
@@ -103,7 +103,8 @@ class Barrier:
                     del active[future]
                     outcome = self._outcome(future)
                     found += [] if outcome is None else [outcome]
-                if len(found) + len(active) < len(units) and not told:
+                lost = len(found) + len(active) < len(units)
+                if (lost or self.crew.stopping()) and not told:
                     told = True
                     end()
         finally:

@@ -4,6 +4,7 @@ import threading
 import time
 import uuid
 import warnings
+from collections.abc import Callable
 from concurrent.futures import CancelledError
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -50,6 +51,7 @@ class DaskCrew(AbstractCrew):
         job: which every worker has.
         together: why all replicates must advance together; "" where they need not.
         before: jobs that the job needs on workers, and which somebody else takes off them.
+        stopping: tells whether the run was asked to stop.
         lost: what happened to the cluster, where that has ended the run; else "".
     """
 
@@ -57,6 +59,7 @@ class DaskCrew(AbstractCrew):
     job: Any  # a `Job`, or another value that has a key
     together: str = ""
     before: tuple[Any, ...] = ()
+    stopping: Callable[[], bool] = lambda: False
     lost: str = ""
     _tokens: WeakKeyDictionary[Any, tuple[str, str]] = field(default_factory=WeakKeyDictionary)  # of states: token and worker
     _threads: dict[str, int] = field(default_factory=dict)

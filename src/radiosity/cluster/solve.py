@@ -34,6 +34,7 @@ def solve(cluster: Any, prepared: Callable[[], Run[R]]) -> R:
         lines = lines_of(run.method, run.budget, run.part.replicates)
         each = None if lines is None else lines / run.part.replicates
         crew = DaskCrew(client, Job(run.problem, run.method, run.part.seed, run.device.name, each), together(run.method))
+        crew.stopping = lambda: run.stop.asked
         crew.register()
         try:
             run.spread = lambda whole: _spread(whole, crew, run)

@@ -14,7 +14,7 @@ from .crew import DaskCrew
 from .worker import fire, fire_all, fire_own_rows
 
 FEWEST = 1 << 17  # lines of a unit: smaller ones are given to fewer workers, and wavefronts of fewer than two are fired here
-LEAST = 1 << 16  # lines of own rows that must be due before a worker fires them
+LEAST = 1 << 16  # lines of own rows, for each worker that is told of their hits, that must be due before a worker fires them
 SECONDS = 30.0  # after which workers that fire together come back: what all of them lose where one is killed
 ROWS = 64  # of a worker at least, where they have rows of their own: so that each has about as much to fire
 
@@ -64,9 +64,9 @@ class DaskFirer(AbstractFirer):
 
 def tasks(lines: Lines, begun: Begun, rates: list[float]) -> list[OwnRows]:
     """Return the tasks of workers that fire the lines of a replicate together."""
-    owners, found = dealt(begun.arrivals.shape[1], rates), []
+    owners, least, found = dealt(begun.arrivals.shape[1], rates), LEAST * max(len(rates) - 1, 1), []
     arrivals, fired = begun.arrivals[lines.replicate], begun.fired[lines.replicate]
     for own, first in enumerate(cut([lines], rates)):
         rows, given = np.flatnonzero(owners == own), (lines.replicate, begun.quanta, owners, own)
-        found.append(OwnRows(first[0] if first else None, *given, arrivals[rows], fired[rows], LEAST, SECONDS))
+        found.append(OwnRows(first[0] if first else None, *given, arrivals[rows], fired[rows], least, SECONDS))
     return found
