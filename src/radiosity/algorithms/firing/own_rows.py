@@ -47,7 +47,7 @@ class OwnRows:
 
     @property
     def rows(self) -> np.ndarray:
-        """Its rows, (k,) ascending."""
+        """Return its rows, (k,) ascending."""
         return np.flatnonzero(self.owners == self.own)
 
 
