@@ -1,7 +1,6 @@
 """Runs on a cluster of Dask have the bits of runs on one machine, however many workers there are and whatever becomes of them."""
 
 import signal
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ from iterations import open_room
 from test_merge import FIRST, INCREMENTAL, PARTS, TOGETHER, assert_same
 
 import radiosity as rd
-from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.algorithms.matrix.state import MatrixState
 from radiosity.algorithms.merging import merge as merge_states
 from radiosity.algorithms.splitting import divisible, split
@@ -17,10 +15,9 @@ from radiosity.image import render
 from radiosity.run import budget
 from radiosity.run.solve import prepared
 from radiosity.sensors import pixels
-from radiosity.tracing import lanes
 
 distributed = pytest.importorskip("distributed", reason="distributed is not installed")
-from radiosity.cluster import barrier, connect, crew, post, room, sensing, steps, wavefronts, worker  # noqa: E402
+from radiosity.cluster import connect, crew, sensing, worker  # noqa: E402
 from radiosity.cluster.job import Job  # noqa: E402
 from radiosity.cluster.plugin import JobPlugin  # noqa: E402
 
@@ -113,89 +110,6 @@ def test_lines_and_view_factors_are_those_of_one_machine(client, grey):
     assert np.array_equal(one.matrix, other.matrix)
 
 
-# ---- one replicate on several workers -----------------------------------------------------------------------------------
-
-CUT = {
-    "grey": ("room", {}, {}),
-    "depth-first": ("room", {"order": "depth-first"}, {}),
-    "colours": ("cornell-box", {}, {}),
-    "random numbers": ("room", {"numbers": "random"}, {}),
-}
-
-
-def cut_small(monkeypatch, rows: int) -> None:
-    """Cut wavefronts of few lines; ``rows`` of a worker at least, where there are to be no barriers."""
-    for name, value in {"FEWEST": 64, "LEAST": 16, "ROWS": rows}.items():
-        monkeypatch.setattr(wavefronts, name, value)
-    monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 64})
-
-
-@some(["grey", "colours"], ["depth-first", "random numbers"])
-def test_one_replicate_on_two_workers(client, name, monkeypatch):
-    scene, choices, options = CUT[name]
-    cut_small(monkeypatch, rows=10_000)  # each wavefront ends with a barrier
-    patches, units = rd.subdivide(rd.load_scene(scene), cells=2), []
-    submit = barrier.Barrier._submit
-    monkeypatch.setattr(barrier.Barrier, "_submit", lambda *of: (units.append(of[1]), submit(*of)))
-    given = {"replicates": 1, "quanta": 20_000} | options | choices
-    found = solved(patches, "random-walk", cluster=client, **given)
-    assert len(units) > 10
-    firsts = [one for unit in units for one in unit]
-    assert any(np.isin(one.rows, other.rows).any() for one, other in pairwise(firsts))  # lines of one row went to both
-    assert_same(found, solved(patches, "random-walk", **given))
-
-
-@pytest.mark.parametrize("heard", [True, False])
-def test_two_workers_without_barriers(client, heard, monkeypatch):
-    """Each fires rows of its own and sends hits to the other; what it is never told of is fired afterwards."""
-    cut_small(monkeypatch, rows=1)
-    tasks, came = [], []
-    submit, take = barrier.Barrier._submit, post.WorkerPost.take
-    monkeypatch.setattr(barrier.Barrier, "_submit", lambda *of: (tasks.append(of[1]), submit(*of)))
-    monkeypatch.setattr(post.WorkerPost, "take", lambda this: came.append(take(this)) or (came[-1] if heard else 0))
-    patches, given = rd.subdivide(rd.load_scene("room"), cells=2), {"replicates": 1, "quanta": 20_000}
-    found = solved(patches, "random-walk", cluster=client, **given)
-    own = [one[0] for one in tasks if isinstance(one, tuple)]
-    assert {one.own for one in own} == {0, 1}
-    assert sum(map(np.sum, came)) > 1000
-    assert_same(found, solved(patches, "random-walk", **given))
-
-
-def test_a_worker_that_is_lost_without_barriers_costs_their_lines(client, monkeypatch):
-    """Then the others' lines do not count either: some follow from hits that nobody has."""
-    cut_small(monkeypatch, rows=1)
-    outcome, lost = barrier.Barrier._outcome, []
-
-    def lose(this, future):
-        found = outcome(this, future)
-        fails = found is not None and found.what[0].fired is not None and len(lost) < 2
-        return lost.append(found) if fails else found
-
-    monkeypatch.setattr(barrier.Barrier, "_outcome", lose)
-    patches, given = rd.subdivide(rd.load_scene("room"), cells=2), {"replicates": 1, "quanta": 20_000}
-    found = solved(patches, "random-walk", cluster=client, **given)
-    assert len(lost) == 2
-    assert_same(found, solved(patches, "random-walk", **given))
-
-
-STEPS = ["regular", "incremental", "continuous", "gather"]
-MORE_STEPS = ["two ends", "control variate", "warm-up", "gathering", "fractional", "sorted", "density", "incremental, two ends"]
-OTHERS = {"gather": rd.PRESETS["gather"].method, "sorted": rd.Method(equation="continuous", order="sorted")}
-
-
-@some(STEPS, MORE_STEPS)
-def test_steps_of_one_replicate_on_two_workers(client, coloured, name, monkeypatch):
-    method = (PARTS | TOGETHER | INCREMENTAL | OTHERS)[name]
-    monkeypatch.setattr(steps, "FEWEST", 64)
-    monkeypatch.setattr(lanes, "CHUNK", 512)
-    units, submit = [], barrier.Barrier._submit
-    monkeypatch.setattr(barrier.Barrier, "_submit", lambda *of: (units.append(of[1]), submit(*of)))
-    given = {"replicates": 1, "quanta": 20_000}
-    found = solved(coloured, method, cluster=client, **given)
-    assert len(units) >= 8
-    assert_same(found, solved(coloured, method, **given))
-
-
 @pytest.mark.parametrize("scene", ["room"])
 def test_sensors_are_those_of_one_machine(client, scene, monkeypatch):
     monkeypatch.setattr(sensing, "FEWEST", 64)
@@ -230,16 +144,6 @@ def test_heat_is_that_of_one_machine(client):
     lines = rd.trace_lines(room, rays=2_000, replicates=2)
     with pytest.raises(rd.MethodError, match="leave rays, error and cluster out"):
         rd.radiative_exchange(lines, {"*": 300}, emissivity=0.7, surroundings=280.0, cluster=client)
-
-
-@pytest.mark.parametrize("replicates", [5, 1])
-def test_a_worker_with_too_little_memory_is_told_before_it_begins(client, replicates, monkeypatch):
-    monkeypatch.setattr(room, "left", lambda there: 2**20)
-    monkeypatch.setattr(wavefronts, "FEWEST", 64)
-    monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 64})
-    message = r"worker inproc://\S+ has too little memory: .* in \d replicates would take .* 1 MiB there"
-    with pytest.raises(rd.MethodError, match=message):
-        solved(rd.subdivide(rd.load_scene("room"), cells=1), "random-walk", cluster=client, replicates=replicates, quanta=2000)
 
 
 # ---- interruptions, and workers that come and go ------------------------------------------------------------------------
