@@ -111,6 +111,19 @@ def test_a_worker_that_is_lost_without_barriers_costs_their_lines(client, monkey
     assert_same(found, solved(patches, "random-walk"))
 
 
+def waiting(key: str, addresses: list[str]) -> bool:
+    """Wait for hits that never come, on the first of some workers."""
+    return post.WorkerPost(distributed.get_worker(), key, 0, addresses).wait(60.0)
+
+
+def test_a_worker_that_waits_for_others_comes_back_when_it_is_told(client):
+    client.run(lambda dask_worker: post.open_for(dask_worker))
+    addresses = list(client.nthreads())
+    future = client.submit(waiting, "nobody sends", addresses, workers=addresses[:1], pure=False)
+    client.run(post.end, "nobody sends", workers=addresses[:1], wait=False)
+    assert future.result(timeout=30) is False
+
+
 STEPS = ["regular", "incremental", "continuous", "gather"]
 MORE_STEPS = ["two ends", "control variate", "warm-up", "gathering", "fractional", "sorted", "density", "incremental, two ends"]
 OTHERS = {"gather": rd.PRESETS["gather"].method, "sorted": rd.Method(equation="continuous", order="sorted")}

@@ -94,11 +94,12 @@ def open_for(worker: Any) -> None:
     worker.handlers[NAME] = receive
 
 
-def end(key: str) -> None:
-    """End a piece of work on this worker early: it returns what it has."""
-    from distributed import get_worker
+async def end(key: str, dask_worker: Any) -> None:
+    """End a piece of work on a worker early: it returns what it has.
 
-    into = box(get_worker().address, key)
+    `Client.run` gives it the worker, by that name, and waits for all functions that are not asynchronous.
+    """
+    into = box(dask_worker.address, key)
     with into.changed:
         into.ended = True
         into.changed.notify_all()
