@@ -2760,8 +2760,15 @@ MISTAKES = (
     ),
     Mistake(
         "patches/contact/cutting.py",
-        "        for polygon in polygons.get(face, [None]):\n",
-        "        for polygon in polygons.get(face, [None])[::-1]:\n            region += 0 if polygon is None else -1\n",
+        "self.boxes[:, 0] <= high) & (self.boxes[:, 1] >= low)",
+        "self.boxes[:, 0] < low) & (self.boxes[:, 1] > high)",
+        ("test_meshes.py", "test_near_lamps.py"),
+        "pieces are cut only by lines that do not reach their rim",
+    ),
+    Mistake(
+        "patches/contact/cutting.py",
+        "        for parts in cut[face].parts() if face in cut else [[outline]]:\n",
+        "        for parts in cut[face].parts() if face in cut else [[outline]]:\n            region -= face in cut\n",
         ("test_meshes.py",),
         "patches beside and under a box have one region",
     ),
