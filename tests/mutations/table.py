@@ -2682,6 +2682,27 @@ MISTAKES = (
         "panes in files for Mitsuba reflect less than they should",
     ),
     Mistake(
+        "conversion/honeybee_layers.py",
+        "corners=turned(piece.corners),",
+        "corners=piece.corners,",
+        ("test_convert_honeybee.py",),
+        "backs that become surfaces of honeybee models shine into their fronts",
+    ),
+    Mistake(
+        "conversion/honeybee_modifiers.py",
+        "float(weights @ passed / (weights @ kept))",
+        "float(passed[0] / kept[0])",
+        ("test_convert_honeybee.py",),
+        "coloured panes of honeybee models let the share of their red through",
+    ),
+    Mistake(
+        "conversion/honeybee.py",
+        "one.vertices[:, [0, 2, 1]] * [1, -1, 1]",
+        "one.vertices[:, [0, 2, 1]]",
+        ("test_convert_honeybee.py",),
+        "scenes whose y is up become mirrored honeybee models",
+    ),
+    Mistake(
         "conversion/gltf_materials.py",
         "share = passed * (1 - most) / (mean + passed)",
         "share = passed / (mean + passed)",

@@ -25,6 +25,7 @@ SUFFIXES = {
     ".rad": "radiance",
     ".mgf": "mgf",
     ".xml": "mitsuba",
+    ".hbjson": "honeybee",
 }
 KNOWN_BANDS = (("grey",), ("red", "green", "blue"))
 
@@ -42,8 +43,8 @@ def files_of(path) -> tuple[Path, ...]:
 def save_scene(scene: Scene, path) -> None:
     """Write a scene to a file, whose suffix says the format.
 
-    Known are .toml and .xml (with the geometry beside them), .glb, .gltf, .obj (with an .mtl beside it), .ply, .stl, .rad, .mgf.
-    A warning for each kind of thing that the format cannot hold names what it is. A .toml holds most.
+    Known are .toml and .xml (with the geometry beside them), .glb, .gltf, .obj (with an .mtl beside it), .ply, .stl, .rad, .mgf
+    and .hbjson (honeybee). A warning for each kind of thing that the format cannot hold names what it is. A .toml holds most.
 
     Args:
         scene: to write.
