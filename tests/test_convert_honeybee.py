@@ -130,7 +130,7 @@ def test_what_lines_pass_is_left_out_unless_it_shines(tmp_path):
     shining = stack(back=rd.Back.OPEN)
     read, told = again(shining, tmp_path / "x.hbjson")
     assert read.emission == pytest.approx(shining.emission)
-    assert any("lamps that lines pass absorb them: 'lamp'" in text for text in told)
+    assert any("lamps that lines pass absorb what comes to them: 'lamp'" in text for text in told)
     both = rows(2, reflectance=[DARK, (0.5,) * 3], emission=0, names=["air", "wall"], back=[3, 1])
     read, told = again(both, tmp_path / "y.hbjson")
     assert read.names == ("wall",)

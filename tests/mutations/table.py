@@ -2682,6 +2682,13 @@ MISTAKES = (
         "panes in files for Mitsuba reflect less than they should",
     ),
     Mistake(
+        "conversion/air.py",
+        "(scene.back == Back.OPEN) & ~(scene.emission > 0).any(axis=1)",
+        "scene.back == Back.OPEN",
+        ("test_convert.py",),
+        "lamps that lines pass are left out of written files",
+    ),
+    Mistake(
         "conversion/honeybee_layers.py",
         "corners=turned(piece.corners),",
         "corners=piece.corners,",

@@ -40,8 +40,6 @@ def layers(scene: Scene, gap: float, told: Told) -> Iterator[Layer]:
         radiates = piece.back == Back.RADIATES
         if piece.emission.any() or (radiates and piece.back_emission.any()):
             yield from _lamp(scene, piece, gap, told)
-        elif piece.back == Back.OPEN:
-            told.add("surfaces that lines pass on both sides are left out", [piece.name])
         elif not radiates:
             told.add("one-sided surfaces read back as two-sided", [piece.name])
             yield Layer(piece)
@@ -64,8 +62,6 @@ def _lamp(scene: Scene, piece: Piece, gap: float, told: Told) -> Iterator[Layer]
         told.add("lamps become black, since honeybee's reflect nothing", [piece.name])
     if piece.transmittance or piece.diffuse.any():
         told.add("panes that shine become opaque", [piece.name])
-    if piece.back == Back.OPEN:
-        told.add("lamps that lines pass absorb them", [piece.name])
     if piece.back == Back.PASSES:
         told.add("backs that let lines pass become backs that absorb", [piece.name])
     opaque = replace(piece, transmittance=0.0, refractive_index=0.0, diffuse=0 * piece.diffuse)

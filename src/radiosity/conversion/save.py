@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import OutputError
 from ..image.output import check_writable
 from ..scene.model import Scene
+from .air import without_air
 from .obj import library_of
 from .told import Told
 from .toml import geometry_of
@@ -51,7 +52,8 @@ def save_scene(scene: Scene, path) -> None:
         path: of the file.
 
     Raises:
-        OutputError: another suffix, a file that cannot be written, or a scene of other bands than files hold.
+        OutputError: another suffix, a file that cannot be written, or a scene of other bands than files hold, or
+            without a surface that the format holds.
 
     Example:
         >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -71,6 +73,7 @@ def save_scene(scene: Scene, path) -> None:
     told = Told()
     if scene.bands not in KNOWN_BANDS:
         told.add("bands read back as grey, or as red, green and blue", scene.bands)
+    scene = without_air(scene, path, told)
     with np.errstate(all="ignore"):
         import_module(f".{SUFFIXES[path.suffix.lower()]}", __package__).write(scene, path, told)
     told.report(path)

@@ -71,7 +71,8 @@ class Object(_Table):
 
     def called(self, kind: str) -> str:
         """Return the name of its surface: the one that was kept, or its kind and identifier."""
-        return (self.user_data and self.user_data.radiosity) or f"{kind}/{self.identifier}"
+        kept = None if self.user_data is None else self.user_data.radiosity
+        return f"{kind}/{self.identifier}" if kept is None else kept
 
 
 class Shade(Object):
