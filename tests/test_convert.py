@@ -374,6 +374,18 @@ def test_a_name_that_is_lost_is_told(suffix, says, tmp_path):
     assert not told
 
 
+@pytest.mark.parametrize("suffix", [".stl", ".glb", ".ply"])
+@pytest.mark.parametrize("far", [0.0, 1e5])
+def test_areas_that_single_precision_changes_are_told(suffix, far, tmp_path):
+    """A strip of 1 cm and of 1 m: coordinates of 32 bits lie 8 mm apart at 100 km; a glTF file has an origin for the surface."""
+    corners = np.array([[0, 0, 0], [1.0, 0, 0], [0, 0.01, 0]]) + far
+    scene = rd.Scene.from_arrays(corners, [[0, 1, 2]], 0.5, 0.0, two_sided=True, names=["strip"])
+    read, told = again(scene, tmp_path / f"x{suffix}")
+    changed = any("coordinates of 32 bits change areas" in text and "'strip'" in text for text in told)
+    assert changed == (suffix == ".stl" and far > 0)
+    assert (abs(read.area.sum() / scene.area.sum() - 1) > 1e-3) == changed
+
+
 def test_backs_of_other_colours_are_told_where_faces_have_one(tmp_path):
     scene = rd.Scene.from_arrays(
         [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.25, 0.0, two_sided=True, back_reflectance=0.75, names=["x"]

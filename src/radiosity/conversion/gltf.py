@@ -19,6 +19,7 @@ from ..solution.whole import whole_file
 from .gltf_lights import PUNCTUAL, lights_of, matrix, turn
 from .gltf_materials import Materials
 from .pieces import Piece, called, painted, pieces, tell_of_rest, triangles
+from .rounding import tell_of_rounding
 from .told import Told
 
 HOLDS = frozenset({"names", "reflectance", "emission", "backs", "panes", "diffusing panes", "textures", "lights", "cameras"})
@@ -69,6 +70,10 @@ def document(scene: Scene, told: Told, *, whole: bool) -> tuple[dict, list, list
         own = [piece for piece in parts if piece.name == name]
         used = np.unique(np.concatenate([piece.corners[piece.corners >= 0] for piece in own]))
         origin = _origin(scene.vertices[used])
+        for piece in own:
+            halves = triangles(piece.corners)
+            corners = scene.vertices[np.take_along_axis(piece.corners[halves[:, 0]], halves[:, 1:], axis=1)] - origin
+            tell_of_rounding(told, [name], np.zeros(len(halves), np.int64), corners)
         primitives = [one for piece in own for one in _primitives(scene, piece, origin, buffer, materials, told)]
         move = {"translation": origin.tolist()} if origin.any() else {}
         nodes.append({"name": name, "mesh": len(meshes), **move})
