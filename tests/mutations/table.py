@@ -15,6 +15,27 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "sampling/numbers/prime_bases.py",
+        "at = (segment - 1 - turn * (COUNT // needed)) * needed",
+        "at = segment - 1 - turn * (COUNT // needed)",
+        ("test_prime_bases.py",),
+        "two segments of a walk share a prime base",
+    ),
+    Mistake(
+        "sampling/numbers/prime_bases.py",
+        "DIGITS = 7",
+        "DIGITS = 5",
+        ("test_prime_bases.py",),
+        "digits of late walks are cut off in prime bases",
+    ),
+    Mistake(
+        "algorithms/walks/particles.py",
+        "if not self.one_sequence:",
+        "if True:",
+        ("test_prime_bases.py",),
+        "walks in prime bases are not points of one sequence",
+    ),
+    Mistake(
         "patches/contact/lines.py",
         "        shines[1] &= scene.back == Back.RADIATES\n",
         "",

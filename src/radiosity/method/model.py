@@ -32,6 +32,7 @@ class Method:
     numbers: str = "halton"
     scrambling: str | None = field(default=None, kw_only=True)  # becomes "none" when it is made with None
     randomisation: str = "by-patch"
+    padding: str = field(default="shuffled", kw_only=True)
     estimator: str = "collision"
     absorption: str = "auto"
     first_shot: float = 0.0
@@ -77,6 +78,7 @@ class Method:
 
     def __str__(self) -> str:
         extras = [self.randomisation] if self.randomisation != "by-patch" else []
+        extras += [self.padding] if self.padding != "shuffled" else []
         extras += [] if self.estimator == "collision" else [self.estimator]
         extras += [] if self.absorption == "auto" else [self.absorption]
         extras += [f"first-shot={self.first_shot:g}"] if self.first_shot else []

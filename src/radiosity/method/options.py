@@ -10,6 +10,7 @@ from .estimator import ABSORPTIONS, ESTIMATORS
 from .lines import LINES
 from .option import Option, table
 from .order import ORDERS
+from .padding import PADDINGS
 from .randomisation import RANDOMISATIONS
 from .reconstruction import RECONSTRUCTIONS
 from .schemes import FACTORS, REFINEMENTS, SCHEMES, SOLVERS
@@ -45,6 +46,12 @@ METHOD = table(
         values=RANDOMISATIONS,
         details="Random numbers have no shift: each patch has its own in any case. Lines that begin at no patch (global lines, "
         "fractional absorption) share one in any case.",
+    ),
+    Option(
+        "padding",
+        "Walks that draw numbers at each hit: where later segments have theirs from: shuffled or prime-bases (halton).",
+        values=PADDINGS,
+        details="See docs/numbers.md.",
     ),
     Option(
         "estimator",
