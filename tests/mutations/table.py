@@ -2898,4 +2898,25 @@ MISTAKES = (
         ("test_bases_shown.py",),
         "corners of triangles seen from behind have each other's values",
     ),
+    Mistake(
+        "algorithms/iterations/elements.py",
+        "corner + 3 * inverted",
+        "corner",
+        ("test_refine_lines.py",),
+        "the inverted quarter of a triangle takes the units that the first one takes, too",
+    ),
+    Mistake(
+        "algorithms/iterations/refinement.py",
+        "2 * of_r * of_s + of_r + of_s",
+        "of_r * of_s",
+        ("test_refine_lines.py",),
+        "lines refine pairs by their form factor, not by what it differs by",
+    ),
+    Mistake(
+        "algorithms/iterations/refined_tally.py",
+        "mean**2 - error**2",
+        "mean**2",
+        ("test_refine_lines.py",),
+        "noise of what elements blur counts as a bias",
+    ),
 )

@@ -133,6 +133,13 @@ def _refuse_options(method, found: str) -> None:
         raise MethodError("only regular iterations can begin with incremental ones (warm_up)")
     if method.warm_up and found != "iteration":
         raise MethodError("iterations by global lines have a warm-up of their own; leave warm_up out, or take --lines local")
+    if method.refine_lines and found != "iteration":
+        raise MethodError("refine_lines is for what iterations of local lines send; take --order incremental or regular")
+    if method.refine_lines and method.basis != "constant":
+        raise MethodError(
+            f"refine_lines brings light to elements whose patches share it evenly, and basis '{method.basis}' lets it vary on "
+            "each patch; leave one out"
+        )
     if method.reconstruction == "local-linear" and (
         found != "walks" or method.equation != "continuous" or method.estimator == "gathering"
     ):

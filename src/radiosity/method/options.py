@@ -91,6 +91,15 @@ METHOD = table(
         details="See docs/bases.md.",
     ),
     Option(
+        "refine_lines",
+        "Iterations: lines bring light to elements of many patches, as large as may err by this share of what the scene emits, "
+        "such as 1e-5.",
+        kind="share",
+        zero=True,
+        share_of="what the scene emits",
+        details="0: to patches. See docs/iterations.md.",
+    ),
+    Option(
         "coherent",
         "Trace similar lines together. Faster where a patch fires 50 000 lines or more in a wavefront; bits may differ where a "
         "line meets two faces in one point.",
