@@ -28,7 +28,7 @@ def cut(whole: AbstractAlgorithm, crew: DaskCrew) -> bool:
     """Have the steps of a run cut among the workers of a crew; return whether its algorithm is of a kind that can be."""
     if isinstance(whole, Firing):
         whole.counters.firer = DaskFirer(crew)
-    elif isinstance(whole, Iteration):
+    elif isinstance(whole, Iteration) and not whole.method.refine_lines:
         whole.exchange.shooter.elsewhere = DaskShots(crew, whole.replicates)
     elif isinstance(whole, AbstractWalks):
         whole.elsewhere = DaskWalks(crew, whole.replicates)
