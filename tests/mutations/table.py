@@ -2787,6 +2787,27 @@ MISTAKES = (
         "colours bleed in at the seams of lightmaps",
     ),
     Mistake(
+        "lightmap/hidden.py",
+        "weight = np.where(hidden, 1.0, seen)",
+        "weight = np.ones(seen.shape)",
+        ("test_lightmaps.py",),
+        "a dark fringe around what stands on a floor, of texels that lie below it in part",
+    ),
+    Mistake(
+        "lightmap/hidden.py",
+        "found[own[count > 0]] =",
+        "found[own[count > 8]] =",
+        ("test_lightmaps.py",),
+        "a dark fringe around what stands on a floor, of texels that lie below it",
+    ),
+    Mistake(
+        "lightmap/dark.py",
+        "DIM = 0.05",
+        "DIM = 0.0",
+        ("test_lightmaps.py",),
+        "hidden parts of a surface darken the edges of lit ones in lightmaps",
+    ),
+    Mistake(
         "lightmap/triangles.py",
         "two = scene.back[face] == Back.RADIATES",
         "two = scene.back[face] == Back.ABSORBS",

@@ -121,6 +121,7 @@ def _nearest(corners: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.nd
         distance[nearer] = apart[nearer]
         shares[nearer] = 0.0
         shares[nearer, i], shares[nearer, j] = 1 - t[nearer], t[nearer]
+    shares[double == 0] = 1 / 3  # one that is a point on the page: its middle
     return distance, shares
 
 
