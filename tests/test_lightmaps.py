@@ -182,6 +182,18 @@ def test_where_all_is_dark_each_side_keeps_its_place():
     assert not Triangles.of(scene, np.ones((scene.n_faces, 2), bool)).dark.any()
 
 
+def test_edges_are_seen_from_within_their_faces():
+    """A wall stands a hair's breadth inside the edge of a floor, and hides the edge from the lamp; texels see none of that."""
+    floor, wall = quad((-1, -1, 0), (2, 0, 0), (0, 2, 0)), quad((0.99999, -1, 0), (0, 2, 0), (0, 0, 2))
+    scene = lit(("floor", 0.5, 0.0, [floor]), ("wall", 0.0, 0.0, [wall]), luminaires=(bulb(tuple(LAMP), 4 * np.pi * POWER),))
+    found = rd.bake_lightmap(solved(scene), texels_per_metre=20.0, lines=16, quantity="irradiance")
+    atlas, triangles = found.atlas, found.atlas.triangles
+    on_floor = triangles.scene.surface[triangles.face] == triangles.scene.names.index("floor")
+    edge = on_floor[:, None] & (triangles.place[..., 0] == 1)
+    points = atlas.vertices[atlas.corners][edge]
+    np.testing.assert_allclose(at(found, atlas.places[edge])[:, 0], expected(points, np.array([0, 0, 1.0])), rtol=0.03)
+
+
 def test_dim_faces_share_no_chart_with_lit_ones():
     """A surface of two squares side by side, one of which is dim: at the edge of the lit one a viewer reads its light alone."""
     floor = [quad((-1, -1, 0), (1, 0, 0), (0, 2, 0)), quad((0, -1, 0), (1, 0, 0), (0, 2, 0))]

@@ -184,8 +184,8 @@ MISTAKES = (
     ),
     Mistake(
         "image/gathered.py",
-        "found[lit] += reflectance[lit] * self",
-        "found[lit] = reflectance[lit] * self",
+        "found[lit] += reflectance[lit] * light",
+        "found[lit] = reflectance[lit] * light",
         ("test_final_gather.py",),
         "pixels of lamps that reflect lose their own light",
     ),
@@ -2799,6 +2799,13 @@ MISTAKES = (
         "found[own[count > 8]] =",
         ("test_lightmaps.py",),
         "a dark fringe around what stands on a floor, of texels that lie below it",
+    ),
+    Mistake(
+        "lightmap/texels.py",
+        "MARGIN = 0.1",
+        "MARGIN = 0.0",
+        ("test_lightmaps.py",),
+        "seams of lightmaps are dark where another face stands at the very edge",
     ),
     Mistake(
         "lightmap/dark.py",

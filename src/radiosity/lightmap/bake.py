@@ -17,7 +17,7 @@ from ..run.progress import Listener
 from ..scene import Camera
 from ..tracing.first_hits import Hits
 from . import atlas as atlases
-from .dark import OF_MIDDLES, dark_sides, dim_sides, unlit
+from .dark import OF_MIDDLES, dark_and_dim, unlit
 from .hidden import from_beside, mean_of_seen
 from .model import Lightmap
 from .texels import Texels, points_of
@@ -82,8 +82,8 @@ def bake_lightmap(
             return Gathered.of(solution, lookup, quantity, None, single=False, **options)
 
         # the page does not depend on the lines and the seed of texels
-        dark = dark_sides(gathered(OF_MIDDLES, len(candidates), 0), candidates) if len(candidates) else None
-        page = atlases.make(Triangles.of(scene, dark, dim_sides(solution)), density=texels_per_metre, size=size, padding=padding)
+        dark, dim = dark_and_dim(solution, gathered(OF_MIDDLES, len(candidates), 0), candidates)
+        page = atlases.make(Triangles.of(scene, dark, dim), density=texels_per_metre, size=size, padding=padding)
         texels = Texels.of(page)
         places = [texels.place] if samples == 1 else points_of(page, texels, samples)
         patch = [_patch(lookup, page, texels, place) for place in places]

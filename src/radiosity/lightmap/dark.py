@@ -21,35 +21,37 @@ def unlit(solution) -> np.ndarray:
     return np.flatnonzero(np.bincount(_sides(patches), lit, 2 * patches.scene.n_faces)[_sides(patches)] == 0)
 
 
-def dark_sides(look: Gathered, patch: np.ndarray) -> np.ndarray:
-    """Return which sides of faces are dark, (n_faces, 2) bool, fronts and backs: no light comes to the middle of any patch.
+def dark_and_dim(solution, look: Gathered, patch: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return which sides of faces are dark and which are dim, (n_faces, 2) bool each, fronts and backs.
+
+    To dark ones no light comes, in the middle of any patch. Dim ones receive little in the mean; or at the middles, where no line
+    of the solution came.
 
     Args:
         look: gathers light at points.
         patch: (m,) see `unlit`.
     """
-    patches = look.lookup.patches
-    sides, face = _sides(patches)[patch], patches.face[patch]
-    column, row, inverted = (values[patch] for values in patches.place)
-    corners = cells.corners(column, row, inverted, patches.columns[face], patches.rows[face], patches.scene.is_quad[face])
-    middle = np.where(patches.scene.is_quad[face][:, None], corners.mean(axis=1), corners[:, :3].mean(axis=1))
-    light = (look.gather.irradiance(patch, *middle.T) != 0).any(axis=1)
-    n = 2 * patches.scene.n_faces
-    return ((np.bincount(sides, minlength=n) > 0) & (np.bincount(sides, light, n) == 0)).reshape(-1, 2)
-
-
-def dim_sides(solution) -> np.ndarray:
-    """Return which sides of faces receive little light in the mean, (n_faces, 2) bool, and emit none.
-
-    Of those where no line came nothing is known: they are dark, or small.
-    """
     patches = solution.patches
     sides, n = _sides(patches), 2 * patches.scene.n_faces
     level = np.nan_to_num(solution.irradiance).mean(axis=1)
     received, area = (np.bincount(sides, weight, n) for weight in (level * patches.area, patches.area))
-    of_all = received.sum() / max(area[received > 0].sum(), np.finfo(float).tiny)
+    little = DIM * received.sum() / max(area[received > 0].sum(), np.finfo(float).tiny)
     shines = np.bincount(sides, patches.emission.any(axis=1), n) > 0
-    return ((received > 0) & (received < DIM * of_all * area) & ~shines).reshape(-1, 2)
+    light = np.abs(look.gather.irradiance(patch, *_middles(patches, patch).T)).max(axis=1, initial=0.0)
+    most, asked = np.zeros(n), np.bincount(sides[patch], minlength=n) > 0
+    np.maximum.at(most, sides[patch], light)
+    dark = asked & (most == 0)
+    dim = ~dark & ~shines & np.where(asked, most < little, received < little * area)
+    return dark.reshape(-1, 2), dim.reshape(-1, 2)
+
+
+def _middles(patches: Patches, patch: np.ndarray) -> np.ndarray:
+    """Return face coordinates of the middles of patches, (m, 2)."""
+    face = patches.face[patch]
+    column, row, inverted = (values[patch] for values in patches.place)
+    is_quad = patches.scene.is_quad[face]
+    corners = cells.corners(column, row, inverted, patches.columns[face], patches.rows[face], is_quad)
+    return np.where(is_quad[:, None], corners.mean(axis=1), corners[:, :3].mean(axis=1))
 
 
 def _sides(patches: Patches) -> np.ndarray:
