@@ -2787,6 +2787,13 @@ MISTAKES = (
         "colours bleed in at the seams of lightmaps",
     ),
     Mistake(
+        "image/false_color.py",
+        "if bar.yaxis.get_offset_text().get_text():",
+        "if not bar.yaxis.get_offset_text().get_text():",
+        ("test_image_false_color.py",),
+        "a factor of all numbers of a legend is cut off",
+    ),
+    Mistake(
         "lightmap/hidden.py",
         "weight = np.where(hidden, 1.0, seen)",
         "weight = np.ones(seen.shape)",
