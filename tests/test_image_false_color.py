@@ -97,6 +97,14 @@ def test_the_legend_tells_where_an_automatic_range_ends(monkeypatch):
     ]
 
 
+@pytest.mark.parametrize("size", [1e-9, 1e9])
+def test_no_factor_stands_beside_a_legend(size):
+    """Numbers are written out at each mark, such as 2e-10; left of the bar nothing is drawn."""
+    legend = false_color.Palette(0.0, 1.2 * size).legend("radiosity [W/m²]", np.array([0.5]) * size, 300)
+    assert (legend[:, :10] == 255).all()
+    assert (legend < 100).any()
+
+
 def test_letters_of_a_legend_grow():
     """Dark pixels of the letters, beside a bar that is as high as before."""
     small, large = (false_color.Palette(0, 1).legend("light [lx]", np.ones(1), 600, size) for size in (1.0, 2.0))

@@ -158,6 +158,9 @@ def _legend(norm, shades, label: str, extend: str, height: int, letters: float) 
         bar.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         bar.yaxis.set_minor_formatter(NullFormatter())
     canvas.draw()
+    if bar.yaxis.get_offset_text().get_text():  # a factor of all numbers stands beside the bar, where it is cut off and missed
+        bar.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        canvas.draw()
     return np.asarray(canvas.buffer_rgba())[..., :3]
 
 

@@ -101,14 +101,22 @@ class Gathered:
             patch: (m,) on whose side each lies.
             u, v: (m,) face coordinates.
         """
+        return self.with_backs(patch, u, v)[0]
+
+    def with_backs(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return values at points, as `values` does, and the share of each point's lines that met absorbing backs, (m,).
+
+        It is 0 at black points, which need no lines where what surfaces send is shown.
+        """
         patches = self.lookup.patches
         if self.quantity == "irradiance":
-            found = self.gather.irradiance(patch, u, v)
+            found, behind = self.gather.with_backs(patch, u, v)
         else:
             reflectance = values_at(patches, "reflectance", patch, u, v)
-            found = values_at(patches, "emission", patch, u, v)
+            found, behind = values_at(patches, "emission", patch, u, v), np.zeros(len(patch))
             lit = np.flatnonzero(reflectance.any(axis=1))  # black points need no gather
-            found[lit] += reflectance[lit] * self.gather.irradiance(patch[lit], u[lit], v[lit])
+            light, behind[lit] = self.gather.with_backs(patch[lit], u[lit], v[lit])
+            found[lit] += reflectance[lit] * light
             self._add_from_beyond(found, patch, u, v)
             found /= np.pi if self.quantity in OF_DIRECTIONS else 1.0
-        return in_columns(self.gather.solution, found, self.band, single=self.single)
+        return in_columns(self.gather.solution, found, self.band, single=self.single), behind

@@ -1,7 +1,7 @@
 """Atlases: places on one page for all triangles of a scene, without overlaps, found by xatlas.
 
 Each surface and side has charts of its own, so that the colours of two surfaces never blend, and both sides of a face have
-places. Charts may be mirrored. A face too small for xatlas has one texel.
+places. Charts may be mirrored. A face too small for xatlas has one texel, and all dark sides share one.
 """
 
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class Atlas:
         vertices: (n, 3) float64, metres.
         uv: (n, 2) float64, places of vertices, texels from the first texel's corner.
         corners: (m, 3) int64, vertices of the triangles.
-        chart: (m,) int64, number of each triangle's chart; those too small for a chart have one of their own.
+        chart: (m,) int64, number of each triangle's chart; those too small for a chart have one of their own, the dark one.
     """
 
     triangles: Triangles
@@ -63,9 +63,8 @@ def make(triangles: Triangles, *, density: float | None = None, size: int | None
     Raises:
         OutputError: an option makes no sense, the page would be larger than `LARGEST`, or xatlas is not installed.
     """
-    require("xatlas", "a lightmap", extra="lightmap")
-    _check(density, size, padding)
-    area = float(_areas(triangles).sum())
+    check(density, size, padding)
+    area = float(_areas(triangles)[~triangles.dark].sum())
     if density is not None:
         if area * density**2 <= LARGEST**2:  # xatlas ends the process where pages are very large
             found = _packed(triangles, density, padding)
@@ -93,12 +92,14 @@ def make(triangles: Triangles, *, density: float | None = None, size: int | None
     if best is None:
         raise OutputError(
             f"{triangles.scene.source}: a lightmap of {size} x {size} texels does not hold a place for each of its "
-            f"{len(triangles)} triangles with {padding} texels between them: take a larger size, or less padding"
+            f"{(~triangles.dark).sum()} triangles with {padding} texels between them: take a larger size, or less padding"
         )
     return best
 
 
-def _check(density, size, padding) -> None:
+def check(density, size, padding) -> None:
+    """Refuse options that make no sense, and find out whether xatlas is there; see `make`."""
+    require("xatlas", "a lightmap", extra="lightmap")
     if density is not None and size is not None:
         raise OutputError("give texels per metre or a size, not both")
     if density is not None and not (np.isfinite(density) and density > 0):
@@ -121,7 +122,8 @@ def _packed(triangles: Triangles, density: float, padding: int) -> Atlas:
     low = scene.bounds[0]
     unit = EXTENT / float((scene.bounds[1] - low).max())
     points = (scene.vertices - low) * unit
-    corners, ends = triangles.corners(), np.flatnonzero(np.diff(triangles.sheet, append=-1)) + 1
+    lit = np.flatnonzero(~triangles.dark)
+    corners, ends = triangles.corners()[lit], np.flatnonzero(np.diff(triangles.sheet[lit], append=-1)) + 1
     work, begin, used = xatlas.Atlas(), 0, []
     for end in ends:
         own, local = np.unique(corners[begin:end], return_inverse=True)
@@ -143,12 +145,14 @@ def _packed(triangles: Triangles, density: float, padding: int) -> Atlas:
         of_vertex = work.get_mesh_vertex_assignment(number)[1].astype(np.int64)  # of all meshes
         chart.append(of_vertex[indices.reshape(-1, 3)[:, 0]])
         shift += len(mapping)
-    joined = [np.concatenate(parts) for parts in (vertices, uv, found, chart)]
+    places, numbers = np.zeros((len(triangles), 3), np.int64), np.zeros(len(triangles), np.int64)
+    places[lit], numbers[lit] = np.concatenate(found), np.concatenate(chart)
+    joined = np.concatenate(vertices), np.concatenate(uv), places, numbers
     return _with_tiny(Atlas(triangles, int(work.width), int(work.height), density, *joined), padding)
 
 
 def _with_tiny(atlas: Atlas, padding: int) -> Atlas:
-    """Return the atlas with one texel for each triangle that has no place, in rows below the others."""
+    """Return the atlas with one texel for each triangle that has no place, in rows below the others, and one for the dark."""
     first, second = (atlas.places[:, i] - atlas.places[:, 0] for i in (1, 2))
     tiny = np.flatnonzero(first[:, 0] * second[:, 1] == first[:, 1] * second[:, 0])
     if not len(tiny):
@@ -156,7 +160,8 @@ def _with_tiny(atlas: Atlas, padding: int) -> Atlas:
     step = padding + 1
     width = max(atlas.width, step)
     in_row = width // step
-    k = np.arange(len(tiny))
+    dark = atlas.triangles.dark[tiny]
+    k = np.where(dark, (~dark).sum(), np.cumsum(~dark) - 1)
     spots = np.stack([k % in_row, k // in_row], axis=1) * step + 0.5 + [0, atlas.height + padding]
     corners = atlas.corners.copy()
     corners[tiny] = len(atlas.vertices) + np.arange(3 * len(tiny)).reshape(-1, 3)
@@ -166,7 +171,7 @@ def _with_tiny(atlas: Atlas, padding: int) -> Atlas:
     return Atlas(
         atlas.triangles,
         width,
-        atlas.height + padding + int(k[-1] // in_row) * step + 1,
+        atlas.height + padding + int(k.max() // in_row) * step + 1,
         atlas.density,
         np.concatenate([atlas.vertices, vertices]),
         np.concatenate([atlas.uv, np.repeat(spots, 3, axis=0)]),

@@ -17,6 +17,8 @@ from ..run.progress import Listener
 from ..scene import Camera
 from ..tracing.first_hits import Hits
 from . import atlas as atlases
+from .dark import OF_MIDDLES, dark_and_dim, unlit
+from .hidden import from_beside, mean_of_seen
 from .model import Lightmap
 from .texels import Texels, points_of
 from .triangles import Triangles
@@ -71,21 +73,31 @@ def bake_lightmap(
     each = lines_of(lines, parts * samples, name="lines", of="a texel", parts="samples and independent parts")
     patches, scene = solution.patches, solution.patches.scene
     shown = choose(solution, quantity)
-    page = atlases.make(Triangles.of(scene), density=texels_per_metre, size=size, padding=padding)
-    texels = Texels.of(page)
-    lookup = Lookup(patches, shown.values, smooth=False)
-    places = [texels.place] if samples == 1 else points_of(page, texels, samples)
-    patch = [_patch(lookup, page, texels, place) for place in places]
-    options = {"lines": each, "points": len(texels) * parts * samples, "seed": seed, "progress": progress}
+    atlases.check(texels_per_metre, size, padding)
+    lookup, candidates = Lookup(patches, shown.values, smooth=False), unlit(solution)
     with turn(), on_cluster(cluster) as client:
-        look = Gathered.of(solution, lookup, quantity, None, single=False, **options, cluster=client)
-        drawn = [[look.values(one, *place.T) for one, place in zip(patch, places, strict=True)] for _ in range(parts)]
-    found = np.mean(drawn, axis=1)
+
+        def gathered(lines: float, points: int, seed: int) -> Gathered:
+            options = {"lines": lines, "points": points, "seed": seed, "progress": progress, "cluster": client}
+            return Gathered.of(solution, lookup, quantity, None, single=False, **options)
+
+        # the page does not depend on the lines and the seed of texels
+        dark, dim = dark_and_dim(solution, gathered(OF_MIDDLES, len(candidates), 0), candidates)
+        page = atlases.make(Triangles.of(scene, dark, dim), density=texels_per_metre, size=size, padding=padding)
+        texels = Texels.of(page)
+        places = [texels.place] if samples == 1 else points_of(page, texels, samples)
+        patch = [_patch(lookup, page, texels, place) for place in places]
+        look = gathered(each, len(texels) * parts * samples, seed)
+        drawn = [[look.with_backs(one, *place.T) for one, place in zip(patch, places, strict=True)] for _ in range(parts)]
+    found, hidden = mean_of_seen(*(np.array([[one[i] for one in part] for part in drawn]) for i in (0, 1)))
+    found[:, page.triangles.dark[texels.triangle]] = 0.0
     mean = found.mean(axis=0)
     spread = found.std(axis=0, ddof=1) / np.sqrt(parts) if parts > 1 else None
     if denoise and spread is not None:
         plane = planes(patches)[patch[0]] * (int(page.chart.max()) + 1) + page.chart[texels.triangle]
         mean = _without_noise(page, texels, mean, spread, plane)
+    mean = from_beside(page, texels, hidden, mean)
+    spread = None if spread is None else from_beside(page, texels, hidden, spread)
     nearest = _nearest(page, texels)
     covered = np.zeros((page.height, page.width), bool)
     covered[texels.row, texels.column] = True

@@ -14,7 +14,7 @@ from ..image.mesh import origin_of, transmittances
 from ..scene.up import up_axis
 
 APART = 1e-5  # of the scene's extent, from fronts to backs
-LINEAR, MIPMAPS, CLAMP = 9729, 9987, 33071
+LINEAR, CLAMP = 9729, 33071  # no mipmaps: in these, charts would bleed into each other
 
 
 def write(lightmap, path, pixels: np.ndarray, facts: dict[str, str]) -> None:
@@ -61,7 +61,7 @@ def write(lightmap, path, pixels: np.ndarray, facts: dict[str, str]) -> None:
         "meshes": meshes,
         "materials": [_material(lightmap.quantity, float(alpha)) for alpha in alphas],
         "textures": [{"source": 0, "sampler": 0}],
-        "samplers": [{"magFilter": LINEAR, "minFilter": MIPMAPS, "wrapS": CLAMP, "wrapT": CLAMP}],
+        "samplers": [{"magFilter": LINEAR, "minFilter": LINEAR, "wrapS": CLAMP, "wrapT": CLAMP}],
         "images": [{"mimeType": "image/png", "bufferView": buffer.view(_png(pixels)), "name": "lightmap"}],
         **buffer.entries(),
     }

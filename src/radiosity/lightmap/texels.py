@@ -11,6 +11,7 @@ import numpy as np
 from .atlas import Atlas
 
 BESIDE = 1.5  # texels from a chart within which interpolation reads a texel: the diagonal of one, and some more
+MARGIN = 0.1  # texels from the edges of faces to points: at the very edge a point may lie in what stands there
 GOLDEN = 0.6180339887498949  # spreads points over a texel
 AT_ONCE = 1 << 20  # pairs of texels and triangles
 
@@ -52,7 +53,8 @@ class Texels:
             nearest[at], owner[at], weights[at] = found[pick], triangle[pick], shares[pick]
         own = np.flatnonzero(owner >= 0)
         place = np.einsum("mk,mkc->mc", weights[own], atlas.triangles.place[owner[own]])
-        return Texels(own // atlas.width, own % atlas.width, owner[own], np.clip(place, 0, 1), nearest[own] == 0)
+        place = _within(atlas, owner[own], place)
+        return Texels(own // atlas.width, own % atlas.width, owner[own], place, nearest[own] == 0)
 
 
 def points_of(atlas: Atlas, texels: Texels, count: int) -> list[np.ndarray]:
@@ -60,22 +62,40 @@ def points_of(atlas: Atlas, texels: Texels, count: int) -> list[np.ndarray]:
 
     A texel then has the mean over its square, so that edges of shadows are smooth.
     """
+    step, inside, found = _steps(atlas), np.flatnonzero(texels.inside), []
+    triangle = texels.triangle[inside]
+    for k in range(count):
+        offset = np.array([(k + 0.5) / count, (k * GOLDEN + 0.5) % 1]) - 0.5
+        there = texels.place.copy()
+        there[inside] = _within(atlas, triangle, there[inside] + offset @ step[triangle])
+        found.append(there)
+    return found
+
+
+def _steps(atlas: Atlas) -> np.ndarray:
+    """Return the steps of face coordinates for a texel right and a texel down, (m, 2, 2), of each triangle."""
     first, second = (atlas.places[:, i] - atlas.places[:, 0] for i in (1, 2))
     edges, place = np.stack([first, second], axis=1), atlas.triangles.place
     flat = np.abs(np.linalg.det(edges)) > 0
     ways = np.stack([place[:, i] - place[:, 0] for i in (1, 2)], axis=1)
     step = np.zeros((len(edges), 2, 2))
-    step[flat] = np.linalg.solve(edges[flat], ways[flat])  # of face coordinates, for a texel right and a texel down
-    scene = atlas.triangles.scene
-    is_quad = scene.is_quad[atlas.triangles.face[texels.triangle]]
-    found = []
-    for k in range(count):
-        offset = np.array([(k + 0.5) / count, (k * GOLDEN + 0.5) % 1]) - 0.5
-        there = texels.place + np.where(texels.inside[:, None], offset @ step[texels.triangle], 0.0)
-        there = np.clip(there, 0, 1)
-        beyond = np.maximum(there.sum(axis=1, keepdims=True), 1.0)
-        found.append(np.where(is_quad[:, None], there, there / beyond))
-    return found
+    step[flat] = np.linalg.solve(edges[flat], ways[flat])
+    return step
+
+
+def _within(atlas: Atlas, triangle: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Return face coordinates, (n, 2), moved into their faces: `MARGIN` from edges, where another face may stand.
+
+    Args:
+        triangle: (n,) of each.
+    """
+    step = _steps(atlas)
+    steps = np.concatenate([-step.sum(axis=2, keepdims=True), step], axis=2)  # of the three shares of a triangle's corners
+    margin = np.minimum(MARGIN * np.linalg.norm(steps, axis=1), 0.3)[triangle]
+    quad = np.clip(place, margin[:, 1:], 1 - margin[:, 1:])
+    shares = np.maximum(np.column_stack([1 - place.sum(axis=1), place]), margin)
+    is_quad = atlas.triangles.scene.is_quad[atlas.triangles.face[triangle]]
+    return np.where(is_quad[:, None], quad, (shares / shares.sum(axis=1, keepdims=True))[:, 1:])
 
 
 def _candidates(atlas: Atlas):
@@ -121,6 +141,7 @@ def _nearest(corners: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.nd
         distance[nearer] = apart[nearer]
         shares[nearer] = 0.0
         shares[nearer, i], shares[nearer, j] = 1 - t[nearer], t[nearer]
+    shares[double == 0] = 1 / 3  # one that is a point on the page: its middle
     return distance, shares
 
 

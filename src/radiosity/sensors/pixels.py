@@ -90,11 +90,18 @@ class Gather:
             patch: (m,) on whose side each lies.
             u, v: (m,) face coordinates.
         """
+        return self.with_backs(patch, u, v)[0]
+
+    def with_backs(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return what falls on points, as `irradiance` does, and the share of cosine lines that met absorbing backs, (m,)."""
         parts = [self._piece(*(a[at : at + PIECE] for a in (patch, u, v))) for at in range(0, len(patch), PIECE)]
-        return np.concatenate(parts) if parts else np.zeros((0, len(self.solution.bands)))
+        if not parts:
+            return np.zeros((0, len(self.solution.bands))), np.zeros(0)
+        light, behind = zip(*parts, strict=True)
+        return np.concatenate(light), np.concatenate(behind)
 
     @turn()
-    def _piece(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    def _piece(self, patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         patches, seed = self.solution.patches, Seed(self.seed, first_replicate=self.pieces)
         face = patches.face[patch]
         low_u, low_v, size_u, size_v = self.geometry.starts[:, face]  # so that no line begins behind a neighbour
@@ -120,7 +127,7 @@ class Gather:
                 self.teller.lines = before + tracing.traced
                 self.teller.tell("gathering")
         self.pieces += 1
-        return in_bands(self.problem, tracing.values()[0])
+        return in_bands(self.problem, tracing.values()[0]), tracing.behind()
 
 
 def _sensors(points: np.ndarray, normals: np.ndarray) -> Sensors:
