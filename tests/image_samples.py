@@ -32,7 +32,7 @@ def solution(patches, radiosity=None, *, unit="W/m²"):
         surface_table=lambda: table,
         quanta=1,
         few=np.arange(n) < 30,
-        interval=lambda level, quantity: (1.5 * radiosity, 2.5 * radiosity),
+        interval=lambda level, quantity, rows=slice(None): (1.5 * radiosity[rows], 2.5 * radiosity[rows]),
     )
 
 

@@ -6,23 +6,26 @@ import numpy as np
 import pytest
 
 from radiosity.pieces import PIECE
-from radiosity.scene import shared_edges as edges_module
+from radiosity.scene import edges_together
 from radiosity.scene.matching import matched
 from radiosity.scene.measures import measured
 from radiosity.scene.precision import FEW, TIE, weighted_median
-from radiosity.scene.shared_edges import ENDS, shared_edges
+from radiosity.scene.shared_edges import shared_edges
+from radiosity.scene.triangle_edges import ENDS, Triangles
+from radiosity.scene.twins import perhaps_twins
 from radiosity.scene.welded import welded
 
 
-def grid(cells: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and triangles of a flat grid in any order, with copies of triangles that make edges of three and more."""
+def grid(cells: int, seed: int, shuffled: bool = True) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and triangles of a grid, with copies of triangles that make edges of three and more."""
     random = np.random.Generator(np.random.Philox(seed))
     x, y = (axis.ravel() for axis in np.meshgrid(*[np.arange(cells + 1.0)] * 2, indexing="ij"))
     i, j = (axis.ravel() for axis in np.meshgrid(*[np.arange(cells)] * 2, indexing="ij"))
     a = i * (cells + 1) + j
     b, c, d = a + cells + 1, a + cells + 2, a + 1
-    faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
-    faces = faces[random.permutation(len(faces))]
+    faces = np.stack([a, b, c, a, c, d], 1).reshape(-1, 3)
+    if shuffled:
+        faces = faces[random.permutation(len(faces))]
     copies = [faces[:5], faces[5:9, ::-1], faces[9:12, [1, 2, 0]]]
     return np.stack([x, 0.7 * y, np.sin(0.1 * x)], axis=1), np.concatenate([faces, *copies])
 
@@ -48,11 +51,22 @@ def pairs_by_counting(vertices, faces, surface) -> set:
     return found
 
 
-@pytest.mark.parametrize("least_bits", [edges_module.LEAST_BITS, 64])
-def test_edges_of_parallelograms(least_bits, monkeypatch):
-    """With 64 bits wanted beside both numbers, which no key has, rows decide."""
-    monkeypatch.setattr(edges_module, "LEAST_BITS", least_bits)
-    vertices, faces = grid(12, 1)
+MANY = {"shared_edges.perhaps_twins": lambda triangles: None}  # twins: edges of all triangles are looked at
+WAYS = {
+    "some": {},
+    "blocks": {**MANY, "shared_edges.BLOCK": 64},
+    "all at once": {**MANY, "shared_edges.MOSTLY": -1.0},
+    "blocks with vertices too far apart": {**MANY, "shared_edges.PLACE": np.uint64(3)},
+    "rows decide": {"edges_together.LEAST_BITS": 64},  # beside both numbers, which no key has
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("order", ["any", "of the mesh"])
+def test_edges_of_parallelograms(way, order, monkeypatch):
+    for name, value in WAYS[way].items():
+        monkeypatch.setattr(f"radiosity.scene.{name}", value)
+    vertices, faces = grid(12, 1, order == "any")
     surface = (np.arange(len(faces)) % 7 == 0).astype(np.int32)
     full = np.column_stack([faces, np.full(len(faces), -1)])
     one, two = shared_edges(vertices, faces, surface, measured(vertices, full), 2e-6)
@@ -62,13 +76,12 @@ def test_edges_of_parallelograms(least_bits, monkeypatch):
     assert wanted <= found
     assert len(found) == len(one)
     assert found <= {frozenset(user[0] for user in some) for some in users(faces, surface).values() if len(some) == 2}
-    if least_bits < 64:
-        assert len(found - wanted) < 0.1 * len(wanted)  # no more than the tolerance lets pass
+    assert len(found - wanted) < 0.1 * len(wanted)  # no more than the tolerance lets pass
 
 
 def test_edges_whose_bits_are_equal_by_chance(monkeypatch):
     """Upper vertices and surfaces leave no trace in keys: edges of one lower vertex have equal bits, and rows decide."""
-    monkeypatch.setattr(edges_module, "MIX", np.uint64(0))
+    monkeypatch.setattr(edges_together, "MIX", np.uint64(0))
     vertices, faces = grid(8, 2)
     surface = np.zeros(len(faces), np.int32)
     full = np.column_stack([faces, np.full(len(faces), -1)])
@@ -129,3 +142,20 @@ def test_medians(shape, random):
     order = np.argsort(values, kind="stable")
     sums = np.cumsum(weights[order])
     assert weighted_median(values, weights) == values[order[np.searchsorted(sums, sums[-1] / 2 * (1 - TIE))]]
+
+
+def test_triangles_without_a_twin_are_left_out(random):
+    """Halves of parallelograms are kept, wherever they lie and however large; of other triangles nearly all are left out."""
+    n = 4000
+    origin, along, up = random.normal(size=(n, 3)) * 100, *random.normal(size=(2, n, 3)) * 10.0 ** random.uniform(-3, 3, (n, 1))
+    corners = np.stack([origin, origin + along, origin + up, origin + along + up], axis=1)
+    corners[n // 2 :, 3] += 0.01 * along[n // 2 :]  # of no parallelogram
+    corners[: n // 2, 3] += 1.3e-6 * along[: n // 2] * random.choice([-1, 1], (n // 2, 1))  # within the tolerance
+    first = 4 * np.arange(n)
+    faces = np.concatenate([first[:, None] + [0, 1, 2], first[:, None] + [3, 2, 1]])
+    axes = [np.ascontiguousarray(axis) for axis in corners.reshape(-1, 3).T]
+    kept = perhaps_twins(Triangles(faces, None, np.zeros(2 * n, np.int32), axes, 2e-6))
+    assert kept is not None
+    is_half = np.tile(np.arange(n) < n // 2, 2)
+    assert np.isin(np.flatnonzero(is_half), kept).all()
+    assert np.isin(np.flatnonzero(~is_half), kept).mean() < 0.15

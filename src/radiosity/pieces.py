@@ -13,18 +13,19 @@ Part = TypeVar("Part")
 Result = TypeVar("Result")
 
 
-def pieces(count: int) -> Iterator[slice]:
-    """Yield slices that cover ``count`` entries, a piece at a time."""
-    for start in range(0, count, PIECE):
-        yield slice(start, min(start + PIECE, count))
+def pieces(count: int, size: int | None = None) -> Iterator[slice]:
+    """Yield slices that cover ``count`` entries, a piece at a time: `PIECE` entries, or ``size``."""
+    step = size or PIECE
+    for start in range(0, count, step):
+        yield slice(start, min(start + step, count))
 
 
-def of_pieces(work: Callable[[slice], Result], count: int) -> list[Result]:
+def of_pieces(work: Callable[[slice], Result], count: int, size: int | None = None) -> list[Result]:
     """Return what ``work`` returns for each piece of ``count`` entries, in order; pieces are shared among threads.
 
     It pays where ``work`` calls NumPy on long arrays, which lets other threads go on.
     """
-    return in_threads(work, list(pieces(count)))
+    return in_threads(work, list(pieces(count, size)))
 
 
 def in_threads(work: Callable[[Part], Result], parts: Sequence[Part]) -> list[Result]:

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..solution.columns import patch_columns
+from ..solution.columns import column_pieces
 from ..solution.csv_rows import open_text, write_rows
 from ..solution.replacing import replacing
 from .look import Look
 
-CHUNK = 1 << 16
+CHUNK = 1 << 12  # patches: as text, in Python's numbers, they take a few MiB
 POWERS = ("emitted", "received", "reflected", "transmitted", "absorbed", "left", "net", "net error", "net low", "net high")
 
 
@@ -32,15 +32,15 @@ def surfaces_path(path) -> Path:
 
 
 def _patches(solution, path: Path) -> None:
-    columns = patch_columns(solution)
-    names = np.array([_cells([name]) for name in solution.patches.scene.names], object)
-    columns["surface"] = names[solution.patches.surface]
-    row = ",".join("%.9g" if value.dtype.kind == "f" else "%s" for value in columns.values()).__mod__
+    names, begin = np.array([_cells([name]) for name in solution.patches.scene.names], object), 0
     with replacing(path) as temporary, open_text(temporary) as file:
-        file.write(_cells(columns) + "\n")
-        for begin in range(0, len(solution.patches), CHUNK):
-            part = [value[begin : begin + CHUNK].tolist() for value in columns.values()]
-            file.write("\n".join(map(row, zip(*part, strict=True))) + "\n")
+        for columns in column_pieces(solution, CHUNK):
+            if begin == 0:
+                file.write(_cells(columns) + "\n")
+            part = slice(begin, begin := begin + len(columns["patch"]))
+            columns["surface"] = names[solution.patches.surface[part]]
+            row = ",".join("%.9g" if value.dtype.kind == "f" else "%s" for value in columns.values()).__mod__
+            file.write("\n".join(map(row, zip(*(value.tolist() for value in columns.values()), strict=True))) + "\n")
 
 
 def _surfaces(solution, path: Path) -> None:

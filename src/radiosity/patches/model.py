@@ -141,13 +141,21 @@ class Patches:
     @cached_property
     def normal(self) -> np.ndarray:
         """Normals of unit length, (n_patches, 3) float64, which point to the radiating side."""
-        return self.scene.normal[self.face] * np.where(self.is_back, -1.0, 1.0)[:, None]
+        return self.normals(slice(0, len(self)))
+
+    def normals(self, part: slice) -> np.ndarray:
+        """Return `normal` of a slice of the patches."""
+        return self.scene.normal[self.face[part]] * np.where(self.is_back[part], -1.0, 1.0)[:, None]
 
     @cached_property
     def centroid(self) -> np.ndarray:
         """Centroids, (n_patches, 3) float64, metres."""
-        column, row, inverted = self.place
-        face = self.face
+        return self.centroids(slice(0, len(self)))
+
+    def centroids(self, part: slice) -> np.ndarray:
+        """Return `centroid` of a slice of the patches."""
+        column, row, inverted = self.places(part)
+        face = self.face[part]
         middle = np.where(self.scene.is_quad[face], 0.5, np.where(inverted, 2 / 3, 1 / 3))
         u, v = (column + middle) / self.columns[face], (row + middle) / self.rows[face]
         origin, first, second = (edge[face] for edge in self.scene.frames)
@@ -175,6 +183,20 @@ class Patches:
         if self.own_emission is not None:
             return self.own_emission
         return self._of_side(self.scene.emission, self.scene.back_emission, self.scene.emission_paint)
+
+    def reflectances(self, part: slice) -> np.ndarray:
+        """Return `reflectance` of a slice of the patches; what is not known yet is not kept."""
+        scene = self.scene
+        if "reflectance" in self.__dict__ or self.pane_of or self.own_reflectance is not None or scene.reflectance_paint:
+            return self.reflectance[part]
+        return self._of_sides(scene.reflectance, scene.back_reflectance, part)
+
+    def emissions(self, part: slice) -> np.ndarray:
+        """Return `emission` of a slice of the patches; what is not known yet is not kept."""
+        scene = self.scene
+        if "emission" in self.__dict__ or self.pane_of or self.own_emission is not None or scene.emission_paint:
+            return self.emission[part]
+        return self._of_sides(scene.emission, scene.back_emission, part)
 
     @cached_property
     def diffuse_transmittance(self) -> np.ndarray | None:
@@ -205,9 +227,13 @@ class Patches:
     def _over_solid(self, values: np.ndarray) -> np.ndarray:
         return values / (1 - self.transmittance)[:, None]
 
+    def _of_sides(self, front: np.ndarray, back: np.ndarray, part: slice) -> np.ndarray:
+        face = self.face[part]
+        return np.where(self.is_back[part, None], back[face], front[face])
+
     def _of_side(self, front, back, paint) -> np.ndarray:
         if paint is None:
-            return np.where(self.is_back[:, None], back[self.face], front[self.face])
+            return self._of_sides(front, back, slice(0, len(self)))
         scene = self.scene
         result = np.empty((len(self), front.shape[1]))
         radiates = scene.back == Back.RADIATES

@@ -5,6 +5,7 @@ import numpy as np
 from ..errors import SceneError
 from .back import Back
 from .camera import Camera
+from .one_row import is_one_row, row_or_all
 
 MOST = 2**53  # of whole numbers: all up to there are numbers of double precision, too
 LARGEST = 1e30  # of emission, colours and texture coordinates: products and single precision copies of them are finite
@@ -22,12 +23,10 @@ def array(value, dtype, what, source, copy: bool = True) -> np.ndarray:
 
 def whole(value, what, kind, source, copy: bool = True) -> np.ndarray:
     """An array of whole numbers, int64; without ``copy`` perhaps the one that is given."""
-    if (
-        isinstance(value, np.ndarray)
-        and value.dtype.kind in "iu"
-        and -MOST <= value.min(initial=0) <= value.max(initial=0) <= MOST
-    ):
-        return np.array(value, np.int64) if copy else np.asarray(value, np.int64)
+    if isinstance(value, np.ndarray) and value.dtype.kind in "iu":
+        some = row_or_all(value)
+        if value.dtype.itemsize <= 4 or -MOST <= some.min(initial=0) <= some.max(initial=0) <= MOST:
+            return np.array(value, np.int64) if copy else np.asarray(value, np.int64)
     raw = array(value, np.float64, what, source)
     if not np.isfinite(raw).all() or (raw != np.floor(raw)).any() or np.abs(raw).max(initial=0) > MOST:
         raise SceneError(f"{source}: {what} must hold whole {kind}")
@@ -102,17 +101,18 @@ def surfaces_of(surface, names, n, source, copy: bool = True) -> tuple[np.ndarra
     index = np.zeros(n, np.int64) if surface is None else whole(surface, "surface", "surface numbers", source, copy)
     if index.shape != (n,):
         raise SceneError(f"{source}: surface has shape {index.shape}; expected ({n},)")
-    if index.min() < 0:
-        raise SceneError(f"{source}: surface of face {int(index.argmin())} is {index.min()}; expected 0 or more")
+    least, most = int(row_or_all(index).min()), int(row_or_all(index).max())
+    if least < 0:
+        raise SceneError(f"{source}: surface of face {int(index.argmin())} is {least}; expected 0 or more")
     if names is None:
-        if index.max() >= max(n, 1) * 4 + 1024:
+        if most >= max(n, 1) * 4 + 1024:
             raise SceneError(
-                f"{source}: surface of face {int(index.argmax())} is {index.max()}; number the surfaces from 0 without gaps"
+                f"{source}: surface of face {int(index.argmax())} is {most}; number the surfaces from 0 without gaps"
             )
-        names = ("surface",) if index.max() == 0 else tuple(f"surface {i}" for i in range(int(index.max()) + 1))
+        names = ("surface",) if most == 0 else tuple(f"surface {i}" for i in range(int(most) + 1))
     names = words(names, "names", source)
-    if index.max() >= len(names):
-        raise SceneError(f"{source}: face {int(index.argmax())} has surface {index.max()}, but there are {len(names)} names")
+    if most >= len(names):
+        raise SceneError(f"{source}: face {int(index.argmax())} has surface {most}, but there are {len(names)} names")
     return _narrow(index, np.int32), names
 
 
@@ -125,7 +125,8 @@ def backs_of(back, two_sided, n, source, copy: bool = True) -> np.ndarray:
         return np.where(np.broadcast_to(sides.astype(bool), (n,)), Back.RADIATES, Back.ABSORBS).astype(np.uint8)
     values = whole(back, "back", "numbers", source, copy)
     values = np.broadcast_to(values, (n,)) if values.ndim == 0 else values
-    if values.shape != (n,) or not 0 <= values.min() <= values.max() <= max(Back):
+    some = row_or_all(values)
+    if values.shape != (n,) or not 0 <= some.min() <= some.max() <= max(Back):
         raise SceneError(
             f"{source}: back must hold {', '.join(f'{int(b)} ({b.name.lower()})' for b in Back)} for each of {n} faces"
         )
@@ -134,13 +135,13 @@ def backs_of(back, two_sided, n, source, copy: bool = True) -> np.ndarray:
 
 def _narrow(values: np.ndarray, dtype) -> np.ndarray:
     """Return whole numbers, (n,), in a narrower type; of equal ones there is one in memory where it was so before."""
-    return np.broadcast_to(values[:1].astype(dtype), len(values)) if values.strides == (0,) else values.astype(dtype)
+    return np.broadcast_to(values[:1].astype(dtype), len(values)) if is_one_row(values) else values.astype(dtype)
 
 
 def check_values(value, what, surface, names, source) -> None:
     """Refuse reflectances and emissions out of range."""
-    top = 1.0 if "reflectance" in what else LARGEST
-    if not value.size or 0 <= value.min() <= value.max() < top:
+    top, some = 1.0 if "reflectance" in what else LARGEST, row_or_all(value)
+    if not value.size or 0 <= some.min() <= some.max() < top:
         return
     wrong = ~((value >= 0) & (value < top))
     if wrong.any():
@@ -153,8 +154,9 @@ def check_values(value, what, surface, names, source) -> None:
 
 def check_open(back, reflectance, surface, names, source) -> None:
     """Refuse open faces that reflect: lines pass through them."""
-    wrong = back == Back.OPEN
-    wrong = wrong & (reflectance > 0).any(axis=1) if wrong.any() else wrong
+    if not (row_or_all(back) == Back.OPEN).any():
+        return
+    wrong = (back == Back.OPEN) & (reflectance > 0).any(axis=1)
     if wrong.any():
         face = int(np.flatnonzero(wrong)[0])
         raise SceneError(

@@ -36,6 +36,7 @@ def checked_fields(
     cameras=(),
     source="arrays",
     copy: bool = True,
+    known: bool = False,
 ) -> tuple[dict[str, Any], np.ndarray | slice]:
     """The fields of a `Scene` by name, with degenerate faces still in it, and the input row that each of its faces came from.
 
@@ -43,15 +44,17 @@ def checked_fields(
 
     Args:
         copy: arrays are copied. Without, those that are given may be parts of the scene.
+        known: faces are (n_faces, 4) int64 and name vertices that there are, as was found out.
     """
     vertices = arguments.array(vertices, np.float64, "vertices", source, copy)
-    faces = arguments.indices(faces, source, copy)
+    faces = faces if known else arguments.indices(faces, source, copy)
     if vertices.ndim != 2 or vertices.shape[1] != 3:
         raise SceneError(f"{source}: vertices have shape {vertices.shape}; expected (n_vertices, 3)")
     n = len(faces)
     if n == 0:
         raise SceneError(f"{source}: the scene has no faces; add geometry")
-    arguments.check_indices(faces, len(vertices), source)
+    if not known:
+        arguments.check_indices(faces, len(vertices), source)
     if not -FARTHEST <= vertices.min() <= vertices.max() <= FARTHEST:
         _check_used(vertices, faces, source)
     reflectance = arguments.per_face(reflectance, n, "reflectance", source, copy)
@@ -79,12 +82,14 @@ def checked_fields(
     index = panes.indices(refractive_index, n, source)
     panes.check_glass(index, transmittance, (*values, *([] if diffuse is None else [diffuse])), surface, names, source)
     bands = arguments.bands_of(bands, n_bands, source)
-    crossed = _crossed(vertices, faces)
-    if len(crossed):
-        where = shown(dict.fromkeys(names[i] for i in surface[crossed]))
-        text = f"{len(crossed)} quadrilaterals whose outline crosses itself became two triangles that face opposite ways"
-        warn(f"{source}: {text} (first: face {crossed[0]}; surfaces {where}); put their corners in order")
-    faces, rows = _parallelograms(vertices, faces)
+    rows: np.ndarray | slice = slice(None)
+    if faces[:, 3].max() >= 0:
+        crossed = _crossed(vertices, faces)
+        if len(crossed):
+            where = shown(dict.fromkeys(names[i] for i in surface[crossed]))
+            text = f"{len(crossed)} quadrilaterals whose outline crosses itself became two triangles that face opposite ways"
+            warn(f"{source}: {text} (first: face {crossed[0]}; surfaces {where}); put their corners in order")
+        faces, rows = _parallelograms(vertices, faces)
     reflectance, emission, back_reflectance, back_emission = (value[rows] for value in values)
     fields = {
         "vertices": vertices,
@@ -148,8 +153,6 @@ def _crossed(vertices, faces) -> np.ndarray:
 def _parallelograms(vertices, faces) -> tuple[np.ndarray, np.ndarray | slice]:
     """Split quadrilaterals that are no parallelograms in two; also the row each face came from."""
     quad = faces[:, 3] >= 0
-    if not quad.any():
-        return faces, slice(None)
     a, b, c, d = (vertices[np.where(quad, faces[:, i], faces[:, 0])] for i in range(4))
     size = np.maximum(np.linalg.norm(b - a, axis=1), np.linalg.norm(d - a, axis=1))
     split = quad & ~(np.linalg.norm(a + c - b - d, axis=1) <= PARALLEL_TOLERANCE * size)

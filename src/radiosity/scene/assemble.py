@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import SceneError, shown
+from ..pieces import pieces
 from .arrays import checked_fields, split_paint
 from .bends import straightened
 from .habits import DEFAULT_REFLECTANCE, settle, warn
@@ -13,6 +14,8 @@ from .paint_parts import emission_paint, reflectance_paint
 from .parts import Material, Part, ReadOptions
 from .quads import merge_triangles
 from .texture_memory import SMALL
+
+PIECE = 1 << 14  # faces at a time
 
 __all__ = ["DEFAULT_REFLECTANCE", "Material", "Part", "ReadOptions", "assemble", "warn"]
 
@@ -82,6 +85,7 @@ def assemble(
         cameras=cameras,
         source=source,
         copy=False,
+        known=True,
     )
     # the rows of the paints must follow where quadrilaterals were split
     paints = (reflectance_paint(parts, len(bands), options.max_reflectance), emission_paint(parts, len(bands)))
@@ -117,9 +121,13 @@ def _check_indices(part: Part, source: str) -> None:
 
 
 def _offset(part: Part, start: int) -> np.ndarray:
-    faces = np.asarray(part.faces, np.int64)
-    if faces.shape[1] == 3:
-        result = np.full((len(faces), 4), -1)
-        np.add(faces, start, out=result[:, :3])
-        return result
-    return np.where(faces >= 0, faces + start, -1)
+    faces = np.asarray(part.faces)
+    if faces.shape[1] == 4:
+        return np.where(faces >= 0, faces + start, -1).astype(np.int64, copy=False)
+    result = np.empty((len(faces), 4), np.int64)
+    for piece in pieces(len(faces), PIECE):
+        some, of_result = faces[piece], result[piece]
+        for corner in range(3):
+            np.add(some[:, corner], start, out=of_result[:, corner], dtype=np.int64)
+        of_result[:, 3] = -1
+    return result

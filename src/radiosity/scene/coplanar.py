@@ -10,13 +10,17 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ..errors import RadiosityWarning
+from ..pieces import of_pieces
 from .contacts import Contacts
+from .equal_keys import follows, mixed, sort
 from .flat_pieces import flat_pieces, numbered
 from .model import Scene
 from .neighbours import Plates, pairs
 from .overlap import common, overlapping
 from .precision import EPSILON
+from .welded import welded
 
+SIZE = 1 << 14  # faces at a time
 ONE_PLANE = 4  # ulps: faces nearer than this where they overlap lie in one plane
 NEAR = 8  # ulps: distance in front of their face where lines begin (tracing/geometry.py); they miss faces that are nearer
 WIDTH = 32  # ulps: the common part of faces is wider than that, and than SLIVER of the smaller one's longest edge
@@ -38,7 +42,14 @@ def copied(scene: Scene) -> np.ndarray:
 
     A pane stands for others only where none of them is opaque.
     """
-    rows = _corners(scene).reshape(scene.n_faces, 12)
+    return _copied(scene, _corners(scene), _places(scene))
+
+
+def _copied(scene: Scene, corners: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Return what `copied` does, of corners, (n_faces, 4, 3), and their `_places`."""
+    if not _repeats(place):
+        return np.arange(scene.n_faces)
+    rows = corners.reshape(scene.n_faces, 12)
     order = np.argsort(scene.panes, kind="stable")
     _, first, number = np.unique(numbered(rows)[order], return_index=True, return_inverse=True)
     place = np.empty(len(order), np.int64)
@@ -47,15 +58,38 @@ def copied(scene: Scene) -> np.ndarray:
     return np.where((rows == rows[first]).all(axis=1), first, np.arange(scene.n_faces))
 
 
+def _repeats(place: np.ndarray) -> bool:
+    """Return whether two faces may have the very same corners."""
+    bits = max(len(place) - 1, 1).bit_length()
+    low, keys = np.uint64((1 << bits) - 1), np.zeros(len(place), np.uint64)
+    for column in place.T:
+        keys = mixed(keys + column.view(np.uint64))
+    keys &= ~low
+    sort(keys)
+    return bool(follows(keys, bits).any())
+
+
+def _four(scene: Scene) -> np.ndarray:
+    """Return the vertices of faces, (n_faces, 4) int64; triangles repeat the third."""
+    return np.where(scene.faces < 0, scene.faces[:, 2:3], scene.faces)
+
+
 def _corners(scene: Scene) -> np.ndarray:
     """Return the corners about the centre, (n_faces, 4, 3) metres; triangles repeat the third."""
-    return scene.vertices[np.where(scene.faces < 0, scene.faces[:, 2:3], scene.faces)] - scene.centre
+    return (scene.vertices - scene.centre).take(_four(scene), axis=0)
+
+
+def _places(scene: Scene) -> np.ndarray:
+    """Return numbers that are equal where corners about the centre are, and only there, (n_faces, 4) int64."""
+    number = welded(scene.vertices - scene.centre)
+    return _four(scene) if number is None else number.take(_four(scene))
 
 
 def _find(scene: Scene) -> Contacts:
-    first, corners = copied(scene), _corners(scene)
+    corners, place = _corners(scene), _places(scene)
+    first = _copied(scene, corners, place)
     alone = first == np.arange(scene.n_faces)
-    parts, two = _compared(scene, corners, np.flatnonzero(alone)), np.flatnonzero(~alone)
+    parts, two = _compared(scene, corners, place, np.flatnonzero(alone)), np.flatnonzero(~alone)
     if len(two):
         ulp = EPSILON * np.maximum(np.abs(corners[two]).max(axis=(1, 2)), scene.plane_reach[two])
         yes = np.ones(len(two), bool)
@@ -64,16 +98,15 @@ def _find(scene: Scene) -> Contacts:
     return Contacts.joined(parts)
 
 
-def _compared(scene: Scene, corners: np.ndarray, faces: np.ndarray) -> list[Contacts]:
+def _compared(scene: Scene, corners: np.ndarray, place: np.ndarray, faces: np.ndarray) -> list[Contacts]:
     """The pairs among some faces, in parts."""
-    edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-    longest, reach = edges.max(axis=1), np.abs(corners).max(axis=(1, 2))
+    longest, reach, low, high, middle = _sizes(corners)
     margin = NEAR * EPSILON * np.maximum(reach, scene.plane_reach)
     height = scene.area * np.where(scene.is_quad, 1, 2) / longest
     least = np.maximum(WIDTH * EPSILON * reach, SLIVER * longest)
-    low, high, tilt = corners.min(axis=1), corners.max(axis=1), 2 * margin / height
-    piece = flat_pieces(corners, scene.normal, tilt, faces)
-    plates = Plates(low, high, scene.normal, corners.mean(axis=1), tilt, margin, least, piece)
+    tilt = 2 * margin / height
+    piece = flat_pieces(place, scene.normal, tilt, faces)
+    plates = Plates(low, high, scene.normal, middle, tilt, margin, least, piece)
     parts, found = [], 0
     for small, large in pairs(plates, faces):
         rows = _parallel(plates, corners, small, large)
@@ -88,6 +121,31 @@ def _compared(scene: Scene, corners: np.ndarray, faces: np.ndarray) -> list[Cont
             )
             break
     return parts
+
+
+def _sizes(corners: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return longest edges, the largest coordinates, (n,), and the lowest, highest and mean coordinates of corners, (n, 3)."""
+    n = len(corners)
+    longest, reach = np.empty(n), np.empty(n)
+    low, high, middle = (np.empty((n, 3)) for _ in range(3))
+
+    def measure(part: slice) -> None:
+        one, two, three, four = places = [np.ascontiguousarray(corners[part, k].T) for k in range(4)]
+        squared = [_squared(places[(k + 1) % 4] - places[k]) for k in range(4)]
+        longest[part] = np.sqrt(np.maximum(np.maximum(squared[0], squared[1]), np.maximum(squared[2], squared[3])))
+        lowest = np.minimum(np.minimum(one, two), np.minimum(three, four))
+        highest = np.maximum(np.maximum(one, two), np.maximum(three, four))
+        reach[part] = np.maximum(-lowest, highest).max(axis=0)
+        low[part], high[part] = lowest.T, highest.T
+        middle[part] = ((one + two + three + four) / 4).T
+
+    of_pieces(measure, n, SIZE)
+    return longest, reach, low, high, middle
+
+
+def _squared(vectors: np.ndarray) -> np.ndarray:
+    x, y, z = vectors
+    return x * x + y * y + z * z
 
 
 def _parallel(plates: Plates, corners: np.ndarray, small: np.ndarray, large: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 
 from ..errors import RadiosityWarning, SceneError, shown
+from .measures import heights
 from .precision import EPSILON
 
 RESOLUTION = 4 * EPSILON  # share of the distance from the scene's centre that the BVH can tell apart
@@ -12,6 +13,8 @@ RESOLUTION = 4 * EPSILON  # share of the distance from the scene's centre that t
 # Least value of twice a face's area over the square of the scene's reach. The BVH's scene reaches to 2^20 (tracing/bvh.py);
 # there Embree divides by numbers so close to zero for smaller faces that the places of hits would be wrong.
 SMALLEST = 4e-27
+
+WIDER = 1 + 1e-6  # than the box: no rounding of the centre matters
 
 
 def leave_out(scene):
@@ -44,10 +47,14 @@ def without_area(scene) -> np.ndarray:
     Their height over their longest edge is below the resolution where they lie, or their area is below what lines can tell apart
     beside the size of the scene.
     """
-    measures, reach = scene.measures, scene.reach
+    measures = scene.measures
+    farthest = WIDER * float(np.ptp(measures.bounds, axis=0).max())  # the reach from any centre is less
+    if measures.least_doubled > SMALLEST * farthest**2 and measures.least_height > RESOLUTION * farthest:
+        return np.zeros(scene.n_faces, bool)
+    reach, height = scene.reach, heights(scene.vertices, scene.faces)
     doubled = measures.area * np.where(scene.is_quad, 1, 2)
     bad = doubled <= SMALLEST * reach**2
-    thin = np.flatnonzero(measures.height <= RESOLUTION * reach)
+    thin = np.flatnonzero(height <= RESOLUTION * reach)
     near = np.abs(scene.vertices[scene.faces[thin, :3]] - scene.centre).max(axis=(1, 2), initial=0)
-    bad[thin] |= measures.height[thin] <= RESOLUTION * near
+    bad[thin] |= height[thin] <= RESOLUTION * near
     return bad

@@ -40,3 +40,27 @@ def follows(keys: np.ndarray, low_bits: int) -> np.ndarray:
 
     of_pieces(compare, len(keys))
     return result
+
+
+def grouped(numbers: np.ndarray) -> np.ndarray:
+    """Return an order in which equal numbers, (n,) int64, follow each other, in their own order; the others come in any."""
+    keys = mixed(numbers.view(np.uint64))
+    order = together(keys)
+    some, follow = numbers[order], follows(keys[order], _bits(len(keys)))[1:-1]
+    if (some[1:][follow] != some[:-1][follow]).any():  # unequal ones whose high bits are equal by chance
+        return np.argsort(numbers, kind="stable")
+    return order
+
+
+def together(keys: np.ndarray) -> np.ndarray:
+    """Return an order by the high bits of keys, (n,) uint64; the low bits, as many as the number of keys has, do not count."""
+    low = np.uint64((1 << _bits(len(keys))) - 1)
+    numbered = keys & ~low
+    numbered |= np.arange(len(keys), dtype=np.uint64)
+    sort(numbered)
+    numbered &= low
+    return numbered.view(np.int64)
+
+
+def _bits(count: int) -> int:
+    return max(count - 1, 1).bit_length()

@@ -5,17 +5,22 @@ Faces of one piece are beside each other, so they need not be compared to find t
 
 import numpy as np
 
+from ..pieces import of_pieces
+from .equal_keys import grouped
+from .measures import cross, length
+
 AROUND = 4  # faces at an edge that are looked at
+SIZE = 1 << 14  # edges at a time
 
 
-def flat_pieces(corners: np.ndarray, normal: np.ndarray, tilt: np.ndarray, faces: np.ndarray) -> np.ndarray:
+def flat_pieces(place: np.ndarray, normal: np.ndarray, tilt: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Return the piece of each face, (n_faces,) int; a face that is joined to none has a number of its own.
 
     Two faces are joined by an edge which both have, in opposite directions, if their fronts look the same way and no other face
     fits there.
 
     Args:
-        corners: (n_faces, 4, 3), triangles repeat the third.
+        place: (n_faces, 4) int64, equal for corners at the same place, and only there; triangles repeat the third.
         normal: (n_faces, 3).
         tilt: (n_faces,) radians.
         faces: (m,) int, the faces to look at.
@@ -23,29 +28,36 @@ def flat_pieces(corners: np.ndarray, normal: np.ndarray, tilt: np.ndarray, faces
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    place = numbered(corners[faces].reshape(-1, 3)).reshape(-1, 4)
-    start, end = place.ravel(), np.roll(place, -1, axis=1).ravel()
-    face = np.repeat(faces, 4)
-    real = start != end
-    face, start, end = face[real], start[real], end[real]
-    edge = np.minimum(start, end) * (place.max(initial=0) + 1) + np.maximum(start, end)
-    order = np.argsort(edge, kind="stable")
-    face, edge, along = face[order], edge[order], (start < end)[order]
-    ones, twos = [], []
-    for step in range(1, AROUND):
-        one, two = np.arange(len(edge) - step), np.arange(step, len(edge))
-        fits = (edge[one] == edge[two]) & (along[one] != along[two])
-        one, two = one[fits], two[fits]
-        same = np.einsum("ij,ij->i", normal[face[one]], normal[face[two]]) > 0
-        turned = np.linalg.norm(np.cross(normal[face[one]], normal[face[two]]), axis=1)
-        same &= turned <= 2 * (tilt[face[one]] + tilt[face[two]])
-        ones.append(one[same])
-        twos.append(two[same])
-    one, two = np.concatenate(ones), np.concatenate(twos)
+    some = place[faces]
+    start, end = some.ravel(), some[:, [1, 2, 3, 0]].ravel()
+    real = np.flatnonzero(start != end)
+    start, end = start[real], end[real]
+    edge = np.minimum(start, end) * (int(place.max(initial=0)) + 1) + np.maximum(start, end)
+    order = grouped(edge)
+    face, edge, along = faces[real[order] >> 2], edge[order], (start < end)[order]
+    axes = [np.ascontiguousarray(axis) for axis in normal.T]
+
+    def joined(part: slice) -> tuple[np.ndarray, np.ndarray]:
+        """Return which edges from those of a part on, and of the few that follow each, join their faces."""
+        found = []
+        for step in range(1, AROUND):
+            stop = min(part.stop, len(edge) - step)
+            here, after = slice(part.start, stop), slice(part.start + step, max(stop, part.start) + step)
+            one = part.start + np.flatnonzero((edge[here] == edge[after]) & (along[here] != along[after]))
+            first, second = face[one], face[one + step]
+            a, b = ([axis.take(which) for axis in axes] for which in (first, second))
+            same = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0
+            same &= length(cross(a, b)) <= 2 * (tilt[first] + tilt[second])
+            found.append((one[same], one[same] + step))
+        ones, twos = zip(*found, strict=True)
+        return np.concatenate(ones), np.concatenate(twos)
+
+    found = [(face[:0], face[:0]), *of_pieces(joined, len(edge), SIZE)]
+    one, two = (np.concatenate(part) for part in zip(*found, strict=True))
     fits = np.bincount(np.concatenate([one, two]), minlength=len(edge))
     alone = (fits[one] == 1) & (fits[two] == 1)
     pairs = face[one[alone]], face[two[alone]]
-    count = len(corners)
+    count = len(place)
     return connected_components(coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count)), directed=False)[1]
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from ..pieces import of_pieces
 from .precision import weighted_median
 
+SIZE = 1 << 14  # faces of a piece: what is known of them stays in the cache
 Vectors = list[np.ndarray]  # coordinates along each axis, (n,) each
 
 
@@ -16,47 +17,89 @@ class Measures:
 
     Attributes:
         area: (n_faces,) m², of one side.
-        height: (n_faces,) metres, twice the area over the longest of three edges (of a parallelogram: the ends of two edges).
-        longest: metres, the longest edge of all.
+        longest: metres, the longest edge of all (of parallelograms, and the ends of two edges).
+        least_doubled: m², the least of what `heights` divides: twice the area of a triangle, the area of a parallelogram.
+        least_height: metres, the least of `heights`.
         bounds: (2, 3) metres, the lowest and highest coordinates.
-        centre: (3,) metres, the area-weighted median of centroids, axis by axis; the middle of the box without area.
     """
 
     area: np.ndarray
-    height: np.ndarray
     longest: float
+    least_doubled: float
+    least_height: float
     bounds: np.ndarray
-    centre: np.ndarray
 
 
 def measured(vertices: np.ndarray, faces: np.ndarray) -> Measures:
     """Measure faces, (n_faces, 4), whose last corner is -1 for triangles."""
     axes = [np.ascontiguousarray(vertices[:, axis]) for axis in range(3)]
-    area, height = np.empty(len(faces)), np.empty(len(faces))
-    centroids = [np.empty(len(faces)) for _ in range(3)]
+    area = np.empty(len(faces))
 
-    def measure(part: slice) -> tuple[list[float], list[float], float]:
-        some, quad = faces[part], faces[part, 3] >= 0
-        quads = bool(quad.any())
-        origin, second = ([axis[some[:, k]] for axis in axes] for k in (0, 1))
-        third = [axis[some[:, 2]] for axis in axes]
-        last = [axis[np.where(quad, some[:, 3], some[:, 2])] for axis in axes] if quads else third
-        along, up = minus(second, origin), minus(last, origin)
-        doubled = length(cross(along, up))
-        area[part] = doubled * (np.where(quad, 1.0, 0.5) if quads else 0.5)
-        longest = np.maximum(np.maximum(length(along), length(up)), length(minus(up, along)))
-        height[part] = doubled / np.where(longest > 0, longest, 1)
-        for axis in range(3):
-            centroids[axis][part] = origin[axis] + (along[axis] + up[axis]) / (np.where(quad, 2.0, 3.0) if quads else 3.0)
-        corners = (origin, second, third, last)[: 3 + quads]
+    def measure(part: slice) -> tuple[list[float], list[float], float, float, float]:
+        corners, quad = _corners(axes, faces[part])
         lowest = [min(corner[axis].min() for corner in corners) for axis in range(3)]
-        return lowest, [max(corner[axis].max() for corner in corners) for axis in range(3)], float(longest.max())
+        highest = [max(corner[axis].max() for corner in corners) for axis in range(3)]
+        doubled, longest = _doubled_and_longest(corners)
+        area[part] = doubled * (0.5 if quad is None else np.where(quad, 1.0, 0.5))
+        return lowest, highest, float(longest.max()), float(doubled.min()), float(_height(doubled, longest).min())
 
-    lowest, highest, longest = zip(*of_pieces(measure, len(faces)), strict=True)
+    lowest, highest, longest, doubled, height = zip(*of_pieces(measure, len(faces), SIZE), strict=True)
     bounds = np.stack([np.min(lowest, axis=0), np.max(highest, axis=0)])
-    some = area.sum() > 0
-    centre = np.array([weighted_median(values, area) for values in centroids]) if some else bounds.mean(axis=0)
-    return Measures(area, height, max(longest), bounds, centre)
+    return Measures(area, max(longest), min(doubled), min(height), bounds)
+
+
+def heights(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Return twice the area over the longest of three edges, metres, (n_faces,); of a parallelogram: the ends of two edges."""
+    axes = [np.ascontiguousarray(vertices[:, axis]) for axis in range(3)]
+    found = of_pieces(lambda part: _height(*_doubled_and_longest(_corners(axes, faces[part])[0])), len(faces), SIZE)
+    return np.concatenate(found)
+
+
+def median_centre(vertices: np.ndarray, faces: np.ndarray, measures: Measures) -> np.ndarray:
+    """Return the area-weighted median of centroids, axis by axis, (3,) metres; the middle of the box without area."""
+    if not measures.area.sum() > 0:
+        return measures.bounds.mean(axis=0)
+    result = np.empty(3)
+    for axis in range(3):
+        one = [np.ascontiguousarray(vertices[:, axis])]
+
+        def centroid(part: slice, one=one) -> np.ndarray:
+            corners, quad = _corners(one, faces[part])
+            origin, along, up = corners[0][0], corners[1][0] - corners[0][0], corners[-1][0] - corners[0][0]
+            return origin + (along + up) / (3.0 if quad is None else np.where(quad, 2.0, 3.0))
+
+        result[axis] = weighted_median(np.concatenate(of_pieces(centroid, len(faces), SIZE)), measures.area)
+    return result
+
+
+def _corners(axes: Vectors, faces: np.ndarray) -> tuple[list[Vectors], np.ndarray | None]:
+    """Return the places of the corners of some faces, three of each or four, and which have four; None where none has.
+
+    Where others have four, triangles repeat the third.
+    """
+    columns = np.ascontiguousarray(faces.T)
+    quad = columns[3] >= 0
+    if not quad.any():
+        return [[axis.take(column) for axis in axes] for column in columns[:3]], None
+    columns[3] = np.where(quad, columns[3], columns[2])
+    return [[axis.take(column) for axis in axes] for column in columns], quad
+
+
+def _doubled_and_longest(corners: list[Vectors]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the areas of parallelograms with two edges of faces, (n,), and the longest of these edges and between their ends."""
+    along, up = minus(corners[1], corners[0]), minus(corners[-1], corners[0])
+    longest = largest_squared(along, up)
+    return length(cross(along, up)), np.sqrt(longest, out=longest)
+
+
+def _height(doubled: np.ndarray, longest: np.ndarray) -> np.ndarray:
+    return doubled / np.where(longest > 0, longest, 1)
+
+
+def largest_squared(along: Vectors, up: Vectors) -> np.ndarray:
+    """Return the square of the longest of two edges and the edge between their ends, (n,)."""
+    result = np.maximum(_squared(along), _squared(up))
+    return np.maximum(result, _squared(minus(up, along)), out=result)
 
 
 def minus(one: Vectors, two: Vectors) -> Vectors:
@@ -71,5 +114,13 @@ def cross(one: Vectors, two: Vectors) -> Vectors:
 
 def length(vectors: Vectors) -> np.ndarray:
     """Return the lengths of vectors, (n,)."""
+    result = _squared(vectors)
+    return np.sqrt(result, out=result)
+
+
+def _squared(vectors: Vectors) -> np.ndarray:
     x, y, z = vectors
-    return np.sqrt(x * x + y * y + z * z)
+    result = x * x
+    result += y * y
+    result += z * z
+    return result

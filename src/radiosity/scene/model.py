@@ -17,7 +17,7 @@ from .lights.luminaire import Luminaire
 from .lights.model import Lights
 from .lights.sky import Sky
 from .lights.sun import Sun
-from .measures import Measures, measured
+from .measures import Measures, measured, median_centre
 from .paint import Paint
 from .sensor_request import SensorRequest
 from .taking import is_cut_of, taken
@@ -233,13 +233,13 @@ class Scene:
         """The lowest and highest coordinates, (2, 3) metres."""
         return self.measures.bounds
 
-    @property
+    @cached_property
     def centre(self) -> np.ndarray:
         """The origin of coordinates in single precision, (3,) float64 metres; see `scene.precision`.
 
         It is the middle of the box where the scene has no area.
         """
-        return self.measures.centre
+        return median_centre(self.vertices, self.faces, self.measures)
 
     @cached_property
     def reach(self) -> float:

@@ -11,10 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .equal_keys import together
+
 SQUARE = 0.7  # below sqrt(1/2)
 STEP = 2  # binary logarithm of the ratio of one grid to the next
 SLABS = 64  # slabs of a cube
-FILTER = np.uint64((1 << 22) - 1)  # last bits of keys: they find most keys that no other face shares
+LOW = 26  # bits at the end of keys that are zero, so that sorted keys may carry their number there
+FILTER = 22  # first bits of keys: they find most keys that no other face shares
 CHUNK = 1 << 19  # faces, and pairs, at a time
 PRIMES = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0x27D4EB2F165667C5)
 
@@ -51,16 +54,17 @@ def pairs(plates: Plates, some: np.ndarray) -> Iterator[tuple[np.ndarray, np.nda
     level = STEP * np.ceil(np.log2(size) / STEP).astype(np.int64)
     for at in np.unique(level[some]):
         cube = 2.0**at
-        face, cell, keys = _entries(plates, some[level[some] == at], cube)
-        order = np.argsort(keys)
-        larger = _Groups.of(face[order], cell[order], keys[order], plates.piece)
-        smaller = some[level[some] <= at]
+        entries = face, cell, keys = _entries(plates, some[level[some] == at], cube)
+        order = together(keys) if len(keys) < 1 << LOW else np.argsort(keys)
+        larger = _Groups.of(face[order], cell.take(order, axis=1), keys[order], plates.piece)
+        yield from _matches(plates, entries, level, larger)
+        smaller = some[level[some] < at]
         for begin in range(0, len(smaller), CHUNK):
-            yield from _matches(plates, smaller[begin : begin + CHUNK], cube, level, larger)
+            yield from _matches(plates, _entries(plates, smaller[begin : begin + CHUNK], cube), level, larger)
 
 
 def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the cubes and slabs of each face, with an entry for each: face, cube (k, 3) and key."""
+    """Return the cubes and slabs of each face, with an entry for each: face, cube (3, k) and key."""
     margin = plates.margin[face][:, None]
     low = np.floor((plates.low[face] - margin) / cube).astype(np.int64)
     wide = np.floor((plates.high[face] + margin) / cube).astype(np.int64) > low
@@ -68,11 +72,17 @@ def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray,
     for step in np.ndindex(2, 2, 2):
         here = np.flatnonzero(_each([column if more else True for column, more in zip(wide.T, step, strict=True)], len(face)))
         rows.append(here)
-        cells.append(low[here] + np.array(step))
-    row, cell = np.concatenate(rows), np.concatenate(cells)
+        cells.append(low[here].T + np.array(step)[:, None])
+    row, cell = np.concatenate(rows), np.concatenate(cells, axis=1)
     face = face[row]
-    middle = plates.centroid[face] - (cell + 0.5) * cube
-    distance = np.abs(np.einsum("ij,ij->i", plates.normal[face], middle))
+    distance = np.zeros(len(face))
+    for centroid, normal, here in zip(plates.centroid.T, plates.normal.T, cell, strict=True):
+        middle = here + 0.5
+        middle *= -cube
+        middle += centroid[face]
+        middle *= normal[face]
+        distance += middle
+    distance = np.abs(distance, out=distance)
     unsure = plates.tilt[face] * cube + plates.margin[face]
     slab = cube / SLABS
     # rounded, so that planes of round coordinates lie in the middle of a slab
@@ -82,11 +92,15 @@ def _entries(plates: Plates, face: np.ndarray, cube: float) -> tuple[np.ndarray,
     at = np.repeat(np.arange(len(face)), many)
     number = first[at] + np.arange(len(at)) - np.repeat(np.cumsum(many) - many, many)
     factors = np.array(PRIMES, np.uint64)
-    keys = cell[:, 0].astype(np.uint64) * factors[0]  # a hash: pairs that share it by chance are removed below
+    keys = cell[0].view(np.uint64) * factors[0]  # a hash: pairs that share it by chance are removed below
     for axis in (1, 2):
-        keys += cell[:, axis].astype(np.uint64) * factors[axis]
-    keys = keys[at] + number.astype(np.uint64) * factors[3]
-    return face[at], cell[at], (keys ^ (keys >> np.uint64(29))) * factors[0]
+        keys += cell[axis].view(np.uint64) * factors[axis]
+    keys = keys[at]
+    keys += number.view(np.uint64) * factors[3]
+    keys ^= keys >> np.uint64(29)
+    keys *= factors[0]
+    keys &= ~np.uint64((1 << LOW) - 1)
+    return face[at], cell.take(at, axis=1), keys
 
 
 def _each(conditions, count: int) -> np.ndarray:
@@ -102,7 +116,7 @@ class _Groups:
     """Entries of faces in groups of one key.
 
     Attributes:
-        face, cell: (k,), (k, 3) of each entry.
+        face, cell: (k,), (3, k) of each entry.
         key, begin, end: (m,) of each group, in order: its key, its first entry, and the one after its last.
         lowest, highest: (m,) of the pieces of its faces.
         taken: which hashes of keys there are.
@@ -119,32 +133,32 @@ class _Groups:
 
     @staticmethod
     def of(face: np.ndarray, cell: np.ndarray, keys: np.ndarray, piece: np.ndarray) -> "_Groups":
-        """Return groups of entries with sorted keys, (k,)."""
+        """Return groups of entries with sorted keys, (k,), equal ones beside each other."""
         begin = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
         lowest, highest = (reduce.reduceat(piece[face], begin) for reduce in (np.minimum, np.maximum))
-        taken = np.zeros(int(FILTER) + 1, bool)
-        taken[keys[begin] & FILTER] = True
+        taken = np.zeros(1 << FILTER, bool)
+        taken[(keys[begin] >> np.uint64(64 - FILTER)).view(np.int64)] = True
         return _Groups(face, cell, keys[begin], begin, np.append(begin[1:], len(keys)), lowest, highest, taken)
 
     def find(self, keys: np.ndarray) -> np.ndarray:
         """Return the group of each key, or of the next higher key; searched in order of the keys, which keeps to the cache."""
-        order = np.argsort(keys)
+        order = together(keys)
         result = np.empty(len(keys), np.int64)
         result[order] = np.minimum(np.searchsorted(self.key, keys[order]), len(self.key) - 1)
         return result
 
 
 def _matches(
-    plates: Plates, some: np.ndarray, cube: float, level: np.ndarray, larger: _Groups
+    plates: Plates, entries: tuple[np.ndarray, np.ndarray, np.ndarray], level: np.ndarray, larger: _Groups
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    face, cell, keys = _entries(plates, some, cube)
-    shared = np.flatnonzero(larger.taken[keys & FILTER])
-    face, cell, keys = face[shared], cell[shared], keys[shared]
+    face, cell, keys = entries
+    shared = np.flatnonzero(larger.taken.take((keys >> np.uint64(64 - FILTER)).view(np.int64)))
+    face, cell, keys = face[shared], cell.take(shared, axis=1), keys[shared]
     group = larger.find(keys)
     # where all faces of a key are of the plate's own piece there is nothing to compare
     own = plates.piece[face]
     met = np.flatnonzero((larger.key[group] == keys) & ((larger.lowest[group] != own) | (larger.highest[group] != own)))
-    face, cell, begin, many = face[met], cell[met], larger.begin[group[met]], (larger.end - larger.begin)[group[met]]
+    face, cell, begin, many = face[met], cell.take(met, axis=1), larger.begin[group[met]], (larger.end - larger.begin)[group[met]]
     ends = np.cumsum(many)
     at = 0
     while at < len(face):
@@ -154,7 +168,7 @@ def _matches(
         place = begin[row] + np.arange(len(row)) - np.repeat(ends[part] - many[part] - (ends[at - 1] if at else 0), many[part])
         one, two = face[row], larger.face[place]
         keep = ((level[one] < level[two]) | (one < two)) & (plates.piece[one] != plates.piece[two])
-        keep &= _each((cell[row, axis] == larger.cell[place, axis] for axis in range(3)), len(row))
+        keep &= _each((cell[axis, row] == larger.cell[axis, place] for axis in range(3)), len(row))
         row, one, two = row[keep], one[keep], two[keep]
         low = [np.maximum(plates.low[one, axis], plates.low[two, axis]) for axis in range(3)]
         high = [np.minimum(plates.high[one, axis], plates.high[two, axis]) for axis in range(3)]

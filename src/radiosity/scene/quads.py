@@ -1,17 +1,22 @@
 """The merge of two triangles, which a file format made of one flat parallelogram, to one face."""
 
-from dataclasses import replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from ..pieces import of_pieces
 from .arrays import PARALLEL_TOLERANCE
 from .bends import tolerance
 from .matching import matched
-from .measures import length, minus
+from .measures import Vectors, length, minus
 from .model import Scene
+from .one_row import is_one_row
 from .paint import Paint
 from .shared_edges import shared_edges
 from .welded import welded
+
+SIZE = 1 << 14  # pairs at a time
+TURNED = ((0, 1, 2), (1, 2, 0), (2, 0, 1))  # corners: the same, the next, the one after that
 
 
 def merge_triangles(scene: Scene) -> Scene:
@@ -20,82 +25,95 @@ def merge_triangles(scene: Scene) -> Scene:
     Pairs that follow each other in the file come first, then those whose diagonal is longest against their edges,
     so that a regular grid becomes rectangles. Only coplanar pairs with equal orientation qualify.
     """
-    one, two, shared = _candidates(scene)
-    if len(one) == 0:
+    pairs = _pairs(scene)
+    if not len(pairs.cost):
         return scene
-    a, b, c = (scene.faces[one, (shared[0] + i) % 3] for i in (0, 1, 2))  # diagonal a-b, apex c
-    d = scene.faces[two, (shared[1] + 2) % 3]
-    at_a, at_b, at_c, at_d = ([axis[corner] for axis in np.ascontiguousarray(scene.vertices.T)] for corner in (a, b, c, d))
-    edge = np.maximum(length(minus(at_a, at_c)), length(minus(at_b, at_c)))
-    off = [a + b - c - d for a, b, c, d in zip(at_a, at_b, at_c, at_d, strict=True)]
-    fits = length(off) <= PARALLEL_TOLERANCE * edge
-    fits &= _equal_rows(scene, one, two)
-    for paint in (scene.reflectance_paint, scene.emission_paint):
-        if paint is not None:
-            fits &= _same_paint(paint, one, two, shared)
-    one, two = one[fits], two[fits]
-    quads = np.column_stack([c, a, d, b])[fits]
-    first_corner = ((shared[0] + 2) % 3)[fits]
-    diagonal = length(minus(at_a, at_b))[fits]
-    cost = -diagonal / np.maximum(edge[fits], 1e-300)
-    cost = np.where(np.abs(one - two) == 1, cost - 10.0, cost)
-    chosen = matched(one, two, (shared[0][fits], shared[1][fits]), cost, scene.n_faces)
+    one, two, shared = pairs.one >> 2, pairs.two >> 2, (pairs.one & 3, pairs.two & 3)
+    chosen = matched(one, two, shared, pairs.cost, scene.n_faces)
     if not len(chosen):
         return scene
-    keep, gone = np.minimum(one, two)[chosen], np.maximum(one, two)[chosen]
-    faces = scene.faces.copy()
-    faces[keep] = quads[chosen]
-    merged = replace(scene, faces=faces)
+    one, two, shared = one[chosen], two[chosen], (shared[0][chosen], shared[1][chosen])
+    keep, gone = np.minimum(one, two), np.maximum(one, two)
+    a, b, c = (scene.faces[one, (shared[0] + i) % 3] for i in (0, 1, 2))  # diagonal a-b, apex c
+    quads = np.column_stack([c, a, scene.faces[two, (shared[1] + 2) % 3], b])
+    merged = scene
     for name in ("reflectance_paint", "emission_paint"):
         paint = getattr(scene, name)
         if paint is not None:
-            merged = replace(
-                merged,
-                **{name: _merge_paint(paint, one[chosen], two[chosen], first_corner[chosen], shared[1][fits][chosen], keep)},
-            )
+            merged = replace(merged, **{name: _merge_paint(paint, one, two, (shared[0] + 2) % 3, shared[1], keep)})
     kept = np.ones(scene.n_faces, bool)
     kept[gone] = False
-    return merged.take(kept)
+    result = merged.take(kept)
+    result.faces[np.cumsum(kept)[keep] - 1] = quads  # a copy, which nobody has seen yet
+    return result
 
 
-def _candidates(scene: Scene) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
-    """Return pairs of triangles of one surface with one edge in common, and for both the corner where that edge begins.
+@dataclass(frozen=True, eq=False)
+class _Pairs:
+    """Pairs of triangles that are the halves of a parallelogram.
 
-    The first one runs through the edge from the end that is lower by x, then y, then z.
+    Attributes:
+        one, two: (m,) four times the face of each, plus the corner where its edge begins. The first one runs through the edge
+            from the end that is lower by x, then y, then z.
+        cost: (m,) the best pairs have the least.
     """
+
+    one: np.ndarray
+    two: np.ndarray
+    cost: np.ndarray
+
+
+def _pairs(scene: Scene) -> _Pairs:
+    """Return the pairs of a scene, of one surface and with equal values."""
     triangle = np.flatnonzero(~scene.is_quad) if scene.is_quad.any() else None
     corners, surface = scene.faces[:, :3], scene.surface
     if triangle is not None:
         corners, surface = corners[triangle], surface[triangle]
-    if (number := welded(scene.vertices)) is not None:
-        corners = number[corners]
-    edges = shared_edges(scene.vertices, corners, surface, scene.measures, PARALLEL_TOLERANCE)
-    begin = corners[edges[0] >> 2, edges[0] & 3]
-    end = corners[edges[1] >> 2, edges[1] & 3]
-    turn = _lower(scene.vertices[end], scene.vertices[begin])
-    one, two = np.where(turn, edges[1], edges[0]), np.where(turn, edges[0], edges[1])
-    rows = [edge >> 2 if triangle is None else triangle[edge >> 2] for edge in (one, two)]
-    return rows[0], rows[1], (one & 3, two & 3)
+    edges = shared_edges(scene.vertices, corners, surface, scene.measures, PARALLEL_TOLERANCE, welded(scene.vertices))
+    if triangle is not None:
+        edges = tuple(4 * triangle[edge >> 2] + (edge & 3) for edge in edges)
+    axes, vertex = [np.ascontiguousarray(axis) for axis in scene.vertices.T], scene.faces.ravel()
+
+    def at(edge: np.ndarray, turn: int) -> Vectors:
+        corner = vertex.take((edge & ~3) + np.take(TURNED[turn], edge & 3))
+        return [axis.take(corner) for axis in axes]
+
+    def judged(part: slice) -> _Pairs:
+        one, two = edges[0][part], edges[1][part]
+        turn = _lower(at(two, 0), at(one, 0))
+        one, two = np.where(turn, two, one), np.where(turn, one, two)
+        a, b, c, d = at(one, 0), at(one, 1), at(one, 2), at(two, 2)  # diagonal a-b, apices c and d
+        edge = np.maximum(length(minus(a, c)), length(minus(b, c)))
+        off = [a + b - c - d for a, b, c, d in zip(a, b, c, d, strict=True)]
+        fits = length(off) <= PARALLEL_TOLERANCE * edge
+        faces, shared = (one >> 2, two >> 2), (one & 3, two & 3)
+        fits &= _equal_rows(scene, *faces)
+        for paint in (scene.reflectance_paint, scene.emission_paint):
+            if paint is not None:
+                fits &= _same_paint(paint, *faces, shared)
+        cost = -length(minus(a, b)) / np.maximum(edge, 1e-300)
+        cost = np.where(np.abs(faces[0] - faces[1]) == 1, cost - 10.0, cost)
+        return _Pairs(one[fits], two[fits], cost[fits])
+
+    found = [_Pairs(edges[0][:0], edges[1][:0], np.zeros(0)), *of_pieces(judged, len(edges[0]), SIZE)]
+    return _Pairs(*(np.concatenate([getattr(some, field.name) for some in found]) for field in fields(_Pairs)))
 
 
-def _lower(one: np.ndarray, two: np.ndarray) -> np.ndarray:
-    """Return which points, (m, 3), are lower than others by x, of equal ones by y, then by z."""
-    result = one[:, 2] < two[:, 2]
+def _lower(one: Vectors, two: Vectors) -> np.ndarray:
+    """Return which points are lower than others by x, of equal ones by y, then by z, (m,) bool."""
+    result = one[2] < two[2]
     for axis in (1, 0):
-        result = (one[:, axis] < two[:, axis]) | ((one[:, axis] == two[:, axis]) & result)
+        result = (one[axis] < two[axis]) | ((one[axis] == two[axis]) & result)
     return result
 
 
 def _equal_rows(scene: Scene, one, two) -> np.ndarray:
-    same = scene.back[one] == scene.back[two]
-    for value in (scene.reflectance, scene.emission, scene.back_reflectance, scene.back_emission):
-        same &= (value[one] == value[two]).all(axis=1)
-    if scene.transmittance is not None:
-        same &= scene.transmittance[one] == scene.transmittance[two]
-    if scene.refractive_index is not None:
-        same &= scene.refractive_index[one] == scene.refractive_index[two]
-    if scene.diffuse_transmittance is not None:
-        same &= (scene.diffuse_transmittance[one] == scene.diffuse_transmittance[two]).all(axis=1)
+    same = np.ones(len(one), bool)
+    values = (scene.back, scene.reflectance, scene.emission, scene.back_reflectance, scene.back_emission)
+    for value in (*values, scene.transmittance, scene.refractive_index, scene.diffuse_transmittance):
+        if value is not None and not is_one_row(value):
+            equal = value[one] == value[two]
+            same &= equal if equal.ndim == 1 else equal.all(axis=1)
     return same
 
 

@@ -1,9 +1,11 @@
 """A choice of the faces of a scene, with all that belongs to them; and whether faces are parts of those of another scene."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from .one_row import chosen
 from .panes import panes_or_none
 
 OF_FACES = ("faces", "reflectance", "emission", "back", "back_reflectance", "back_emission", "surface")
@@ -14,10 +16,10 @@ WITH_ROWS = ("reflectance_paint", "emission_paint", "cut")  # None, or what take
 def taken(scene, keep: np.ndarray):
     """Return the scene of a choice of faces (indices or mask)."""
     rows = np.flatnonzero(keep) if np.asarray(keep).dtype == bool else np.asarray(keep)
-    changes = {name: getattr(scene, name).take(rows, axis=0) for name in OF_FACES}
+    changes: dict[str, Any] = {name: chosen(getattr(scene, name), rows) for name in OF_FACES}
     for name in THROUGH:
         values = getattr(scene, name)
-        changes[name] = panes_or_none(None if values is None else values.take(rows, axis=0))
+        changes[name] = panes_or_none(None if values is None else chosen(values, rows))
     for name in WITH_ROWS:
         value = getattr(scene, name)
         changes[name] = value and value.take(rows)

@@ -5,6 +5,7 @@ import numpy as np
 from ..pieces import of_pieces
 from .equal_keys import follows, mixed, sort
 
+SIZE = 1 << 14  # vertices at a time
 MOST = 1 << 30  # vertices: their numbers leave room for the rest of a key
 
 
@@ -31,14 +32,20 @@ def welded(vertices: np.ndarray) -> np.ndarray | None:
     if not len(alike):
         return None
     number = np.arange(n)
-    entry = (keys[alike] & low).astype(np.int64)
-    begins = ~follow[alike]
-    run = np.cumsum(begins) - 1
-    first = entry[begins][run]
-    number[entry] = first
-    wrong = (vertices[entry] != vertices[first]).any(axis=1)
-    if wrong.any():  # places whose high bits are equal by chance
-        some = entry[np.isin(run, run[wrong])]
+    entry, begins = (keys[alike] & low).view(np.int64), np.flatnonzero(~follow[alike])
+    number[entry] = np.repeat(entry[begins], np.diff(begins, append=len(entry)))
+    coordinates = np.ascontiguousarray(vertices).ravel()
+
+    def differ(part: slice) -> np.ndarray:
+        """Return vertices that are not where the one of their number is; compared in their order, which keeps to the cache."""
+        result, place = np.zeros(part.stop - part.start, bool), 3 * number[part]
+        for axis in range(3):
+            result |= vertices[part, axis] != coordinates.take(place + axis)
+        return part.start + np.flatnonzero(result)
+
+    wrong = np.concatenate(of_pieces(differ, n, SIZE))
+    if len(wrong):  # places whose high bits are equal by chance
+        some = np.flatnonzero(np.isin(number, number[wrong]))
         number[some] = some[_by_rows(vertices[some])]
     return number
 

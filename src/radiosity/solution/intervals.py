@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import MethodError
 from ..pieces import pieces
+from ..scene.back import Back
 
 FEW = 30  # hits, all replicates together: Student's intervals of patches with fewer are too narrow (docs/errors.md)
 ROUNDING = 1e-13  # relative rounding error of sums over replicates
@@ -187,6 +188,13 @@ class Whole:
         return Whole(usual, np.maximum(usual, line), together)
 
 
+def few_of(solution, rows: np.ndarray | slice = slice(None)) -> np.ndarray:
+    """Return the values of `Solution.few` of all patches or of some of them, (m,) bool."""
+    patches = solution.patches
+    passed = patches.scene.back[patches.face[rows]] == Back.OPEN
+    return (solution.arrivals[rows] < FEW) & ~passed & (not solution.by_baseline)
+
+
 def of_patches(
     solution, level: float, quantity: str, rows: np.ndarray | slice = slice(None), whole: Whole | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -213,22 +221,25 @@ def _received(solution, level: float, rows: np.ndarray | slice, whole: Whole | N
     shown = np.where(error > 0, error, np.nan) if solution.by_baseline else error
     half = student(level, solution.replicates) * shown
     low, high = np.maximum(mean - half, 0), mean + half
-    few = solution.few[rows, None] | (mean == 0)
+    few = few_of(solution, rows)[:, None] | (mean == 0)
     if few.any() and not solution.by_baseline:
-        whole = Whole.of(solution) if whole is None else whole
+        whole = solution.of_whole if whole is None else whole
         usual = np.where(mean == 0, _power_of_none(error, area, whole.line), whole.usual)
         bounds = irradiance_bounds(mean, solution.arrivals[rows], area, 0.5 + level / 2, whole.together, usual)
         low, high = widened(low, high, few, *bounds, mean if solution.signed else None)
     return low, high
 
 
-def power_of_none(solution) -> np.ndarray:
-    """The power that a line would have brought to patches that received nothing, (n_patches, n_bands) W or lm.
+def power_of_none(solution, part: slice, line: np.ndarray) -> np.ndarray:
+    """The power that a line would have brought to those patches of a slice that received nothing, (m, n_bands) W or lm.
 
     Their standard error is made of it. Files of older versions have a zero there: then it is the power of a usual line, or of
     a line from the lights. Entries of other patches mean nothing.
+
+    Args:
+        line: as in `Whole`.
     """
-    return _power_of_none(solution.irradiance_standard_error, solution.patches.solid.area, Whole.of(solution).line)
+    return _power_of_none(solution.irradiance_standard_error[part], solution.patches.solid.area[part], line)
 
 
 def _power_of_none(error: np.ndarray, area: np.ndarray, line: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..pieces import pieces
 from .errors import mean_and_error
 from .intervals import FEW, check, cluster, irradiance_bounds, least_error, power_of_none, student, usual_power, widened
 from .sides import BACK
@@ -96,7 +97,9 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
         bunches = np.maximum(cluster(got, its_error, arrivals, area), _cluster(solution))
         if quantity != "irradiance":
             share = np.zeros(shape)
-            np.maximum.at(share, here, (scatter.reflectance if quantity == "radiosity" else 1 - scatter.reflectance)[some])
+            for part in pieces(len(key)):
+                among, values = key[part] >= 0, scatter.reflectance[part]
+                np.maximum.at(share, key[part][among], (values if quantity == "radiosity" else 1 - values)[among])
         error = least_error(mean, error, arrivals, area, usual * share, solution.replicates)
         low, high = np.maximum(mean - half * error, floor), mean + half * error
         least, most = irradiance_bounds(got, arrivals, area, 0.5 + level / 2, bunches, usual)
@@ -138,8 +141,11 @@ def _usual(solution, key: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     """
     mean, area = solution.irradiance, solution.patches.solid.area
     one = np.tile(usual_power(mean, solution.arrivals, area), (shape[0], 1))
-    some = key >= 0
-    np.maximum.at(one, key[some], np.where(mean == 0, power_of_none(solution), 0)[some])
+    line = solution.of_whole.line
+    for part in pieces(len(key)):
+        some = key[part] >= 0
+        power = np.where(mean[part] == 0, power_of_none(solution, part, line), 0)
+        np.maximum.at(one, key[part][some], power[some])
     return one
 
 

@@ -11,7 +11,6 @@ from ..hooks import HOOKS
 from ..patches.bases import CONSTANT, Basis, of_size
 from ..patches.model import Patches
 from ..patches.polynomials import Polynomials
-from ..scene.model import Back
 from . import intervals, means
 from .brief import brief
 from .errors import relative_error_of
@@ -148,8 +147,12 @@ class Solution:
         `interval` goes up to a bound from their number there. False where lines pass on both sides (`Back.OPEN`), and everywhere
         for baselines, which do not count lines.
         """
-        passed = self.patches.scene.back[self.patches.face] == Back.OPEN
-        return (self.arrivals < intervals.FEW) & ~passed & (not self.by_baseline)
+        return intervals.few_of(self)
+
+    @cached_property
+    def of_whole(self) -> intervals.Whole:
+        """What intervals of patches take from the whole solution."""
+        return intervals.Whole.of(self)
 
     @cached_property
     def sides(self) -> Sides:
@@ -173,7 +176,9 @@ class Solution:
         """True where a method that forms the matrix solved it."""
         return "scheme" in self.provenance.get("choices", {})
 
-    def interval(self, level: float = 0.95, quantity: str = "radiosity") -> tuple[np.ndarray, np.ndarray]:
+    def interval(
+        self, level: float = 0.95, quantity: str = "radiosity", rows: np.ndarray | slice = slice(None)
+    ) -> tuple[np.ndarray, np.ndarray]:
         """The ends of intervals that hold the true value with probability ``level``, lower and upper, (n_patches, n_bands) each.
 
         They are Student's intervals over replicates, in the solution's unit. Where `few` lines hit they go up to a bound from
@@ -181,11 +186,12 @@ class Solution:
 
         Args:
             quantity: "radiosity" or "irradiance".
+            rows: the patches that are asked for: their numbers, or a slice.
 
         Raises:
             MethodError: another quantity, or a level outside (0, 1).
         """
-        return intervals.of_patches(self, level, quantity)
+        return intervals.of_patches(self, level, quantity, rows)
 
     def surface_interval(self, level: float = 0.95, quantity: str = "irradiance") -> tuple[np.ndarray, np.ndarray]:
         """The intervals of the area mean over each surface, (n_surfaces, n_bands) each; arguments are those of `interval`.

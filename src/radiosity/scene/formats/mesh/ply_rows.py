@@ -1,6 +1,7 @@
 """Rows of a PLY element as columns; lists may differ in length from row to row."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -67,7 +68,7 @@ def read_binary(body: memoryview, at: int, count: int, properties: list[Property
     if at + count * row.itemsize <= len(body):
         table = np.frombuffer(body, row, count, at)
         if all((table[f"n{i}"] == size).all() for i, (p, size) in enumerate(zip(properties, sizes, strict=True)) if p.count):
-            found = [([table[f"v{i}"].ravel()], np.broadcast_to(np.int64(size), count)) for i, size in enumerate(sizes)]
+            found = [([_packed(table, f"v{i}")], np.broadcast_to(np.int64(size), count)) for i, size in enumerate(sizes)]
             return _columns(properties, found), at + count * row.itemsize
     found = [([], []) for _ in properties]
     for _ in range(count):
@@ -82,6 +83,16 @@ def read_binary(body: memoryview, at: int, count: int, properties: list[Property
             sizes.append(size)
             at += size * p.dtype.itemsize
     return _columns(properties, found), at
+
+
+def _packed(table: np.ndarray, name: Any) -> np.ndarray:
+    """Return the values of a field of several numbers, one after another; rows are moved as bytes, which NumPy does fastest."""
+    assert table.dtype.fields is not None
+    kind, offset = table.dtype.fields[name][:2]
+    if not table.size or not kind.itemsize:
+        return table[name].ravel()
+    rows: Any = {"names": [name], "formats": [f"V{kind.itemsize}"], "offsets": [offset], "itemsize": table.dtype.itemsize}
+    return np.ascontiguousarray(table.view(np.dtype(rows))[name]).view(kind.base)
 
 
 def _first_sizes(body: memoryview, at: int, properties) -> list[int]:
