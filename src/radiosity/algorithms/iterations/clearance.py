@@ -25,18 +25,29 @@ def largest_clear(tree: Hierarchy, geometry: Geometry) -> np.ndarray:
 
     An element is clear where its half diagonal is below the least clearance of its patches; patches always are.
     """
-    far, of = clearance(geometry), np.arange(len(geometry.patches))
-    element, least = tree.leaf(of), np.full(len(tree), np.inf)
-    first, second = (np.linalg.norm(edge, axis=1)[geometry.patches.face] for edge in geometry.faces.frames[1:])
-    level = tree.level(element)
-    while len(of):
-        inner = tree.level(element) > 0
-        of, element = of[inner], tree.parent(element[inner])
+    if "largest clear" not in geometry.made:
+        geometry.made["largest clear"] = _largest_clear(tree, geometry)
+    return geometry.made["largest clear"]
+
+
+def _largest_clear(tree: Hierarchy, geometry: Geometry) -> np.ndarray:
+    far, patches = clearance(geometry), geometry.patches
+    (column, row, inverted), face = patches.place, patches.face
+    middle = np.where(patches.scene.is_quad[face], 1 / 2, np.where(inverted, 2 / 3, 1 / 3))
+    u, v = (column + middle) / patches.columns[face], (row + middle) / patches.rows[face]
+    first, second = (np.linalg.norm(edge, axis=1)[face] for edge in geometry.faces.frames[1:])
+    side = np.repeat(np.arange(len(tree.side_face)), patches.cells_per_face[tree.side_face])
+    largest = tree.deepest[side]
+    for level in range(int(largest.max()) - 1, -1, -1):
+        of = np.flatnonzero(tree.deepest[side] > level)
+        levels = np.full(len(of), level)
+        element = tree.find(side[of], levels, u[of], v[of])
+        least = np.full(len(tree), np.inf)
         np.minimum.at(least, element, far[of])
-        columns, rows = tree.grid(tree.side(element), tree.level(element))
+        columns, rows = tree.grid(side[of], levels)
         clear = np.hypot(first[of] / columns, second[of] / rows) / 2 < least[element]
-        level[of[clear]] = tree.level(element[clear])
-    return level
+        largest[of[clear]] = level
+    return largest
 
 
 def clearance(geometry: Geometry) -> np.ndarray:

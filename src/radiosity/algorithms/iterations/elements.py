@@ -14,6 +14,7 @@ from ...device.backend import upload
 from ...device.recorded import loop
 from ...patches.hierarchy import Hierarchy, exponent
 from ...tracing.faces import COLUMN_BITS, INVERTED, QUAD
+from ...tracing.lanes import paired
 from ...tracing.line_tracer import LineTracer
 from ...tracing.ray_generation import BACK, MASK, Frame
 
@@ -148,14 +149,19 @@ class Elements:
         whole = types.UInt64(dr.ceil(sent * SHARE))
         dr.eval(whole)
         sums = dr.opaque(types.UInt64, 0, self.size)
-        number = dr.arange(types.UInt32, self.tracer.total)
+        rows: Any = dr.compress(whole > 0)
+        count = dr.opaque(types.UInt32, dr.width(rows))
+        number = paired(types, rows)
+        lane = dr.arange(types.UInt32, dr.width(number))
+        power = dr.select(lane < count, dr.gather(types.UInt64, whole, number), 0)
         place = self.place(number)
 
         def body(level):
-            dr.scatter_add(sums, whole, self.slot(number, place, level))
+            dr.scatter_add(sums, power, self.slot(number, place, level))
             return (level + 1,)
 
-        loop((dr.zeros(types.UInt32, self.tracer.total),), lambda level: level <= place.deepest, body)
+        if dr.width(number):
+            loop((dr.zeros(types.UInt32, dr.width(number)),), lambda level: level <= place.deepest, body)
         found = types.Float(types.Float64(sums) * (1 / SHARE))
         dr.eval(found)
         return found
