@@ -15,6 +15,34 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "run/shadows/edges.py",
+        "points - way * (height / down)",
+        "points - way * (height / whole[:, None])",
+        ("test_shadow_cuts.py",),
+        "shadows of edges fall too near to them",
+    ),
+    Mistake(
+        "run/shadows/sight.py",
+        "np.flatnonzero(~scene.panes)",
+        "np.arange(scene.n_faces)",
+        ("test_shadow_cuts.py",),
+        "meshes are cut where a pane is taken for a shadow",
+    ),
+    Mistake(
+        "run/shadows/lines.py",
+        "(sharp * length > LONG * size)",
+        "(length > LONG * size)",
+        ("test_shadow_cuts.py",),
+        "meshes are cut along the middle of wide penumbras",
+    ),
+    Mistake(
+        "patches/contact/cutting.py",
+        "if new and cost <= more:",
+        "if new:",
+        ("test_shadow_cuts.py",),
+        "cuts along shadows take more than their share of patches",
+    ),
+    Mistake(
         "patches/contact/lines.py",
         "        shines[1] &= scene.back == Back.RADIATES\n",
         "",
@@ -23,8 +51,8 @@ MISTAKES = (
     ),
     Mistake(
         "patches/contact/lines.py",
-        "np.where(lamp, NEAR_LAMP, NEAR) * size",
-        "0.0 * np.where(lamp, NEAR_LAMP, NEAR)",
+        "np.where(lamp, NEAR_LAMP, near) * size",
+        "0.0 * np.where(lamp, NEAR_LAMP, near)",
         ("test_near_lamps.py",),
         "faces just in front of others have no contact lines",
     ),

@@ -7,15 +7,16 @@ outlines of lamps just in front of a face: such a lamp lights the part that it c
 give that light back from its open part.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...scene.model import Scene
+from ...scene.model import Back, Scene
 from ...scene.split import bent, split
 from ..subdivide import subdivide
 from . import convex
-from .lines import Boxes, contact_lines, near_lamps
+from .lines import NEAR, Boxes, contact_lines, near_lamps
 
 THIN = 1e-4  # of a patch's size: thinner strips are not cut off
 SHORT = 0.5  # of a patch's size: shorter lines are left to finer patches, but for those of lamps
@@ -24,18 +25,40 @@ SMALL = 0.05  # of a patch's size: shorter lines of lamps are left out
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 
 
-def cut_at_contacts(scene: Scene, patches: int, most: int, sizes: np.ndarray | None = None) -> Scene:
-    """Return the scene cut along its contact lines.
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line to cut a face along: the face, its ends in face coordinates (2, 2), length in metres, and whether it is a lamp's."""
+
+    face: int
+    ends: np.ndarray
+    length: float
+    of_lamp: bool = False
+
+
+def cut_at_contacts(
+    scene: Scene,
+    patches: int,
+    most: int,
+    sizes: np.ndarray | None = None,
+    *,
+    near: float = NEAR,
+    shadows: Sequence[Line] = (),
+    more: int = 0,
+) -> Scene:
+    """Return the scene cut along its contact lines, and along edges of shadows.
 
     Args:
         patches: how many patches there are to be: their size says which lines matter.
         most: the largest number of faces that cuts may add.
         sizes: (n_faces,) metres, of the patches of each face, which say what is near; default: of so many even patches.
+        near: of a patch's size: outlines of what is nearer to a side that radiates are contact lines.
+        shadows: lines of shadows, best first; contact lines come before them.
+        more: the largest number of patches that cuts along shadows may add.
     """
     size = float(np.sqrt(scene.area.sum() / patches))
-    lines = _lines(scene, size, subdivide(scene, about=patches).sizes if sizes is None else sizes)
+    lines = _lines(scene, size, subdivide(scene, about=patches).sizes if sizes is None else sizes, near)
     polygons: dict[int, list] = {}
-    frames = {face: _Flat(scene, face) for face in {line.face for line in lines}}
+    frames = {face: _Flat(scene, face) for face in {line.face for line in (*lines, *shadows)}}
     added = 0
     for line in lines:
         if added >= most:
@@ -44,21 +67,35 @@ def cut_at_contacts(scene: Scene, patches: int, most: int, sizes: np.ndarray | N
         cut = [part for piece in pieces for part in _cut(piece, frames[line.face].plane(line.ends), size)]
         added += len(cut) - len(pieces)
         polygons[line.face] = cut
+    shadowed = _cut_along(scene, shadows, polygons, frames, size, more)
     cut = {face: pieces for face, pieces in polygons.items() if len(pieces) > 1}
-    return _rebuilt(scene, cut, frames) if cut else scene
+    return _rebuilt(scene, cut, frames, shadowed) if cut else scene
 
 
-@dataclass(frozen=True, eq=False)
-class _Line:
-    """A contact line that matters: its face, ends in face coordinates, length in metres, and whether it is that of a lamp."""
+def _cut_along(
+    scene: Scene, shadows: Sequence[Line], polygons: dict[int, list], frames: "dict[int, _Flat]", size: float, more: int
+) -> set[int]:
+    """Cut polygons along edges of shadows, and return their faces.
 
-    face: int
-    ends: np.ndarray
-    length: float
-    of_lamp: bool
+    Args:
+        more: the largest number of patches that cuts may add; lines that would add too many are left out.
+    """
+    shadowed = set()
+    for line in shadows:
+        pieces = polygons.setdefault(line.face, [frames[line.face].outline])
+        cut = [_cut(piece, frames[line.face].plane(line.ends), size) for piece in pieces]
+        new = [(piece, two) for piece, two in zip(pieces, cut, strict=True) if len(two) > 1]
+        cost = sum(len(convex.parts(part, True)) for _, two in new for part in two)
+        cost -= sum(len(convex.parts(piece, True)) for piece, _ in new)
+        cost *= 2 if scene.back[line.face] == Back.RADIATES else 1
+        if new and cost <= more:
+            more -= cost
+            polygons[line.face] = [part for two in cut for part in two]
+            shadowed.add(line.face)
+    return shadowed
 
 
-def _lines(scene: Scene, size: float, sizes: np.ndarray) -> list[_Line]:
+def _lines(scene: Scene, size: float, sizes: np.ndarray, near: float) -> list[Line]:
     """Return the contact lines that matter, those of lamps first, then the longest first.
 
     Args:
@@ -68,14 +105,14 @@ def _lines(scene: Scene, size: float, sizes: np.ndarray) -> list[_Line]:
     _, first, second = scene.frames
     for face in np.flatnonzero(((scene.area > LARGE * size**2) | near_lamps(boxes, sizes)) & ~bent(scene)):
         outline = SQUARE if scene.is_quad[face] else SQUARE[[0, 1, 3]]
-        found = contact_lines(scene, boxes, int(face), sizes[face])
+        found = contact_lines(scene, boxes, int(face), sizes[face], near)
         for line, of_lamp in zip(found.ends, found.of_lamps.tolist(), strict=True):
             within = convex.inside(outline, line[0], line[1], 1e-9)
             if within is not None:
                 step = within[1] - within[0]
                 length = float(np.linalg.norm(step[0] * first[face] + step[1] * second[face]))
                 if length > (SMALL if of_lamp else SHORT) * size and (of_lamp or scene.area[face] > LARGE * size**2):
-                    result.append(_Line(int(face), np.array(within), length, of_lamp))
+                    result.append(Line(int(face), np.array(within), length, of_lamp))
     return sorted(result, key=lambda line: (not line.of_lamp, -round(line.length, 9), line.face))
 
 
@@ -107,14 +144,14 @@ def _cut(piece: np.ndarray, line: np.ndarray, size: float) -> list[np.ndarray]:
     return [piece] if parts is None else list(parts)
 
 
-def _rebuilt(scene: Scene, polygons: dict[int, list], frames: dict[int, _Flat]) -> Scene:
+def _rebuilt(scene: Scene, polygons: dict[int, list], frames: dict[int, _Flat], shadowed: set[int]) -> Scene:
     """Return the scene with some faces in parts, in the order of the faces."""
     found: list[tuple[int, np.ndarray, int]] = []  # face, corners, region
     region = 0
     for face in range(scene.n_faces):
         outline = SQUARE if scene.is_quad[face] else SQUARE[[0, 1, 3, 3]]
         for polygon in polygons.get(face, [None]):
-            for part in [outline] if polygon is None else map(frames[face].face, convex.parts(polygon)):
+            for part in [outline] if polygon is None else map(frames[face].face, convex.parts(polygon, face in shadowed)):
                 found.append((face, part if len(part) == 4 else part[[0, 1, 2, 2]], region))
             region += 1
     face, corners, regions = zip(*found, strict=True)
