@@ -141,7 +141,7 @@ def test_a_turned_scene_has_the_same_lines(random):
 )
 def test_other_lines_are_left_to_the_pilots(of):
     assert shadow_lines(floor_and_board(**of), 1000) == []
-    assert shadow_lines(floor_and_board(**of).take([0, 2]), 1000) == []  # nothing stands between
+    assert shadow_lines(floor_and_board(**of).take(np.array([0, 2])), 1000) == []  # nothing stands between
 
 
 def test_cuts_along_shadows_keep_to_their_share():
