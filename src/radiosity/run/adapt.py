@@ -1,8 +1,8 @@
 """Meshes that follow the light: faces are cut where light varies over them, within a number of patches.
 
-First faces are cut along contact lines. Then pilot runs see, with each patch cut into up to four, where the cells of a patch
-differ by more than noise. The patches are cut that gain most for each patch that is added, and so on, until there are as many as
-asked for. The run itself starts anew on that mesh, so that its bits are a function of seed and inputs.
+First faces are cut along contact lines, and along edges of shadows. Then pilot runs see, with each patch cut into up to four,
+where the cells of a patch differ by more than noise. The patches are cut that gain most for each patch that is added, and so on,
+until there are as many as asked for. The run itself starts anew on that mesh, so that its bits are a function of seed and inputs.
 """
 
 from dataclasses import replace
@@ -20,12 +20,15 @@ from ..patches.halves import Halves
 from ..patches.variation import Variation
 from ..scene.model import Back, Scene
 from .progress import Listener
+from .shadows import shadow_lines
 from .solve import prepared
 from .whole_number import whole
 
 START = 16  # the first mesh has so many times fewer patches
 GROWTH = 1.6  # from one pilot to the next, of patches beyond one for each side of a face
+NEAR = 0.1  # of a patch's size: outlines of what is nearer to a face are contact lines
 CUTS = 8  # contact lines add at most the number of patches over this
+SHADOWS = 16  # likewise edges of shadows
 LEAST = 64  # patches are cut until they are so many times smaller than the mean
 LINES = 256  # of each cell of a pilot, replicates together
 REPLICATES = 4  # of pilots
@@ -41,7 +44,7 @@ def adapt(
     progress: Listener | None = None,
     memory: str | float | None = None,
 ) -> Patches:
-    """Cut a scene where light varies: along contact lines, near lamps, and where shadows end.
+    """Cut a scene where light varies: along contact lines and edges of shadows, and near lamps.
 
     Every patch is a face of the scene of the patches (``patches.scene.cut`` says of which face each is a part). All methods but
     hierarchical radiosity, which refines by itself, take such patches.
@@ -74,7 +77,7 @@ def adapt(
     method: Method | None = None
     with limited(memory), turn():
         small = float(scene.area.sum()) / count / LEAST
-        current = _first(scene, count, least)
+        current = _first(scene, count, least, device)
         expected: Variation | None = None
         for step in range(1, 64):
             halves = Halves.of(current, small)
@@ -93,9 +96,13 @@ def adapt(
         return Patches(current, one, one)
 
 
-def _first(scene: Scene, count: int, least: int) -> Scene:
-    """Return the scene cut along contact lines, and evenly into few patches."""
-    cut = turned(cut_at_contacts(scene, count, min(count // CUTS, (count - least) // 2)))
+def _first(scene: Scene, count: int, least: int, device: str) -> Scene:
+    """Return the scene cut along contact lines and edges of shadows, and evenly into few patches."""
+    shadows, most = shadow_lines(scene, count, device), min(count // CUTS, (count - least) // 2)
+    more = min(count // SHADOWS, (count - least) // 4)
+    cut = turned(cut_at_contacts(scene, count, most, near=NEAR, shadows=shadows, more=more))
+    if shadows and len(subdivide(cut, cells=1)) > count:
+        cut = turned(cut_at_contacts(scene, count, most, near=NEAR))
     for about in (count // START, 1):
         even = subdivide(cut, about=max(about, 1))
         if len(even) <= count:

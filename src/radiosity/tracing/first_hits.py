@@ -39,16 +39,21 @@ def first_hits(scene: Scene, origins: np.ndarray, directions: np.ndarray, device
     Raises:
         DeviceError: there is no usable back end.
     """
-    from ..device.backend import choose, upload
+    from ..device.backend import choose
+    from .geometry import Geometry
 
-    chosen = choose(device)
+    return hits_of(Geometry(subdivide(scene, cells=1), choose(device)), origins, directions)
+
+
+@turn()
+def hits_of(geometry, origins: np.ndarray, directions: np.ndarray) -> Hits:
+    """Return the same, in a `Geometry` that is used more than once."""
     import drjit as dr
 
-    from .geometry import Geometry
+    from ..device.backend import upload
     from .hits import first_hit
 
-    geometry = Geometry(subdivide(scene, cells=1), chosen)
-    types, bvh = chosen.types, geometry.bvh
+    types, bvh = geometry.device.types, geometry.bvh
     origins, directions = (np.asarray(a, np.float64).reshape(-1, 3) for a in (origins, directions))
     length = np.linalg.norm(directions, axis=1, keepdims=True)
     unit = (directions / np.where(length > 0, length, 1)).astype(np.float32)

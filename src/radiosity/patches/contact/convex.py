@@ -67,10 +67,13 @@ def inside(polygon: np.ndarray, one: np.ndarray, two: np.ndarray, least: float) 
     return one + low * along, one + high * along
 
 
-def parts(polygon: np.ndarray) -> list[np.ndarray]:
+def parts(polygon: np.ndarray, trapezoids: bool = False) -> list[np.ndarray]:
     """Return triangles (3, 2) and parallelograms (4, 2) that make up a polygon, none of them thinner than need be.
 
     Of cuts that are alike but for rounding the first is taken.
+
+    Args:
+        trapezoids: they become a parallelogram and a triangle, not two triangles: halves of it lie along both of its edges.
     """
     polygon = _without_flat_corners(polygon)
     k = len(polygon)
@@ -78,6 +81,8 @@ def parts(polygon: np.ndarray) -> list[np.ndarray]:
         return []
     if k == 3 or (k == 4 and _is_parallelogram(polygon)):
         return [polygon]
+    if trapezoids and k == 4 and (two := _of_trapezoid(polygon)):
+        return two
     best, found = -1.0, []
     for i in range(k):
         for j in range(i + 2, k - (i == 0)):
@@ -85,7 +90,22 @@ def parts(polygon: np.ndarray) -> list[np.ndarray]:
             quality = min(_quality(part) for part in two)
             if quality > best + EQUAL:
                 best, found = quality, two
-    return [part for half in found for part in parts(half)]
+    return [part for half in found for part in parts(half, trapezoids)]
+
+
+def _of_trapezoid(polygon: np.ndarray) -> list[np.ndarray]:
+    """Return the parallelogram on the shorter one of two parallel sides, and the triangle beside it; [] without such."""
+    for i in range(2):
+        a, b, c, d = np.roll(polygon, -i, axis=0)  # are a-b and d-c parallel?
+        one, two = b - a, c - d
+        sizes = float(np.hypot(*one)), float(np.hypot(*two))
+        if abs(one[0] * two[1] - one[1] * two[0]) <= SAME * sizes[0] * sizes[1]:
+            if sizes[0] < sizes[1]:
+                at = d + one
+                return [np.array([a, b, at, d]), np.array([b, c, at])]
+            at = a + two
+            return [np.array([a, at, c, d]), np.array([at, b, c])]
+    return []
 
 
 def _quality(polygon: np.ndarray) -> float:

@@ -70,13 +70,15 @@ def faces_beside(boxes: Boxes, faces: np.ndarray, sizes: np.ndarray) -> list[np.
     return np.split(other[order], np.searchsorted(row[order], np.arange(1, len(faces))))
 
 
-def contact_lines(scene: Scene, boxes: Boxes, face: int, others: np.ndarray, size: float = 0.0) -> ContactLines:
+def contact_lines(
+    scene: Scene, boxes: Boxes, face: int, others: np.ndarray, size: float = 0.0, near: float = NEAR
+) -> ContactLines:
     """Return the contact lines of a face.
 
     Args:
         others: the faces that `faces_beside` found.
-        size: metres, of a patch. Outlines of faces that are nearer than `NEAR` of it are contact lines, too, if they lie in front
-            of a side that radiates.
+        size: metres, of a patch. Outlines of faces that are nearer than ``near`` of it are contact lines, too, if they lie in
+            front of a side that radiates.
     """
     corners = boxes.corners[others]
     origin, first, second = (edge[face] for edge in scene.frames)
@@ -85,13 +87,13 @@ def contact_lines(scene: Scene, boxes: Boxes, face: int, others: np.ndarray, siz
     to_face = np.linalg.pinv(np.stack([first, second], axis=1))
     flat = (corners - origin) @ to_face.T  # (m, 4, 2)
     touches, lamp = height == 0, _shines_at(scene, boxes, face, others, height)
-    near = _near(scene, face, height, np.where(lamp, NEAR_LAMP, NEAR) * size)
+    hides = _near(scene, face, height, np.where(lamp, NEAR_LAMP, near) * size)
     lines, of_lamps = [], []
     for edge in range(4):
         after = (edge + 1) % 4
-        rows = (touches[:, edge] & touches[:, after]) | (near[:, edge] & near[:, after])
+        rows = (touches[:, edge] & touches[:, after]) | (hides[:, edge] & hides[:, after])
         lines.append(np.stack([flat[:, edge], flat[:, after]], axis=1)[rows])
-        of_lamps.append((lamp & near[:, edge])[rows])
+        of_lamps.append((lamp & hides[:, edge])[rows])
     ends, lamps, through = np.concatenate(lines), np.concatenate(of_lamps), _piercing(flat, height)
     keep = (ends[:, 0] != ends[:, 1]).any(axis=1) & (~lamps | _single(ends, lamps))
     return ContactLines(np.concatenate([ends[keep], through]), np.concatenate([lamps[keep], np.zeros(len(through), bool)]))
