@@ -29,7 +29,11 @@ from radiosity.tracing.line_tracer import LineTracer
 
 REPLICATES = 2
 EVERYTHING: dict = {"order": "regular", "estimator": "bidirectional", "control_variate": True, "warm_up": True}
-VARIANTS: dict[str, dict] = {"incremental": {"order": "incremental"}, "warm-up": {"order": "regular", "warm_up": True}, "everything": EVERYTHING}
+VARIANTS: dict[str, dict] = {
+    "incremental": {"order": "incremental"},
+    "warm-up": {"order": "regular", "warm_up": True},
+    "everything": EVERYTHING,
+}
 
 
 def elements_of(patches: rd.Patches) -> Elements:

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from polygons import area
 
 import radiosity as rd
 from radiosity.patches.contact import cut_at_contacts
-from radiosity.patches.contact.convex import area, parts
+from radiosity.patches.contact.convex import parts
 from radiosity.run.shadows import shadow_lines
 from radiosity.run.shadows.edges import crossed, shadow_of
 

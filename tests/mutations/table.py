@@ -34,6 +34,8 @@ MISTAKES = (
         "if True:",
         ("test_prime_bases.py",),
         "walks in prime bases are not points of one sequence",
+    ),
+    Mistake(
         "run/shadows/edges.py",
         "points - way * (height / down)",
         "points - way * (height / whole[:, None])",
