@@ -15,20 +15,6 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
-        "algorithms/hierarchical/directed.py",
-        "for end, towards in ((other, -way), (one, way)):",
-        "for end, towards in ((other, way), (one, way)):",
-        ("test_directed.py",),
-        "clusters send what they show to the other side",
-    ),
-    Mistake(
-        "algorithms/hierarchical/directed.py",
-        "brought[self.answering, band, None]",
-        "brought[: len(self.answering), band, None] * 0.5",
-        ("test_directed.py",),
-        "clusters answer with half of what links bring",
-    ),
-    Mistake(
         "sampling/numbers/prime_bases.py",
         "at = (segment - 1 - turn * (COUNT // needed)) * needed",
         "at = segment - 1 - turn * (COUNT // needed)",

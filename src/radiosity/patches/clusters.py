@@ -114,11 +114,6 @@ class Clusters:
         place = self.reach[begin] + number * (self.reach[end] - self.reach[begin])
         return self.order[np.clip(np.searchsorted(self.reach, place, side="right") - 1, begin, end - 1)]
 
-    def sums(self, values: np.ndarray) -> np.ndarray:
-        """Return sums over the sides of clusters, (n_clusters, k), of values (n_sides, k); quick where clusters are many."""
-        running = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values[self.order], axis=0)])
-        return running[self.end] - running[self.begin]
-
     def _sums(self, values: np.ndarray) -> np.ndarray:
         """Return sums over the sides of clusters, (n_clusters, k), of values (n_sides, k)."""
         total = np.zeros((len(self), values.shape[1]))

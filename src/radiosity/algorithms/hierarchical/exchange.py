@@ -5,7 +5,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .directed import Directed
 from .levels import Levels
 from .links import Links
 
@@ -24,20 +23,10 @@ class Exchange:
         self.levels = levels
         starts = np.searchsorted(links.receiver, np.arange(len(levels.area) + 1))
         self.factors = csr_array((links.factor, links.source, starts), shape=(len(levels.area),) * 2)
-        self.links, self.directed = links, Directed.of(levels, links)
 
     def gather(self, radiosity: np.ndarray) -> np.ndarray:
         """Return the irradiance from the radiosity, (n_patches, n_bands) each."""
-        mean = self.levels.pull(radiosity)
-        if self.directed is None:
-            return self.levels.push(self.factors @ mean)
-        brought = self.links.factor[:, None] * self.directed.sent(self.links, mean)
-        sides = self.directed.answered(brought)
-        brought[self.directed.answering] = 0
-        columns = [np.bincount(self.links.receiver, weights=band, minlength=len(mean)) for band in brought.T]
-        values = np.stack(columns, axis=1)
-        values[self.levels.hierarchy.first[:-1]] += sides
-        return self.levels.push(values)
+        return self.levels.push(self.factors @ self.levels.pull(radiosity))
 
     def solve(
         self, emission: np.ndarray, reflectance: np.ndarray, begin: np.ndarray, tolerance: float, told: Callable[[int], None]

@@ -18,7 +18,6 @@ from functools import cached_property
 
 import numpy as np
 
-from .directed import Directed
 from .levels import Levels
 from .links import Links
 from .parameters import Hierarchical
@@ -59,9 +58,7 @@ class Oracle:
 
         For brightness-factor the first is all of F B_s.
         """
-        directed = Directed.of(self.levels, links)
-        mean = radiosity.mean[links.source] if directed is None else directed.sent(links, radiosity.mean)
-        carried = links.spread[:, None] * mean
+        carried = links.spread[:, None] * radiosity.mean[links.source]
         if not self.by_error:
             return carried, np.zeros_like(carried)
         return carried, links.factor[:, None] * radiosity.deviation[links.source]

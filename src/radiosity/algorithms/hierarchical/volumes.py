@@ -3,8 +3,8 @@ illumination with scattering volumes and object clusters", IEEE Transactions on 
 
 Seen from direction w, a cluster shows the area a(w) = sum A_i max(n_i w, 0) of its sides. Ends apart by d exchange
 A_r F_rs = a_r(w) a_s(-w) / (pi d²), times the share of lines between their sides that meet nothing on their way, which is how
-their sides hide each other, too. Ends that are not apart exchange what lines between their sides find. What the sides of a
-cluster send and get depends on the way they face (`directed`); the largest difference that it can make is the link's spread.
+their sides hide each other, too. Ends that are not apart exchange what lines between their sides find. All sides of a receiver
+get the same irradiance, whatever way they face: the largest difference that this can make is the link's spread.
 """
 
 from dataclasses import dataclass
