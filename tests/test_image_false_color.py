@@ -97,6 +97,18 @@ def test_the_legend_tells_where_an_automatic_range_ends(monkeypatch):
     ]
 
 
+@pytest.mark.parametrize(
+    "options",
+    [{"range": (5, 5)}, {"range": (0, 5), "log": True}, {"color_map": "nothing"}, {"false_color": False, "exposure": 1000}],
+)
+def test_senseless_options_are_refused_before_a_line_is_traced(options):
+    def never(*lines):
+        raise AssertionError("a line was traced")
+
+    with pytest.raises(rd.OutputError, match=r"range is|colour map|exposure is"):
+        picture(hits=never, **options)
+
+
 @pytest.mark.parametrize("size", [1e-9, 1e9])
 def test_no_factor_stands_beside_a_legend(size):
     """Numbers are written out at each mark, such as 2e-10; left of the bar nothing is drawn."""

@@ -2899,6 +2899,13 @@ MISTAKES = (
         "colours bleed in at the seams of lightmaps",
     ),
     Mistake(
+        "image/render.py",
+        "        maps.check(range, log, color_map)",
+        "        pass",
+        ("test_image_false_color.py",),
+        "a range that makes no sense is refused after all lines are traced",
+    ),
+    Mistake(
         "image/false_color.py",
         "if bar.yaxis.get_offset_text().get_text():",
         "if not bar.yaxis.get_offset_text().get_text():",

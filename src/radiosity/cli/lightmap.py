@@ -64,11 +64,14 @@ def lightmap(
     output
         The .glb file to write; NAME.exr is written beside it.
     """
+    from ..image.look import Look
+    from ..image.tone import chosen_scale
     from ..lightmap.model import check
 
     if output is None:
         raise OutputError("no output; name a file with -o, such as -o room.glb")
     check(output, errors=texture.errors)
+    chosen_scale(Look(exposure=texture.exposure), lambda: 1.0)  # refuses what makes no sense before a line is traced
 
     import radiosity as rd
 

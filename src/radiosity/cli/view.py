@@ -100,10 +100,11 @@ def view(
     """
     import radiosity as rd
 
-    from ..viewer.server import require
+    from ..viewer.server import check_address, require
 
     interval, (host, port) = range_of(shown), served.place
     require()
+    check_address(host, port)
     if served.html is not None:
         _check_html(served.html)
     subject, findings = _subject(scene, size, reading)

@@ -47,6 +47,15 @@ def colour(
     return beside(display, palette.legend(label, values[seen], max(len(display), LOWEST_LEGEND), letters))
 
 
+def check(limits, log: bool, color_map: str) -> None:
+    """Refuse options of `colour` that make no sense, before a picture is taken.
+
+    Raises:
+        OutputError: the limits are not a range, or the colour map is unknown.
+    """
+    Palette(*((0.1, 1.0) if limits is None else _checked(limits, log)), log, color_map)
+
+
 @dataclass(frozen=True)
 class Palette:
     """The colours of values: from ``low`` to ``high`` through a colour map, linear or logarithmic; grey where unknown.

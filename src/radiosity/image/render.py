@@ -88,6 +88,8 @@ def render(
         raise OutputError("tone_map is of PNG pictures without false colours; leave it out")
     if false_color:
         require("matplotlib", "the legend of false colours")
+        maps.check(range, log, color_map)
+    tone.chosen_scale(Look(exposure=exposure, scale=scale), lambda: 1.0)  # refuses what makes no sense before a line is traced
     require_results(solution)
     hits, samples = hits or first_hits, checked_samples(samples)
     lines = None if final_gather is None else lines_of(final_gather, samples)

@@ -40,7 +40,7 @@ def serving(host: str = HERE[0], port: int = PORT) -> Iterator[Server]:
     require()
     import viser
 
-    _check(host, port)
+    check_address(host, port)
     with redirect_stdout(io.StringIO()):  # what it prints is not for our output
         server = viser.ViserServer(host=host, port=port, verbose=False)
     try:
@@ -58,8 +58,12 @@ def address(server: Server) -> str:
     return f"http://{f'[{name}]' if ':' in name else name}:{server.get_port()}"
 
 
-def _check(host: str, port: int) -> None:
-    """Find out whether there is such an address: the library would try a thousand ports and wait for ever."""
+def check_address(host: str, port: int) -> None:
+    """Find out whether there is such an address: the library would try a thousand ports and wait for ever.
+
+    Raises:
+        OutputError: there is none.
+    """
     import socket
 
     if not 0 <= port <= 65535:
