@@ -1,6 +1,7 @@
 """Contact lines: where other faces touch or pierce a face, or lie just in front of it, in its coordinates."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -40,6 +41,20 @@ class Boxes:
         shines[1] &= scene.back == Back.RADIATES
         return Boxes(corners, corners.min(axis=1), corners.max(axis=1), TOUCHES * reach, shines)
 
+    def beside(self, face: int, margin: float) -> np.ndarray:
+        """Return the other faces whose boxes are nearer than a margin, metres, to that of a face, in order, (m,) int64."""
+        (low, *lows), (high, *highs) = self.axes
+        least, most = self.low[face] - margin, self.high[face] + margin
+        rows = np.flatnonzero((low <= most[0]) & (high >= least[0]))
+        for axis, (low, high) in enumerate(zip(lows, highs, strict=True), 1):  # few are left
+            rows = rows[(low[rows] <= most[axis]) & (high[rows] >= least[axis])]
+        return rows[rows != face]
+
+    @cached_property
+    def axes(self) -> tuple[np.ndarray, np.ndarray]:
+        """The lowest and highest coordinates axis by axis, (3, n_faces) each."""
+        return np.ascontiguousarray(self.low.T), np.ascontiguousarray(self.high.T)
+
 
 @dataclass(frozen=True, eq=False)
 class ContactLines:
@@ -62,9 +77,7 @@ def contact_lines(scene: Scene, boxes: Boxes, face: int, size: float = 0.0) -> C
             of a side that radiates.
     """
     margin = max(boxes.touch[face], NEAR_LAMP * size)
-    beside = (boxes.low <= boxes.high[face] + margin).all(axis=1) & (boxes.high >= boxes.low[face] - margin).all(axis=1)
-    beside[face] = False
-    others = np.flatnonzero(beside)
+    others = boxes.beside(face, margin)
     corners = boxes.corners[others]
     origin, first, second = (edge[face] for edge in scene.frames)
     height = (corners - origin) @ scene.normal[face]
