@@ -19,7 +19,7 @@ from radiosity.algorithms.base import Interrupted
 from radiosity.algorithms.iterations.clearance import clearance, largest_clear
 from radiosity.algorithms.iterations.elements import Elements
 from radiosity.algorithms.iterations.refined_tally import RefinedTally
-from radiosity.algorithms.iterations.refinement import End, Refinement
+from radiosity.algorithms.iterations.refinement import Cell, End, Refinement
 from radiosity.algorithms.table import make
 from radiosity.device.backend import choose, upload
 from radiosity.patches import elements as geometry_of
@@ -106,7 +106,7 @@ def test_ends_have_the_geometry_of_elements(mixed):
     number = upload(mixed.types.UInt32, np.arange(n, dtype=np.uint32))
     place = mixed.place(number)
     for level, holder in enumerate(above(mixed)):
-        end, there = End.of(place, mixed.frame(place), mixed.types.UInt32(level)), holder >= 0
+        end, there = End.of(place, Cell.of(place, mixed.frame(place)), mixed.types.UInt32(level)), holder >= 0
         element = holder[there]
         centroid = np.array(end.centroid).T[there] / scale - origin
         assert centroid == pytest.approx(geometry_of.centroid(tree, element), abs=1e-3)
@@ -174,8 +174,8 @@ def test_each_pair_of_patches_goes_through_one_pair_of_elements(small, monkeypat
     assert covers(receivers, elements)
     of = End.of
 
-    def of_the_line(place, frame, level):  # decides by where the line ends, not by the elements
-        return replace(of(place, frame, level), centroid=of(place, frame, place.deepest).centroid)
+    def of_the_line(place, cell, level):  # decides by where the line ends, not by the elements
+        return replace(of(place, cell, level), centroid=of(place, cell, place.deepest).centroid)
 
     monkeypatch.setattr(End, "of", staticmethod(of_the_line))
     assert not covers(*decided(small, 1e-3)[:2])

@@ -125,7 +125,8 @@ class Elements:
         exponents, first = dr.gather(self.types.Array2u, self._records, face)
         columns, rows = exponents & EXPONENT, exponents >> ROW_SHIFT
         first += dr.select(back, _above(dr.maximum(columns, rows), dr.minimum(columns, rows)), 0)
-        inverted, quad = dr.select(cell & INVERTED != 0, self.types.UInt32(1), self.types.UInt32(0)), cell & QUAD != 0
+        inverted = dr.select(cell & INVERTED != 0, self.types.UInt32(1), self.types.UInt32(0))
+        quad = self.types.Bool(True) if self.tracer.geometry.all_quads else cell & QUAD != 0
         return Place(face, back, cell & MASK, (cell >> COLUMN_BITS) & MASK, inverted, quad, columns, rows, first)
 
     def frame(self, place: Place) -> Frame:

@@ -64,10 +64,10 @@ class Refinement:
         is_patch = slot < elements.total
         patch = dr.select(is_patch, slot, source)
         of_s, of_r = elements.place(source), elements.place(patch)
-        frames = elements.frame(of_s), elements.frame(of_r)
+        cells = tuple(Cell.of(place, elements.frame(place)) for place in (of_s, of_r))
 
         def body(at_s, at_r, going):
-            s, r = End.of(of_s, frames[0], at_s), End.of(of_r, frames[1], at_r)
+            s, r = End.of(of_s, cells[0], at_s), End.of(of_r, cells[1], at_r)
             sent = dr.gather(elements.types.Float, self.sent, elements.slot(source, of_s, at_s))
             going &= sent * unevenness(s, r) > self.epsilon
             divides_r = (at_s == of_s.deepest) | (r.area >= ALIKE * s.area)
@@ -82,6 +82,22 @@ class Refinement:
 
 
 @dataclass(frozen=True)
+class Cell:
+    """Patches of a face: its frame, and the area and squared edges of a patch, in the BVH's units."""
+
+    frame: Any
+    area: Any
+    first: Any
+    second: Any
+
+    @staticmethod
+    def of(place: Place, frame) -> "Cell":
+        """Return the cell of a place, whose face has this frame."""
+        area = dr.norm(dr.cross(frame.first, frame.second)) * dr.select(place.quad, type(frame.side)(1), type(frame.side)(0.5))
+        return Cell(frame, area, dr.squared_norm(frame.first), dr.squared_norm(frame.second))
+
+
+@dataclass(frozen=True)
 class End:
     """An end of a pair in the BVH's units: its centroid, unit normal, area, and squared half diagonal."""
 
@@ -91,16 +107,17 @@ class End:
     half: Any
 
     @staticmethod
-    def of(place: Place, frame, level) -> "End":
-        """Return the end that is the element of a level at a place, whose face has this frame."""
-        Float = type(frame.side)
+    def of(place: Place, cell: Cell, level) -> "End":
+        """Return the end that is the element of a level at a place."""
+        frame, Float = cell.frame, type(cell.area)
         wide, high = place.shifts(level)
         column, row, inverted = place.cell(level)
         middle = dr.select(place.quad, Float(0.5), dr.select(inverted == 1, Float(2 / 3), Float(1 / 3)))
-        first, second = frame.first * Float(1 << wide), frame.second * Float(1 << high)
-        centroid = frame.origin + first * (Float(column) + middle) + second * (Float(row) + middle)
-        area = dr.norm(dr.cross(first, second)) * dr.select(place.quad, Float(1), Float(0.5))
-        return End(centroid, frame.normal * frame.side, area, (dr.squared_norm(first) + dr.squared_norm(second)) / 4)
+        across, along = Float(1 << wide), Float(1 << high)
+        point = frame.origin + frame.first * ((Float(column) + middle) * across)
+        centroid = point + frame.second * ((Float(row) + middle) * along)
+        half = (cell.first * dr.square(across) + cell.second * dr.square(along)) / 4
+        return End(centroid, frame.normal * frame.side, cell.area * across * along, half)
 
 
 def unevenness(s: End, r: End):
