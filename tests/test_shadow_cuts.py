@@ -135,7 +135,7 @@ def test_a_turned_scene_has_the_same_lines(random):
     [
         pytest.param({"turn": 0.0}, id="halves follow a shadow along edges of the floor"),
         pytest.param({"lamp": 2.0}, id="the penumbra of a large lamp is wide"),
-        pytest.param({"pane": 0.8}, id="a pane"),
+        pytest.param({"pane": 0.3}, id="a pane"),
         pytest.param({"lamp": 0.0}, id="no light"),
     ],
 )
