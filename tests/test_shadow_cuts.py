@@ -5,7 +5,7 @@ import pytest
 
 import radiosity as rd
 from radiosity.patches.contact import cut_at_contacts
-from radiosity.patches.contact.convex import area, parts
+from radiosity.patches.contact.convex import parts
 from radiosity.run.shadows import shadow_lines
 from radiosity.run.shadows.edges import crossed, shadow_of
 
@@ -46,6 +46,11 @@ def shadow_corners(turn: float, lamp=LAMP) -> np.ndarray:
     """The exact corners of the board's shadow on the floor if all light came from one point, (4, 2)."""
     lamp, corners = np.array(lamp), board(turn)
     return lamp[:2] + (corners[:, :2] - lamp[:2]) * lamp[2] / (lamp[2] - HEIGHT)
+
+
+def area(polygon: np.ndarray) -> float:
+    x, y = polygon.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
 
 
 def sides_of_shadow(lines, corners: np.ndarray, scale=4.0) -> list[int]:

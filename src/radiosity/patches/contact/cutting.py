@@ -16,13 +16,13 @@ from ...scene.model import Back, Scene
 from ...scene.split import bent, split
 from ..subdivide import subdivide
 from . import convex
-from .lines import NEAR, Boxes, contact_lines, near_lamps
+from .flat_face import SQUARE, Flat, Pieces
+from .lines import NEAR, Boxes, contact_lines, faces_beside, near_lamps
 
 THIN = 1e-4  # of a patch's size: thinner strips are not cut off
 SHORT = 0.5  # of a patch's size: shorter lines are left to finer patches, but for those of lamps
 LARGE = 4.0  # patches: smaller faces are not cut, but for lamps
 SMALL = 0.05  # of a patch's size: shorter lines of lamps are left out
-SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,46 +53,21 @@ def cut_at_contacts(
         sizes: (n_faces,) metres, of the patches of each face, which say what is near; default: of so many even patches.
         near: of a patch's size: outlines of what is nearer to a side that radiates are contact lines.
         shadows: lines of shadows, best first; contact lines come before them.
-        more: the largest number of patches that cuts along shadows may add.
+        more: the largest number of patches that cuts along shadows may add; lines that would add too many are left out.
     """
     size = float(np.sqrt(scene.area.sum() / patches))
     lines = _lines(scene, size, subdivide(scene, about=patches).sizes if sizes is None else sizes, near)
-    polygons: dict[int, list] = {}
-    frames = {face: _Flat(scene, face) for face in {line.face for line in (*lines, *shadows)}}
+    faces = {face: Pieces(Flat(scene, face)) for face in {line.face for line in (*lines, *shadows)}}
     added = 0
     for line in lines:
         if added >= most:
             break
-        pieces = polygons.setdefault(line.face, [frames[line.face].outline])
-        cut = [part for piece in pieces for part in _cut(piece, frames[line.face].plane(line.ends), size)]
-        added += len(cut) - len(pieces)
-        polygons[line.face] = cut
-    shadowed = _cut_along(scene, shadows, polygons, frames, size, more)
-    cut = {face: pieces for face, pieces in polygons.items() if len(pieces) > 1}
-    return _rebuilt(scene, cut, frames, shadowed) if cut else scene
-
-
-def _cut_along(
-    scene: Scene, shadows: Sequence[Line], polygons: dict[int, list], frames: "dict[int, _Flat]", size: float, more: int
-) -> set[int]:
-    """Cut polygons along edges of shadows, and return their faces.
-
-    Args:
-        more: the largest number of patches that cuts may add; lines that would add too many are left out.
-    """
-    shadowed = set()
+        added += faces[line.face].cut(line.ends, THIN * size)
     for line in shadows:
-        pieces = polygons.setdefault(line.face, [frames[line.face].outline])
-        cut = [_cut(piece, frames[line.face].plane(line.ends), size) for piece in pieces]
-        new = [(piece, two) for piece, two in zip(pieces, cut, strict=True) if len(two) > 1]
-        cost = sum(len(convex.parts(part, True)) for _, two in new for part in two)
-        cost -= sum(len(convex.parts(piece, True)) for piece, _ in new)
-        cost *= 2 if scene.back[line.face] == Back.RADIATES else 1
-        if new and cost <= more:
-            more -= cost
-            polygons[line.face] = [part for two in cut for part in two]
-            shadowed.add(line.face)
-    return shadowed
+        sides = 2 if scene.back[line.face] == Back.RADIATES else 1
+        more -= sides * faces[line.face].cut_at_shadow(line.ends, THIN * size, more // sides)
+    cut = {face: pieces for face, pieces in faces.items() if len(pieces.polygons) > 1}
+    return _rebuilt(scene, cut) if cut else scene
 
 
 def _lines(scene: Scene, size: float, sizes: np.ndarray, near: float) -> list[Line]:
@@ -103,9 +78,10 @@ def _lines(scene: Scene, size: float, sizes: np.ndarray, near: float) -> list[Li
     """
     boxes, result = Boxes.of(scene), []
     _, first, second = scene.frames
-    for face in np.flatnonzero(((scene.area > LARGE * size**2) | near_lamps(boxes, sizes)) & ~bent(scene)):
+    faces = np.flatnonzero(((scene.area > LARGE * size**2) | near_lamps(boxes, sizes)) & ~bent(scene))
+    for face, others in zip(faces, faces_beside(boxes, faces, sizes[faces]), strict=True):
         outline = SQUARE if scene.is_quad[face] else SQUARE[[0, 1, 3]]
-        found = contact_lines(scene, boxes, int(face), sizes[face], near)
+        found = contact_lines(scene, boxes, int(face), others, sizes[face], near)
         for line, of_lamp in zip(found.ends, found.of_lamps.tolist(), strict=True):
             within = convex.inside(outline, line[0], line[1], 1e-9)
             if within is not None:
@@ -116,42 +92,14 @@ def _lines(scene: Scene, size: float, sizes: np.ndarray, near: float) -> list[Li
     return sorted(result, key=lambda line: (not line.of_lamp, -round(line.length, 9), line.face))
 
 
-class _Flat:
-    """A face in its own plane, in metres: cuts are straight there as in face coordinates, and distances are true."""
-
-    def __init__(self, scene: Scene, face: int):
-        _, first, second = (edge[face] for edge in scene.frames)
-        axis = first / np.linalg.norm(first)
-        across = np.cross(scene.normal[face], axis)
-        self.axes = np.array([[first @ axis, first @ across], [second @ axis, second @ across]])
-        self.outline = self.plane(SQUARE if scene.is_quad[face] else SQUARE[[0, 1, 3]])
-
-    def plane(self, uv: np.ndarray) -> np.ndarray:
-        return uv @ self.axes
-
-    def face(self, points: np.ndarray) -> np.ndarray:
-        return np.clip(points @ np.linalg.inv(self.axes), 0.0, 1.0)
-
-
-def _cut(piece: np.ndarray, line: np.ndarray, size: float) -> list[np.ndarray]:
-    """Return a polygon, or the two parts of it where a segment passes through it."""
-    one, two = line
-    within = convex.inside(piece, one, two, THIN * size)
-    if within is None:
-        return [piece]
-    along = (two - one) / np.hypot(*(two - one))
-    parts = convex.cut(piece, one, along, THIN * size)
-    return [piece] if parts is None else list(parts)
-
-
-def _rebuilt(scene: Scene, polygons: dict[int, list], frames: dict[int, _Flat], shadowed: set[int]) -> Scene:
+def _rebuilt(scene: Scene, cut: dict[int, Pieces]) -> Scene:
     """Return the scene with some faces in parts, in the order of the faces."""
     found: list[tuple[int, np.ndarray, int]] = []  # face, corners, region
     region = 0
     for face in range(scene.n_faces):
         outline = SQUARE if scene.is_quad[face] else SQUARE[[0, 1, 3, 3]]
-        for polygon in polygons.get(face, [None]):
-            for part in [outline] if polygon is None else map(frames[face].face, convex.parts(polygon, face in shadowed)):
+        for parts in cut[face].parts() if face in cut else [[outline]]:
+            for part in parts:
                 found.append((face, part if len(part) == 4 else part[[0, 1, 2, 2]], region))
             region += 1
     face, corners, regions = zip(*found, strict=True)
