@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from polygons import area
 
 import radiosity as rd
 from radiosity.cli.app import run as command
@@ -72,6 +71,12 @@ def test_no_light_leaks_under_a_block():
     assert lost[0] > 0
     assert lost[1] == 0
     assert dark[1] == 0
+
+
+def area(polygon: np.ndarray) -> float:
+    """The area of a counterclockwise polygon, (k, 2)."""
+    after = np.roll(polygon, -1, axis=0)
+    return (polygon[:, 0] @ after[:, 1] - polygon[:, 1] @ after[:, 0]) / 2
 
 
 def test_polygons_are_cut_and_put_together_again(random):

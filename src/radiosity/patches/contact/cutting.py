@@ -16,8 +16,8 @@ from ...scene.model import Back, Scene
 from ...scene.split import bent, split
 from ..subdivide import subdivide
 from . import convex
+from .flat_face import SQUARE, Flat, Pieces
 from .lines import NEAR, Boxes, contact_lines, faces_beside, near_lamps
-from .pieces import SQUARE, Flat, Pieces
 
 THIN = 1e-4  # of a patch's size: thinner strips are not cut off
 SHORT = 0.5  # of a patch's size: shorter lines are left to finer patches, but for those of lamps
@@ -53,7 +53,7 @@ def cut_at_contacts(
         sizes: (n_faces,) metres, of the patches of each face, which say what is near; default: of so many even patches.
         near: of a patch's size: outlines of what is nearer to a side that radiates are contact lines.
         shadows: lines of shadows, best first; contact lines come before them.
-        more: the largest number of patches that cuts along shadows may add.
+        more: the largest number of patches that cuts along shadows may add; lines that would add too many are left out.
     """
     size = float(np.sqrt(scene.area.sum() / patches))
     lines = _lines(scene, size, subdivide(scene, about=patches).sizes if sizes is None else sizes, near)
@@ -65,7 +65,7 @@ def cut_at_contacts(
         added += faces[line.face].cut(line.ends, THIN * size)
     for line in shadows:
         sides = 2 if scene.back[line.face] == Back.RADIATES else 1
-        more -= faces[line.face].cut_along_shadow(line.ends, THIN * size, more, sides)
+        more -= sides * faces[line.face].cut_at_shadow(line.ends, THIN * size, more // sides)
     cut = {face: pieces for face, pieces in faces.items() if len(pieces.polygons) > 1}
     return _rebuilt(scene, cut) if cut else scene
 

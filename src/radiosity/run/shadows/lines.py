@@ -7,7 +7,8 @@ cut along the border spares them, if its penumbra is narrow for its length: then
 import numpy as np
 
 from ...patches.contact import convex
-from ...patches.contact.cutting import SHORT, SQUARE, Line
+from ...patches.contact.cutting import SHORT, Line
+from ...patches.contact.flat_face import SQUARE
 from ...patches.halves import BRIGHT
 from ...scene.model import Scene
 from .borders import Borders, borders

@@ -1,4 +1,4 @@
-"""The pieces of a face that is cut along lines."""
+"""A face in its own plane, and the pieces into which straight cuts divide it."""
 
 import numpy as np
 
@@ -29,9 +29,10 @@ class Pieces:
     """The pieces of a face so far, with boxes about them, so that a line looks only at pieces near it."""
 
     def __init__(self, flat: Flat):
-        self.flat, self.trapezoids = flat, False  # see `convex.parts`: so are pieces along shadows
+        self.flat = flat
         self.polygons = [flat.outline]
         self.boxes = _box(flat.outline)[None]
+        self.trapezoids = False  # see `convex.parts`
 
     def cut(self, ends: np.ndarray, least: float) -> int:
         """Cut the pieces that a segment passes through, and return how many more there are.
@@ -39,34 +40,33 @@ class Pieces:
         Args:
             ends: (2, 2) face coordinates. least: metres; shorter parts of the segment, and thinner strips, do not count.
         """
-        found = self._passed(ends, least)
+        return self._put(self._halves(ends, least))
+
+    def cut_at_shadow(self, ends: np.ndarray, least: float, most: int) -> int:
+        """Cut likewise along a shadow's edge, and return how many patches that adds; no cut where they are more than ``most``."""
+        found = self._halves(ends, least)
+        cost = sum(len(convex.parts(part, True)) for _, two in found for part in two)
+        cost -= sum(len(convex.parts(self.polygons[row], True)) for row, _ in found)
+        if not found or cost > most:
+            return 0
+        self.trapezoids = True
+        self._put(found)
+        return cost
+
+    def _halves(self, ends: np.ndarray, least: float) -> list[tuple[int, tuple[np.ndarray, np.ndarray]]]:
+        """Return the pieces that a segment passes through, the last ones first, and the two parts of each."""
+        line = self.flat.plane(ends)
+        low, high = _box(line)
+        near = np.flatnonzero(((self.boxes[:, 0] <= high) & (self.boxes[:, 1] >= low)).all(axis=1))
+        found = ((row, _cut(self.polygons[row], line, least)) for row in (near[::-1]).tolist())
+        return [(row, two) for row, two in found if two is not None]
+
+    def _put(self, found: list) -> int:
+        """Put parts in the places of pieces, and return how many more pieces there are."""
         for row, two in found:
             self.polygons[row : row + 1] = two
             self.boxes = np.concatenate([self.boxes[:row], [_box(part) for part in two], self.boxes[row + 1 :]])
         return len(found)
-
-    def cut_along_shadow(self, ends: np.ndarray, least: float, more: int, sides: int) -> int:
-        """Cut the same along an edge of a shadow, unless that makes too many patches, and return how many more there are.
-
-        Args:
-            more: the largest number of patches that the cut may add. sides: those that radiate, each with its patches.
-        """
-        found = self._passed(ends, least)
-        cost = sum(len(convex.parts(part, True)) for _, two in found for part in two)
-        cost = sides * (cost - sum(len(convex.parts(self.polygons[row], True)) for row, _ in found))
-        if not found or cost > more:
-            return 0
-        self.trapezoids = True
-        self.cut(ends, least)
-        return cost
-
-    def _passed(self, ends: np.ndarray, least: float) -> list[tuple[int, tuple[np.ndarray, np.ndarray]]]:
-        """Return the pieces that a segment passes through, the last first, each with its two parts."""
-        line = self.flat.plane(ends)
-        low, high = _box(line)
-        near = np.flatnonzero(((self.boxes[:, 0] <= high) & (self.boxes[:, 1] >= low)).all(axis=1))
-        cut = ((row, _cut(self.polygons[row], line, least)) for row in near[::-1].tolist())
-        return [(row, two) for row, two in cut if two is not None]
 
     def parts(self) -> list[list[np.ndarray]]:
         """Return the triangles and parallelograms of each piece, in face coordinates."""
