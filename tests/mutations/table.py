@@ -15,6 +15,20 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "patches/contact/flat_face.py",
+        "if not found or cost > most:",
+        "if not found:",
+        ("test_shadow_cuts.py::test_cuts_along_shadows_keep_to_their_share",),
+        "cuts along shadows take more than their share of patches",
+    ),
+    Mistake(
+        "patches/contact/flat_face.py",
+        "self.boxes[:, 0] <= high) & (self.boxes[:, 1] >= low)",
+        "self.boxes[:, 0] < low) & (self.boxes[:, 1] > high)",
+        ("test_meshes.py", "test_near_lamps.py"),
+        "pieces are cut only by lines that do not reach their rim",
+    ),
+    Mistake(
         "sampling/numbers/prime_bases.py",
         "at = (segment - 1 - turn * (COUNT // needed)) * needed",
         "at = segment - 1 - turn * (COUNT // needed)",
@@ -55,39 +69,6 @@ MISTAKES = (
         "(length > LONG * size)",
         ("test_shadow_cuts.py::test_other_lines_are_left_to_the_pilots",),
         "meshes are cut along the middle of wide penumbras",
-    ),
-    Mistake(
-        "patches/contact/pieces.py",
-        "if not found or cost > more:",
-        "if not found:",
-        ("test_shadow_cuts.py::test_cuts_along_shadows_keep_to_their_share",),
-        "cuts along shadows take more than their share of patches",
-        "patches/contact/flat_face.py",
-        "if not found or cost > most:",
-        "if not found:",
-        ("test_shadow_cuts.py::test_cuts_along_shadows_keep_to_their_share",),
-        "cuts along shadows take more than their share of patches",
-    ),
-    Mistake(
-        "sampling/numbers/prime_bases.py",
-        "at = (segment - 1 - turn * (COUNT // needed)) * needed",
-        "at = segment - 1 - turn * (COUNT // needed)",
-        ("test_prime_bases.py",),
-        "two segments of a walk share a prime base",
-    ),
-    Mistake(
-        "sampling/numbers/prime_bases.py",
-        "DIGITS = 7",
-        "DIGITS = 5",
-        ("test_prime_bases.py",),
-        "digits of late walks are cut off in prime bases",
-    ),
-    Mistake(
-        "algorithms/walks/particles.py",
-        "if not self.one_sequence:",
-        "if True:",
-        ("test_prime_bases.py",),
-        "walks in prime bases are not points of one sequence",
     ),
     Mistake(
         "patches/contact/lines.py",
@@ -2888,14 +2869,6 @@ MISTAKES = (
         "power, alike]",
         ("test_meshes.py",),
         "smoothing draws light under a box",
-    ),
-    Mistake(
-        "patches/contact/pieces.py",
-        "patches/contact/flat_face.py",
-        "self.boxes[:, 0] <= high) & (self.boxes[:, 1] >= low)",
-        "self.boxes[:, 0] < low) & (self.boxes[:, 1] > high)",
-        ("test_meshes.py", "test_near_lamps.py"),
-        "pieces are cut only by lines that do not reach their rim",
     ),
     Mistake(
         "patches/contact/cutting.py",
