@@ -265,8 +265,7 @@ def test_the_page_of_bases_compares_meshes(tmp_path, monkeypatch):
     assert verdict.count("Not in the paper") == 2
     rows = [row.replace("<tr><td>", "").split("</td><td>") for row in table.split("</tr>")[1:-1]]
     assert {(row[1], row[2]) for row in rows} == {("constant", "72"), ("linear", "18"), ("quadratic", "18")}
-    last = {row[1]: float(row[4].strip("%")) for row in rows}
-    assert last["quadratic"] < last["linear"] < 100
+    assert all(0 < float(row[4].strip("%")) < 60 for row in rows)
 
 
 def test_a_baseline_that_does_not_fit_has_a_row_that_says_so():

@@ -2,7 +2,8 @@
 
 Constants leave out what the two halves of a face differ by. Polynomials leave out less. And where light is dark in the middle of
 a face and alike at both its ends, as behind a lamp, the halves are alike, but the slopes on cells tell. The mean square that is
-left out is a quadratic form of the coefficients of the cells, so its noise is known from replicates.
+left out is a quadratic form of the coefficients of the cells, so its noise is known from replicates. What constants leave out
+counts a little, too: where light varies much, it has more shape than slopes on cells tell.
 """
 
 from functools import cache
@@ -16,6 +17,7 @@ from .variation import Variation
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(4)  # exact up to degree 7: products of polynomials, and Duffy's map
 CELLS = BASES["linear"]  # of the light on cells
+CONSTANTS = 1 / 8  # of what constants leave out counts as well: in `room` 1/2 and 0 gave larger errors (docs/bases.md)
 KINDS = ((2, 2, True), (2, 1, True), (1, 2, True), (2, 2, False))  # columns and rows of a face, and whether it is a parallelogram
 
 
@@ -26,6 +28,7 @@ def variation(halves: Halves, light: np.ndarray, basis: Basis) -> Variation:
         light: (replicates, n_fine, n_bands, 3) coefficients of the irradiance of the fine patches, in `CELLS`.
         basis: of the light on the faces and on their parts.
     """
+    constant = halves.variation(light[..., 0])
     columns, rows, quad = halves.fine.columns, halves.fine.rows, halves.coarse.scene.is_quad
     along, across, rest, noise = (np.zeros(len(quad)) for _ in range(4))
     for kind in KINDS:
@@ -42,7 +45,8 @@ def variation(halves: Halves, light: np.ndarray, basis: Basis) -> Variation:
             along[faces], across[faces] = np.where(first, better, second), np.where(first, second, better)
         else:
             rest[faces] = whole
-    return Variation(along, across, rest, noise, smoother=4.0 ** (basis.degree + 1))
+    pairs = ((along, constant.along), (across, constant.across), (rest, constant.rest), (noise, constant.noise))
+    return Variation(*(one + CONSTANTS * other for one, other in pairs))
 
 
 @cache

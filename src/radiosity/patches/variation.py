@@ -17,14 +17,12 @@ class Variation:
         along, across: between the halves of a parallelogram along its first and its second edge.
         rest: what its four quarters differ by beyond that; of a triangle what its three parts differ by.
         noise: variance that noise alone would give a half.
-        smoother: by how much less a half varies where light is smooth: as its size squared, of polynomials a higher power.
     """
 
     along: np.ndarray
     across: np.ndarray
     rest: np.ndarray
     noise: np.ndarray
-    smoother: float = 4.0
 
     def given(self, before: "Variation | None") -> "Variation":
         """Return the best estimate, in which what is lost in noise comes from an estimate before."""
@@ -34,19 +32,18 @@ class Variation:
             along = _best(self.along, before.along, self.noise)
             across = _best(self.across, before.across, self.noise)
             rest = _best(self.rest, before.rest, self.noise)
-        return Variation(along, across, rest, self.noise, self.smoother)
+        return Variation(along, across, rest, self.noise)
 
     def after(self, scene: Scene, columns: np.ndarray, rows: np.ndarray, part: np.ndarray, is_quad: np.ndarray) -> "Variation":
-        """Return what is expected of the parts of faces that are cut: where light is smooth, a half varies less.
+        """Return what is expected of the parts of faces that are cut: where light is smooth, a half varies by a quarter.
 
         Args:
             scene: of the faces. columns, rows: (n_faces,) how they are cut.
             part: (m,) the face of each part. is_quad: (m,) bool, it is a parallelogram.
         """
         long, wide = columns > 1, rows > 1
-        less = self.smoother
-        along, across = np.where(long, self.along / less, self.along), np.where(wide, self.across / less, self.across)
-        rest = np.where(long | wide, self.rest / less, self.rest)
+        along, across = np.where(long, self.along / 4, self.along), np.where(wide, self.across / 4, self.across)
+        rest = np.where(long | wide, self.rest / 4, self.rest)
         new = is_quad & ~scene.is_quad[part]  # half of a triangle
         half = rest[part] / 2
         return Variation(
@@ -54,7 +51,6 @@ class Variation:
             np.where(new, half, across[part]),
             np.where(new, 0.0, rest[part]),
             self.noise[part],
-            self.smoother,
         )
 
 
