@@ -1,10 +1,12 @@
 """Errors of light that is constant, linear or quadratic on patches, on even meshes and on ones that follow the light.
 
+A mesh that follows the light is made for each basis (`adapt(basis=)`).
+
 The light at points is gathered, as in benchmarks/meshes.py; "sampling" is the part of the error that the replicates tell.
 Constants have four times the patches of polynomials. "smooth" are the points on walls and boxes, where light has few edges;
 "edges" are the others: floors with shadows, ceilings behind lamps, lamps.
 
-python benchmarks/bases.py [--scenes cornell-box room] [--patches 1200 5000] [--points 1500]
+python benchmarks/bases.py [--scenes cornell-box room] [--patches 1200 5000] [--points 1500] [--meshes even follows] [--gather]
 """
 
 import argparse
@@ -20,6 +22,7 @@ from radiosity.patches.polynomials import Polynomials
 LINES = 8000  # of a patch, for each number of constants on it
 SMOOTH = ("wall", "box", "block")  # words in names of surfaces
 METHOD = {"method": "stochastic-jacobi-control-variate", "estimator": "bidirectional"}
+GATHER = {"method": "gather"}
 ROW = "  {:>8} {:>10} {:>8} {:>16} {:>16} {:>16} {:>6}"
 
 
@@ -53,7 +56,7 @@ def errors(solution: rd.Solution, places: Places, truth: rd.Measurement, groups:
     return rows
 
 
-def compare(name: str, counts: list[int], points: int) -> None:
+def compare(name: str, counts: list[int], points: int, meshes: list[str], method: dict) -> None:
     """Print the rows of a scene."""
     scene = rd.load_scene(name, allow_outside=True)
     scene = replace(scene, back=np.where(scene.back == rd.Back.PASSES, rd.Back.ABSORBS, scene.back).astype(np.uint8))
@@ -67,11 +70,12 @@ def compare(name: str, counts: list[int], points: int) -> None:
     print(ROW.format("mesh", "basis", "patches", "all", "smooth", "edges", "CPU s"), flush=True)
     for count in counts:
         few, many = rd.subdivide(scene, about=count), rd.subdivide(scene, about=4 * count)
-        for mesh, cut in (("even", (few, many)), ("follows", (rd.adapt(scene, len(few)), rd.adapt(scene, len(many))))):
-            for basis, patches in (("constant", cut[1]), ("linear", cut[0]), ("quadratic", cut[0])):
+        for mesh in meshes:
+            for basis, patches in (("constant", many), ("linear", few), ("quadratic", few)):
+                patches = patches if mesh == "even" else rd.adapt(scene, len(patches), basis=basis)
                 begun = used()
                 rays = max(LINES * 4 * count, LEAST)
-                solution = rd.solve(patches, **METHOD, basis=basis, rays=rays, seed=1)
+                solution = rd.solve(patches, **method, basis=basis, rays=rays, seed=1)
                 seconds = used() - begun
                 shown = [f"{total:.2%} ({own:.2%})" for total, own in errors(solution, places, truth, groups)]
                 print(ROW.format(mesh, basis, len(patches), *shown, f"{seconds:.1f}"), flush=True)
@@ -82,7 +86,9 @@ if __name__ == "__main__":
     parser.add_argument("--scenes", nargs="+", default=["cornell-box", "room"])
     parser.add_argument("--patches", nargs="+", type=int, default=[1200, 5000])
     parser.add_argument("--points", type=int, default=1500)
+    parser.add_argument("--meshes", nargs="+", default=["even", "follows"], choices=["even", "follows"])
+    parser.add_argument("--gather", action="store_true", help="solve by gathers, not by iterations")
     given = parser.parse_args()
     warnings.simplefilter("ignore")
     for scene_name in given.scenes:
-        compare(scene_name, given.patches, given.points)
+        compare(scene_name, given.patches, given.points, given.meshes, GATHER if given.gather else METHOD)

@@ -92,7 +92,7 @@ def lit_by_a_wall(rho: float = 0.0) -> rd.Scene:
 
 
 DIRECT = {name: VARIANTS[name] for name in ("incremental", "incremental, control variate", "regular, everything")}
-DIRECT |= {"particles": {"equation": "continuous"}}
+DIRECT |= {"particles": {"equation": "continuous"}, "gather": {"order": "gather"}}
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow) if "," in name else name for name in DIRECT])
@@ -139,11 +139,12 @@ def test_lines_carry_the_polynomial_of_where_they_begin(estimator):
     assert np.abs(z).max() < 4.0  # three values, Student with 63 degrees of freedom: 5e-4
 
 
-@pytest.mark.parametrize("name", SOME)
+@pytest.mark.parametrize("name", [*SOME, "gather"])
 def test_a_furnace_is_flat(name):
     """In a furnace B = 1 everywhere: all coefficients but the mean are zero within their errors."""
     patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
-    solution = rd.solve(patches, rd.Method(**VARIANTS[name], basis="quadratic"), rays=300_000, replicates=16)
+    choices = {"order": "gather"} if name == "gather" else VARIANTS[name]
+    solution = rd.solve(patches, rd.Method(**choices, basis="quadratic"), rays=300_000, replicates=16)
     if "control" in name or "everything" in name:
         assert np.abs(solution.radiosity - 1).max() < 0.01
         assert np.abs(solution.irradiance_coefficients).max() < 0.01
@@ -301,7 +302,10 @@ def test_states_have_a_column_for_each_function():
     assert solution.state["received"].size == 2 * (len(patches) + 2) * 3
 
 
-@pytest.mark.parametrize("choices", [{}, {"order": "gather"}, {"order": "matrix"}, {"lines": "global", "order": "regular"}])
+@pytest.mark.parametrize(
+    "choices",
+    [{}, {"order": "gather", "reconstruction": "smooth"}, {"order": "matrix"}, {"lines": "global", "order": "regular"}],
+)
 def test_other_methods_refuse_a_basis(choices):
     with pytest.raises(rd.MethodError, match="basis 'linear' is for iterations of local lines"):
         rd.Method(basis="linear", **choices)

@@ -66,7 +66,7 @@ WRONG = {
     "no such order": (["solve", "room", "--order", "magic"], "magic"),
     "no replicates": (["solve", "room", "--replicates", "0"], "'0' must be a whole number from 1"),
     "a file for a folder": (["solve", "room", "-o", f"{__file__}/room.npz"], "is a file, not a folder"),
-    "no experiment": (["experiment"], "name an experiment, or several; known are 1, 2, 3, 4, 5, 6, 8, 9 and all"),
+    "no experiment": (["experiment"], "name an experiment, or several; known are 1, 2, 3, 4, 5, 6, 7, 8, 9 and all"),
     "one of two experiments that there is not": (["experiment", "1", "99"], "experiment '99' does not exist"),
     "no output format": (["solve", "room", "-o", "room.doc"], ".doc"),
     "one output twice": (["solve", "room", "-o", "a.npz", "./a.npz"], "named twice"),

@@ -111,7 +111,7 @@ def test_extras_have_one_name(monkeypatch, tmp_path):
     [
         (["1", "3"], [1, 3], "radiosity experiment 1 3"),
         (["3", "1", "3"], [1, 3], "radiosity experiment 3 1 3"),
-        (["4", "all", "--quick"], [1, 2, 3, 4, 5, 6, 8, 9], "radiosity experiment 4 all --quick"),
+        (["4", "all", "--quick"], [1, 2, 3, 4, 5, 6, 7, 8, 9], "radiosity experiment 4 all --quick"),
     ],
 )
 def test_several_experiments_run_in_one_command(monkeypatch, tmp_path, words, numbers, command):

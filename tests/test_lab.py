@@ -228,7 +228,7 @@ def test_the_command_writes_a_report_that_stands_alone(study, folder, drawn, cap
     assert text in report
     assert "src=" not in report.replace("src='data:", "")
     assert command(["experiment", "99", "-o", str(folder)]) == 2
-    assert "known are 1, 2, 3, 4, 5, 6, 8, 9 and all" in capsys.readouterr().err
+    assert "known are 1, 2, 3, 4, 5, 6, 7, 8, 9 and all" in capsys.readouterr().err
 
 
 @pytest.mark.slow
@@ -253,6 +253,19 @@ def test_the_page_of_baselines_compares_runs_in_processes_of_their_own(tmp_path,
         assert errors[scene, "1e+06 lines"] < errors[scene, "1e+05 lines"]
         assert errors[scene, "32 pixels"] < 1.05 * errors[scene, "8 pixels"]
     assert all(float(row[7].split("<")[0]) < 500 for row in rows if row[4])  # MiB of a few hundred patches
+
+
+def test_the_page_of_bases_compares_meshes(tmp_path, monkeypatch):
+    bases = module(7)
+    for name, value in (("ROOMS", ("room",)), ("QUICK_CELLS", (1,)), ("FINER", 2), ("QUICK_LINES", 400_000)):
+        monkeypatch.setattr(bases, name, value)
+    figure, reference, verdict, table = bases.extras(Protocol(last=13, replicates=3), tmp_path)
+    assert "<svg" in figure
+    assert "reference of room in 72 patches" in reference
+    assert verdict.count("Not in the paper") == 2
+    rows = [row.replace("<tr><td>", "").split("</td><td>") for row in table.split("</tr>")[1:-1]]
+    assert {(row[1], row[2]) for row in rows} == {("constant", "72"), ("linear", "18"), ("quadratic", "18")}
+    assert all(0 < float(row[4].strip("%")) < 60 for row in rows)
 
 
 def test_a_baseline_that_does_not_fit_has_a_row_that_says_so():

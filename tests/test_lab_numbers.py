@@ -4,10 +4,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from enclosures import cube
 from scipy import stats
 
 import radiosity as rd
-from radiosity.lab import calibration, contest, discretisation, measure, slopes
+from radiosity.lab import calibration, contest, discretisation, measure, slopes, varying
 from radiosity.lab.sight import Sight
 from radiosity.patches.nesting import parents
 from radiosity.scene.shapes import quad
@@ -44,6 +45,21 @@ def test_ratios_are_of_the_last_rung_the_first_over_the_second():
     assert factor == pytest.approx(np.exp(stats.t.ppf(0.975, 3) * spread))
     assert slopes.ratio(other, one)[0] == pytest.approx(1 / 4)
     assert slopes.mean_error(np.array([[3.0, 1.0], [4.0, 1.0]])) == pytest.approx([np.sqrt(12.5), 1.0])
+
+
+def test_errors_of_bases_are_those_of_a_linear_field():
+    """Light 1 + u over each face: linear coefficients leave nothing, means the square of u - 1/2 at the middles of fine cells."""
+    scene = cube(0.5, 1.0)
+    fine, coarse = rd.subdivide(scene, cells=8), rd.subdivide(scene, cells=2)
+    column, _, _ = fine.place
+    light = 1 + (column + 0.5)[:, None] / 8
+    truth = varying.Truth(fine, light, np.zeros_like(light))
+    moments = np.zeros((2, len(coarse), 1, 3))
+    moments[:, :, 0, 0] = 1 + (coarse.place[0] + 0.5) / 2
+    moments[0, :, 0, 1] = 1 / (4 * np.sqrt(3))
+    without = np.sqrt(np.mean((light[:, 0] - moments[0, parents(fine, coarse), 0, 0]) ** 2) / np.mean(light**2))
+    assert truth.errors(coarse, "linear", moments) == pytest.approx([0, without], abs=1e-7)
+    assert truth.errors(coarse, "constant", moments[1:, :, :, :1]) == pytest.approx([without])
 
 
 def test_deviations_are_relative_to_the_reflected_light():

@@ -173,6 +173,10 @@ class AbstractBiasedTally(AbstractTally[S]):
         """Return the part of `bias` that sums over whole surfaces have. Default: all of it."""
         return self.bias(problem, state, group)
 
+    def bias_of_moment(self, problem: Problem, state: S, group: int, function: int) -> np.ndarray:
+        """Return the size of the bias of a moment's mean, (n_patches,), in the unit of `irradiance`. Default: none."""
+        return np.zeros(len(problem.patches))
+
 
 class AbstractMeanTally(AbstractBiasedTally[S]):
     """A tally of means over the lines of each patch; patches without lines take those of their face (`unmet`)."""

@@ -14,8 +14,8 @@ def experiment(*which: str, quick: Flag = False, image: Flag = False, output: Fo
     ----------
     which
         1 (sampling order), 2 (local and global lines), 3 (discrete, continuous, Keller), 4 (number generators), 5 (beyond the
-        paper: bits and error bars), 6 (against the methods that form the matrix), 8 (quadratures of global lines), 9 (continuous
-        walks with sorted particles), several of them such as 1 3, or all.
+        paper: bits and error bars), 6 (against the methods that form the matrix), 7 (linear and quadratic light), 8 (quadratures
+        of global lines), 9 (continuous walks with sorted particles), several of them such as 1 3, or all.
     quick
         Up to 2^17 lines instead of 2^23: 1 to 6 take two to three minutes on 2 cores, in place of twenty.
     image

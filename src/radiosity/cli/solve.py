@@ -117,7 +117,7 @@ def _patches(scene, cut: Cut, method, before, run: Running, progress):
         refuse_hierarchical(method)
         options = {name: getattr(run, name) for name in ("seed", "device", "memory")}
         count = cut.patches or len(rd.subdivide(scene, **cut_for(method)))
-        return rd.adapt(scene, count, progress=progress, **options)
+        return rd.adapt(scene, count, progress=progress, basis=getattr(method, "basis", "constant"), **options)
     if cut.given:
         if cut.contacts:
             refuse_hierarchical(method)

@@ -150,10 +150,12 @@ def _refuse_options(method, found: str) -> None:
             "smoothed by reconstruction 'local-linear', which needs equation continuous"
         )
     walks = found == "walks" and method.equation == "continuous" and method.reconstruction == "patches"
-    if method.basis != "constant" and found != "iteration" and not walks:
+    gathers = found == "gather" and method.reconstruction == "patches"
+    if method.basis != "constant" and found != "iteration" and not walks and not gathers:
         raise MethodError(
-            f"basis '{method.basis}' is for iterations of local lines (--method stochastic-jacobi) and for particles that go on "
-            "from where they hit (--method particle-tracing): take one of these, or leave basis out"
+            f"basis '{method.basis}' is for iterations of local lines (--method stochastic-jacobi), for gathers (--method gather)"
+            " and for particles that go on from where they hit (--method particle-tracing), without smoothing: take one of "
+            "these, or leave basis out"
         )
     fires = found == "firing" and method.order == "breadth-first" and method.points == "halton"
     if method.coherent and found != "gather" and not fires:

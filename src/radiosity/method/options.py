@@ -86,7 +86,7 @@ METHOD = table(
     ),
     Option(
         "basis",
-        "How light varies over a patch: constant, linear or quadratic. Of iterations and particles.",
+        "How light varies over a patch: constant, linear or quadratic. Of iterations, gathers and particles.",
         values=BASES,
         details="See docs/bases.md.",
     ),

@@ -49,6 +49,14 @@ class Basis:
         """Coefficients of the functions in monomials on triangles, (K, K) float64, lower triangular."""
         return _orthonormal([[_on_half(p[0] + q[0], p[1] + q[1]) for q in self.powers] for p in self.powers])
 
+    @cached_property
+    def largest(self) -> np.ndarray:
+        """The largest absolute values of the functions, of parallelograms and triangles together, (K,) float64."""
+        a, b = (x.ravel() for x in np.meshgrid(*2 * [np.linspace(0, 1, 17)]))
+        half = a + b <= 1
+        values = [self.at(a, b, np.array(True)), self.at(a[half], b[half], np.array(False))]
+        return np.abs(np.concatenate(values)).max(axis=0)
+
     def functions(self, a: Any, b: Any, select) -> list:
         """Return the values of the K functions at places, arrays of numpy or Dr.Jit; the first is the number 1.
 

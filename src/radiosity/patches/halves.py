@@ -48,18 +48,18 @@ class Halves:
         columns, rows, quad = self.fine.columns, self.fine.rows, self.coarse.scene.is_quad
         along, across, rest, noise = (np.zeros(len(quad)) for _ in range(4))
         four = np.flatnonzero((columns == 2) & (rows == 2))
-        cells = self._cells(irradiance, four, 4)
+        cells = self.cells(irradiance, four, 4)
         one, two, both = (0.5 * (cells @ np.array(signs)) / 2 for signs in ((1, -1, 1, -1), (1, 1, -1, -1), (1, -1, -1, 1)))
-        (along[four], noise[four]), across[four], rest[four] = _square(one), _square(two)[0], _square(both)[0]
+        (along[four], noise[four]), across[four], rest[four] = square_of(one), square_of(two)[0], square_of(both)[0]
         bent = four[~quad[four]]
-        cells = self._cells(irradiance, bent, 4)
+        cells = self.cells(irradiance, bent, 4)
         shares = np.array([[0.5, 0.5, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) - 0.25  # a part's mean less that of all
-        squares = [_square(cells @ part) for part in shares]
+        squares = [square_of(cells @ part) for part in shares]
         along[bent] = across[bent] = 0.0
         rest[bent], noise[bent] = (squares[0][i] / 2 + squares[1][i] / 4 + squares[2][i] / 4 for i in (0, 1))
         for into, some in ((along, (columns == 2) & (rows == 1)), (across, (columns == 1) & (rows == 2))):
             face = np.flatnonzero(some)
-            into[face], noise[face] = _square(0.5 * (self._cells(irradiance, face, 2) @ np.array((1, -1))))
+            into[face], noise[face] = square_of(0.5 * (self.cells(irradiance, face, 2) @ np.array((1, -1))))
         return Variation(along, across, rest, noise)
 
     def weights(self, irradiance: np.ndarray) -> np.ndarray:
@@ -103,8 +103,13 @@ class Halves:
         new[:, whole] = 2
         return new[0], new[1]
 
-    def _cells(self, irradiance: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
-        """Return light that leaves the cells of some faces, (replicates, m, 2 n_bands, cells): fronts, then radiating backs."""
+    def cells(self, irradiance: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
+        """Return light that leaves the cells of some faces, (replicates, m, 2 n_bands, cells): fronts, then radiating backs.
+
+        Args:
+            irradiance: (replicates, n_fine, n_bands) of the fine patches, or one of the coefficients of its polynomials.
+            count: the number of cells of a face.
+        """
         rho, first = self.coarse.reflectance, self.fine.first[faces][:, None] + np.arange(count)
         rho = _counting(rho)
         back = self.coarse.scene.back[faces] == Back.RADIATES
@@ -123,7 +128,7 @@ def _counting(reflectance: np.ndarray) -> np.ndarray:
     return reflectance if reflectance.any() else np.ones_like(reflectance)
 
 
-def _square(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def square_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return squares of means over replicates less noise, and the noise, summed over bands, (m,) each."""
     noise = (values.var(axis=0, ddof=1) / len(values)).sum(axis=1)
     return (values.mean(axis=0) ** 2).sum(axis=1) - noise, noise

@@ -14,9 +14,11 @@ from ..device.turn import turn
 from ..errors import MethodError, SceneError, untold
 from ..method import Method, resolve
 from ..patches import Patches, subdivide
+from ..patches.bases import BASES
 from ..patches.cells_as_faces import cells_as_faces, turned
 from ..patches.contact import cut_at_contacts
 from ..patches.halves import Halves
+from ..patches.left_out import CELLS, variation
 from ..patches.variation import Variation
 from ..scene.model import Back, Scene
 from .progress import Listener
@@ -43,6 +45,7 @@ def adapt(
     device: str = "auto",
     progress: Listener | None = None,
     memory: str | float | None = None,
+    basis: str = "constant",
 ) -> Patches:
     """Cut a scene where light varies: along contact lines and edges of shadows, and near lamps.
 
@@ -54,6 +57,7 @@ def adapt(
         patches: how many patches there may be; default: as many as `subdivide` makes of the scene.
         seed: with the same inputs, the same mesh.
         device, progress, memory: as of `solve`.
+        basis: of the run on the mesh: faces are cut where its polynomials leave out most.
 
     Raises:
         SceneError: nothing emits, or the scene has more faces and sides than there may be patches. MethodError: a value that
@@ -74,7 +78,10 @@ def adapt(
             "the number"
         )
     number = whole(seed, "seed", 0)
-    method: Method | None = None
+    if basis not in BASES:
+        raise MethodError(f"basis '{basis}' is not known; known are {', '.join(BASES)}")
+    polynomials = BASES[basis]
+    method = _of_polynomials(scene) if polynomials.size > 1 else None
     with limited(memory), turn():
         small = float(scene.area.sum()) / count / LEAST
         current = _first(scene, count, least, device)
@@ -85,9 +92,10 @@ def adapt(
             more = min(int((here - least) * (GROWTH - 1)) + 1, count - here)
             if more <= 0:
                 break
-            irradiance, method = _pilot(halves.fine, method, number + step * APART, device, progress)
-            found = halves.variation(irradiance).given(expected)
-            columns, rows = halves.chosen(found, more, halves.weights(irradiance))
+            light, method = _pilot(halves.fine, method, number + step * APART, device, progress)
+            seen = halves.variation(light[..., 0]) if polynomials.size == 1 else variation(halves, light, polynomials)
+            found = seen.given(expected)
+            columns, rows = halves.chosen(found, more, halves.weights(light[..., 0]))
             if (columns * rows == 1).all():
                 break
             current, part = _cut(current, columns, rows)
@@ -120,7 +128,7 @@ def _cut(scene: Scene, columns: np.ndarray, rows: np.ndarray) -> tuple[Scene, np
 def _pilot(
     patches: Patches, method: Method | None, seed: int, device: str, progress: Listener | None
 ) -> tuple[np.ndarray, Method]:
-    """Return the irradiance of each replicate, (replicates, n_patches, n_bands), and the method that a pilot of the first chose.
+    """Return the irradiance of each replicate, (replicates, n_patches, n_bands, K), and the method that the first pilot chose.
 
     With one randomisation for all patches, cells beside each other have nearly the same noise, which their difference is free of.
     """
@@ -135,11 +143,20 @@ def _pilot(
             device=device,
             progress=progress,
         )
-        run.also = lambda stage: stage.sums(np.arange(n), n)[0]
+        of_means = method is None or method.basis == "constant"
+        run.also = lambda stage: stage.sums(np.arange(n), n)[0] / patches.area[:, None] if of_means else stage.moments()
         solution = run.solve()
     if solution.status == "interrupted":
         raise KeyboardInterrupt
     assert run.snapshot is not None
     assert isinstance(run.method, Method)
     found = replace(run.method, randomisation="shared") if run.method.machine == "gather" else run.method
-    return run.snapshot.asked / patches.area[:, None], found
+    light = run.snapshot.asked
+    return light[..., None] if light.ndim == 3 else light, found
+
+
+def _of_polynomials(scene: Scene) -> Method:
+    """Return the method of pilots that tell slopes on cells."""
+    if np.isin(scene.back, (Back.PASSES, Back.OPEN)).any():  # a gather does not take them
+        return Method(order="incremental", estimator="bidirectional", basis=CELLS.name)
+    return Method(order="gather", basis=CELLS.name)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..algorithms.gather.shares import OF_FUNCTION
 from ..algorithms.matrix.algorithm import LIMIT
 from ..device import memory
 from ..factors.lines import FEW
@@ -25,6 +26,8 @@ TURNS = 12  # bytes a patch in a replicate, and 8 more in each group of bands: w
 ELEMENTS, ELEMENT = 250, 16  # bytes a patch, and a patch in a replicate (27 more a group), where lines refine pairs of elements
 SKY, THROUGH = 165, 90  # bytes an entry of a sky's table, and of tables of its lines through openings, at their peak
 SORTED = 150e6  # bytes of particles that are sorted together, whose keys are copied
+STORED = 12  # bytes a line of a gather that is stored with where it begins and ends, and FITTED bytes for pairs of functions
+FITTED = 12
 PAIR = 24  # bytes a pair of patches that is counted, while counts are merged
 
 
@@ -74,6 +77,8 @@ def memory_needed(method: Method, patches: Patches, groups: int, replicates: int
         total += n * replicates * (TURNS + 8 * groups)
     if method.refine_lines:
         total += n * (ELEMENTS + replicates * (ELEMENT + 27 * groups))
+    if method.machine == "gather" and size > 1:
+        total += n * replicates * (STORED * max(16, OF_FUNCTION * size) + FITTED * (size - 1) * (size + 2) // 2)
     if method.reconstruction == "local-linear":
         first = replicates * first_stage(replicates, n)
         total += REACHED * _cells_reached(patches, min(first, rays or first))

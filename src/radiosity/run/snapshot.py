@@ -88,9 +88,21 @@ class Snapshot:
             unit = self.tally.irradiance(self.problem, self.state, group)[1]
             for function in range(1, size):
                 values = self.tally.moment(self.problem, self.state, group, function)
-                found = (x * (unit / area) for x in mean_and_error(values))
+                one, its_error = mean_and_error(values)
+                if isinstance(self.tally, AbstractBiasedTally):
+                    its_error = np.hypot(its_error, self.tally.bias_of_moment(self.problem, self.state, group, function))
+                found = (x * (unit / area) for x in (one, its_error))
                 mean[:, bands, function - 1], error[:, bands, function - 1] = (x[:, None] * groups.scale[bands] for x in found)
         return mean, error
+
+    def moments(self) -> np.ndarray:
+        """Return the coefficients of irradiance of each replicate, (replicates, n_patches, n_bands, K) W/m² or lm/m²."""
+        groups, area, found = self.problem.groups, self.problem.patches.area, []
+        for group in range(groups.n_groups):
+            unit = self.tally.irradiance(self.problem, self.state, group)[1] / area
+            functions = range(self.tally.basis.size)
+            found.append(np.stack([self.tally.moment(self.problem, self.state, group, k) * unit for k in functions], axis=-1))
+        return np.stack([found[g] * s for g, s in zip(groups.index, groups.scale, strict=True)], axis=2)
 
     @cached_property
     def line(self) -> np.ndarray:

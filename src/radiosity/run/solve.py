@@ -250,7 +250,8 @@ def _adapted(scene, chosen, adaptive, seed, device, progress, resume) -> Patches
         raise MethodError("adaptive makes a new mesh, and resume keeps that of its solution: leave one of them out")
     refuse_hierarchical(chosen)
     count = len(subdivide(scene, **cut_for(chosen))) if adaptive is True else whole(adaptive, "adaptive", 1)
-    return HOOKS["adapt"](scene, count, seed=seed, device=device, progress=progress)
+    basis = chosen.basis if isinstance(chosen, Method) else "constant"
+    return HOOKS["adapt"](scene, count, seed=seed, device=device, progress=progress, basis=basis)
 
 
 def refuse_cut(patches: Patches, method: Method | Baseline | Auto) -> None:

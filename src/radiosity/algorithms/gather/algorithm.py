@@ -13,6 +13,7 @@ import numpy as np
 
 from ...device.backend import frozen, upload
 from ...errors import MethodError
+from ...patches.bases import BASES
 from ...sampling.blocks import BITS, BLOCK
 from ...sampling.streams import Purpose
 from ...tally.wraps import Wraps
@@ -22,6 +23,7 @@ from .chances import Chances
 from .elsewhere import AbstractLinesElsewhere, GatherLines
 from .lane_scatter import LaneScatter
 from .lines import UNITS, Lines
+from .moments import units
 from .near import Near
 from .packets import Packets
 from .pilot import LINES, Pilot
@@ -30,6 +32,7 @@ from .rows import Rows
 from .shares import Shares
 from .smooth import SmoothTally
 from .state import GatherState
+from .stored_lines import StoredLines
 from .sums import Sums
 from .tally import GatherTally
 
@@ -51,6 +54,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         self.packets = Packets(self.geometry, self.replicates, self.method.coherent)
         self.chances = Chances.of(self.geometry, self.problem)
         self.types: Any = self.packets.types
+        self.basis = BASES[self.method.basis]
         self._quanta, self._done = 0, 0
         self._shares: Shares | None = None
         self._lines: Lines | None = None
@@ -58,7 +62,7 @@ class Gather(AbstractAlgorithm[GatherState]):
 
     @property
     def sizes(self) -> Sizes:
-        return Sizes(self.replicates, self.packets.n, self.groups)  # lights without area are no patches, and gather nothing
+        return Sizes(self.replicates, self.packets.n, self.columns)  # lights without area are no patches, and gather nothing
 
     @property
     def quanta(self) -> int:
@@ -70,12 +74,17 @@ class Gather(AbstractAlgorithm[GatherState]):
 
     @property
     def tally(self) -> GatherTally | SmoothTally:
-        plain = GatherTally(Near.of(self.chances))
+        plain = GatherTally(Near.of(self.chances), self.basis)
         return SmoothTally(plain) if self.method.reconstruction == "smooth" else plain
 
     @property
     def groups(self) -> int:
         return self.problem.groups.n_groups
+
+    @property
+    def columns(self) -> int:
+        """The number of sums of a patch: K coefficients of each group of bands (`moments`)."""
+        return self.groups * self.basis.size
 
     def quanta_for(self, lines: float) -> int:
         return max(round((lines - LINES * self.packets.n) / self.replicates), 1)
@@ -85,17 +94,18 @@ class Gather(AbstractAlgorithm[GatherState]):
         types = self.types
         self._shares = Pilot.of(self.geometry, self.problem, self.chances, self.method, self.seed).shares
         self._lines = self.lines()
-        self._scatter = LaneScatter.of_lanes(self.packets, self.problem.groups.scatter)
-        self._brought, self._met = (Sums(self.packets, kind, self.groups) for kind in (types.UInt64, types.Int64))
-        self._reading = Reading.nothing(types.Float, self.packets.lanes, self.groups, self.replicates)
+        self._scatter = LaneScatter.of_lanes(self.packets, self.problem.groups.scatter, self.basis.size)
+        kinds = self._lines.shadow_kind, types.Int64
+        self._brought, self._met = (Sums(self.packets, kind, self.columns) for kind in kinds)
+        self._reading = Reading.nothing(types.Float, self.packets.lanes, self.columns, self.replicates)
         self._missed = [dr.zeros(types.UInt32, self.packets.lanes) for _ in range(2)]
         self._missed_upper, self._unseen = [Wraps(types) for _ in range(2)], 0
-        self._hits, self._stored = dr.zeros(types.UInt32, self.packets.lanes), 0
+        self._stored = StoredLines(self.packets, self.basis)
 
     def lines(self) -> Lines:
         """Return what traces its lines."""
         purposes = (Purpose.NUMBERS, Purpose.SHADOW_RAYS)
-        return Lines.of(self.packets, self.chances, self.problem, self.method, self.seed, purposes)
+        return Lines.of(self.packets, self.chances, self.problem, self.method, self.seed, purposes, self.basis)
 
     def advance(self, quanta: int, swept: Swept) -> None:
         told = 0
@@ -130,8 +140,8 @@ class Gather(AbstractAlgorithm[GatherState]):
         if more[0].any():
             storing = self._done < shares.stored_quanta
             if storing:
-                self._make_room(int((before + more)[0].max()))
-                self._add_cosine(*lines.cosine(before[0], more[0], None, self._hits))
+                self._stored.make_room(int((before + more)[0].max()))
+                self._add_cosine(*lines.cosine(before[0], more[0], None, self._stored))
             else:
                 self._cosine(lines, before[0], more[0])
         dr.eval(self._brought.low, self._met.low, self._missed)
@@ -148,7 +158,7 @@ class Gather(AbstractAlgorithm[GatherState]):
             return
         assert self.elsewhere is not None
         for sums in self.elsewhere.trace(sent):
-            self._brought.add([upload(self.types.UInt64, column) for column in sums[0]])
+            self._brought.add([upload(lines.shadow_kind, column) for column in sums[0]])
 
     def _cosine(self, lines: Lines, before: np.ndarray, more: np.ndarray) -> None:
         """Trace cosine lines that are not stored, from these counts of each packet on."""
@@ -178,19 +188,11 @@ class Gather(AbstractAlgorithm[GatherState]):
             self._brought.set_apart()
             self._met.set_apart()
 
-    def _make_room(self, stored: int) -> None:
-        """Make room for the hits of as many stored lines of each patch."""
-        more = (stored - self._stored) * self.packets.lanes
-        if more > 0:
-            room = dr.zeros(self.types.UInt32, more)
-            self._hits = dr.concat([self._hits, room]) if self._stored else room
-            self._stored = stored
-
     def _rows(self, shares: Shares) -> Rows:
         _, _, place, _ = self.packets.read()
         stored = self.packets.of_packets(shares.stored(self._done), place)
         dr.eval(stored)
-        return Rows(self.packets, self._hits, stored, self._scatter)
+        return Rows(self.packets, self._stored, stored, self._scatter)
 
     def _correct(self, shares: Shares) -> None:
         """Correct the radiosity that lines read."""
@@ -202,18 +204,20 @@ class Gather(AbstractAlgorithm[GatherState]):
         assert lines is not None
         _, _, place, _ = self.packets.read()
         cosine, rays = (self._of_packets(each, place) for each in shares.counts(self._done))
+        finer = units(self.basis) * self.groups
         irradiance = [
-            types.Float(brought / (rays * UNITS) + met / (cosine * lines.unit))
-            for brought, met in zip(self._brought.about(), self._met.about(), strict=True)
+            types.Float(brought / (rays * (UNITS * unit)) + met / (cosine * (lines.unit * unit)))
+            for brought, met, unit in zip(self._brought.about(), self._met.about(), finer, strict=True)
         ]
         irradiance = [dr.select(cosine > 0, value, 0) for value in irradiance]
         dr.eval(irradiance)
         rows = self._rows(shares)
         grown = max(self._done / shares.stored_quanta, 1.0)
-        tolerance = TOLERANCE * np.max([self._mean(value) for value in irradiance], axis=0) / grown**0.5
+        tolerance = TOLERANCE * np.max([self._mean(value) for value in irradiance[:: self.basis.size]], axis=0) / grown**0.5
         reading, means = self._reading.corrected(rows, irradiance, np.maximum(tolerance, 1e-12), first=grown == 1.0)
         met = self._met.copy()
-        met.add([types.Int64(dr.round(types.Float64(mean) * cosine * lines.unit)) for mean in means])
+        scales = (lines.unit * unit for unit in finer)
+        met.add([types.Int64(dr.round(types.Float64(mean) * cosine * scale)) for mean, scale in zip(means, scales, strict=True)])
         dr.eval(met.low)
         return met, reading
 
@@ -245,7 +249,7 @@ class Gather(AbstractAlgorithm[GatherState]):
         cosine, rays, stored = (np.repeat(count, packets.sizes)[packets.place].astype(kind) for count in of_packets)
         (brought, brought_upper), (met_words, met_upper) = self._brought.read(), met.read()
         by_patch = self._by_patch
-        halves = np.stack([by_patch(reading.halves[at : at + self.groups]) for at in (0, self.groups)])
+        halves = np.stack([by_patch(reading.halves[at : at + self.columns]) for at in (0, self.columns)])
         return GatherState(
             sizes=self.sizes,
             quanta=self._quanta,
@@ -266,12 +270,12 @@ class Gather(AbstractAlgorithm[GatherState]):
         )
 
     def _by_patch(self, columns: list) -> np.ndarray:
-        """Return values of lanes, of each group, as (replicates, n_patches, groups)."""
+        """Return values of lanes, of each column, as (replicates, n_patches, columns)."""
         return np.stack([self.packets.patch_values(frozen(one)) for one in columns], axis=-1)
 
     def _by_lane(self, kind, values: np.ndarray) -> list:
         """Return the inverse of `_by_patch`."""
-        return [upload(kind, self.packets.lane_values(values[..., group])) for group in range(self.groups)]
+        return [upload(kind, self.packets.lane_values(values[..., column])) for column in range(self.columns)]
 
     def read(self, arrays: Arrays, sizes: Sizes) -> GatherState:
         if GatherState.lacking(arrays, sizes):
@@ -287,8 +291,8 @@ class Gather(AbstractAlgorithm[GatherState]):
         if not state.done:
             return
         stored = shares.stored(state.done)
-        self._make_room(int(stored.max()))
-        again, missed = lines.cosine(np.zeros_like(stored), stored, keep=self._hits)
+        self._stored.make_room(int(stored.max()))
+        again, missed = lines.cosine(np.zeros_like(stored), stored, keep=self._stored)
         self._brought.write(state.brought, state.brought_upper)
         if state.done < shares.stored_quanta:  # lines read nothing yet; what `capture` added is found again
             self._met.low, self._missed = [types.Int64(value) for value in again], missed

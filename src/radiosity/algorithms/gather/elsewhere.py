@@ -10,7 +10,7 @@ import numpy as np
 
 from ...device.backend import frozen, upload
 
-Sums = tuple[list[np.ndarray], list[np.ndarray]]  # what lines bring, of each group; and lines that escaped and were lost
+Sums = tuple[list[np.ndarray], list[np.ndarray]]  # what lines bring, of each column; and lines that escaped and were lost
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +20,7 @@ class GatherLines:
     Attributes:
         kind: "shadow" or "cosine".
         done, counts: (packets,) lines of each patch so far, and now.
-        read: of each group, the reflected radiosity of each lane, float32; None for shadow rays.
+        read: of each group, the reflected radiosity of each lane, float32; or its K coefficients in a basis. None for shadow rays.
     """
 
     kind: str

@@ -20,20 +20,22 @@ class LaneScatter:
         reflectance: of each group of bands, (lanes,) Float.
         through: the same of diffuse transmittance; None where nothing diffuses light.
         beyond: UInt32 (lanes,), the lane of the other side of each; None where nothing diffuses light.
+        size: how many functions the basis has: values have so many columns of each group.
     """
 
     reflectance: list
     through: list | None = None
     beyond: Any = None
+    size: int = 1
 
     @staticmethod
-    def of_lanes(packets: Packets, scatter: Scatter) -> "LaneScatter":
+    def of_lanes(packets: Packets, scatter: Scatter, size: int = 1) -> "LaneScatter":
         """Return that of all lanes from that of the patches."""
         if scatter.through is None or scatter.other is None:
-            return LaneScatter(_columns(packets, scatter.reflectance))
+            return LaneScatter(_columns(packets, scatter.reflectance), size=size)
         places = packets.place[scatter.other][packets.order] + packets.width * np.arange(packets.replicates)[:, None]
         beyond = upload(packets.types.UInt32, places.ravel().astype(np.uint32))
-        return LaneScatter(_columns(packets, scatter.reflectance), _columns(packets, scatter.through), beyond)
+        return LaneScatter(_columns(packets, scatter.reflectance), _columns(packets, scatter.through), beyond, size)
 
     @cached_property
     def albedo(self) -> list:
@@ -48,11 +50,11 @@ class LaneScatter:
         """Return what received values are sent on as.
 
         Args:
-            values: of each group, (lanes,) Float; or of all groups several times, one after the other.
+            values: of each column, (lanes,) Float; or of all columns several times, one after the other.
             group: the values are of this group alone.
         """
         groups = len(self.reflectance)
-        which = [index % groups if group is None else group for index in range(len(values))]
+        which = [index // self.size % groups if group is None else group for index in range(len(values))]
         sent = [self.reflectance[at] * value for at, value in zip(which, values, strict=True)]
         if self.through is None:
             return sent

@@ -10,6 +10,7 @@ import drjit as dr
 import numpy as np
 
 from ...method import Method
+from ...patches.bases import BASES
 from ...problem.model import Problem
 from ...sampling.streams import Purpose, Seed
 from ...tracing.geometry import Geometry
@@ -19,6 +20,7 @@ from .lines import Lines
 from .packets import Packets
 from .rows import Rows
 from .shares import Shares
+from .stored_lines import StoredLines
 
 STORED, READ, SHADOW = 8, 4, 4  # cosine lines that give a first solution, those that read it, and shadow rays
 LINES = STORED + READ + SHADOW  # of each patch
@@ -32,7 +34,8 @@ class Pilot:
 
     Attributes:
         shares: the plan for lines.
-        variance: (2, n_patches) float64, of cosine lines and shadow rays, of the largest group of bands.
+        variance: (2, n_patches) float64, of cosine lines and shadow rays, of the largest group of bands; with a basis the sum of
+            those of its coefficients.
         irradiance: (n_patches, n_groups) float64, a rough solution, in shares of the largest emission.
     """
 
@@ -47,7 +50,7 @@ class Pilot:
         Args:
             method: its numbers and their randomisation.
         """
-        key = ("pilot", method.points, method.randomisation, Seed.of(seed).value)
+        key = ("pilot", method.points, method.randomisation, method.basis, Seed.of(seed).value)
         if key not in geometry.made:
             geometry.made[key] = Pilot.run(geometry, problem, chances, method, seed)
         return geometry.made[key]
@@ -64,10 +67,10 @@ class Pilot:
         types, groups = packets.types, lines.groups
         constant = lambda value: np.full(packets.count, value)  # noqa: E731
         shadow = lines.shadow(constant(0), constant(SHADOW), squares=True)
-        hits = dr.zeros(types.UInt32, STORED * packets.lanes)
-        lamplight, _ = lines.cosine(constant(0), constant(STORED), keep=hits)
+        kept, size = StoredLines(packets, count=STORED), BASES[method.basis].size
+        lamplight, _ = lines.cosine(constant(0), constant(STORED), keep=kept)
         rows = Rows(
-            packets, hits, dr.full(types.UInt32, STORED, packets.lanes), LaneScatter.of_lanes(packets, problem.groups.scatter)
+            packets, kept, dr.full(types.UInt32, STORED, packets.lanes), LaneScatter.of_lanes(packets, problem.groups.scatter)
         )
         direct = [
             total * (1 / SHADOW) + types.Float(met) * (1 / lines.unit / STORED)
@@ -78,21 +81,24 @@ class Pilot:
         level = max(float(np.mean(np.array(one))) for one in direct)
         reflected, _ = rows.solve(right, TOLERANCE * max(level, 1e-30))
         cosine, _ = lines.cosine(constant(STORED), constant(READ), read=reflected, squares=True)
-        variance = np.stack([_variance(packets, sums, number) for sums, number in ((cosine, READ), (shadow, SHADOW))])
+        variance = np.stack([_variance(packets, sums, number, size) for sums, number in ((cosine, READ), (shadow, SHADOW))])
         rho = problem.groups.scatter.albedo.max(axis=1)
         area = packets.patches.area
         importance = area * np.maximum(rho, BLACK * float(rho @ area) / float(area.sum())) ** 2 if rho.any() else area
         whole = [np.array(a + types.Float(b)) for a, b in zip(direct, rows.means(reflected), strict=True)]
         irradiance = np.stack([packets.patch_values(one)[0] for one in whole], axis=-1).astype(np.float64)
-        return Pilot(Shares.of(packets, variance, importance), variance, irradiance[:, :groups])
+        return Pilot(Shares.of(packets, variance, importance, size), variance, irradiance[:, :groups])
 
 
-def _variance(packets: Packets, sums: list, number: int) -> np.ndarray:
-    """Return the variance of one line of each patch, (n_patches,), the largest of the groups, from sums and sums of squares."""
+def _variance(packets: Packets, sums: list, number: int, size: int) -> np.ndarray:
+    """Return the variance of one line of each patch, (n_patches,), the largest of the groups, from sums and sums of squares.
+
+    A function has the mean square 1. So what one line says of its coefficient has about the mean square of what it finds.
+    """
     half = len(sums) // 2
     found = []
     for total, square in zip(sums[:half], sums[half:], strict=True):
         mean = packets.patch_values(np.array(total, np.float64))[0] / number
         of_squares = packets.patch_values(np.array(square, np.float64))[0] / number
-        found.append(np.maximum(of_squares - mean**2, 0) * number / (number - 1))
+        found.append(np.maximum(of_squares - mean**2, 0) * number / (number - 1) + (size - 1) * of_squares)
     return np.max(found, axis=0)

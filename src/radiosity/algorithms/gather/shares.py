@@ -10,6 +10,7 @@ from .packets import Packets
 STORED, FIRST_SHADOW = 16, 8  # cosine lines that are stored, and shadow rays that are fired with them, of a patch at most
 FIRST = 16  # of both kinds, in the mean over patches
 LEAST = (3, 1)  # of them, however small N is
+OF_FUNCTION = 6  # lines of a patch are stored for each function of a basis, if that is more than `STORED`
 POWER = 0.435  # errors of a patch fall about as N^-0.65 (variance N^-1.3): shares go as variance to 1 / (1 + 1.3)
 FLOOR = 1e-2  # of the mean variance: no patch has none
 GROWTH = 4  # the reflected radiosity that lines read is corrected each time that N has grown by this factor
@@ -58,23 +59,26 @@ class Shares:
     Attributes:
         packets: the lanes.
         weights: (2, count) float64, shares of cosine lines and of shadow rays of each packet, relative to each other.
+        size: how many functions the basis has, K. What m lines say of K coefficients has a relative variance of K / m, and along
+            half of the stored lines the solution must exist, too: so patches store 3 K lines at least.
     """
 
     packets: Packets
     weights: np.ndarray
+    size: int = 1
 
     @staticmethod
-    def of(packets: Packets, variance: np.ndarray, importance: np.ndarray) -> "Shares":
+    def of(packets: Packets, variance: np.ndarray, importance: np.ndarray, size: int = 1) -> "Shares":
         """Make it from variances of lines of patches, (2, n), and how much the squared error of a patch counts, (n,)."""
         means = packets.by_packet(variance * importance) / packets.sizes
         mean = float(means.mean(axis=1).sum())
         weights = (means + FLOOR * mean) ** POWER if mean > 0 else np.ones_like(means)
-        return Shares(packets, weights / float((weights * packets.sizes).sum()))
+        return Shares(packets, weights / float((weights * packets.sizes).sum()), size)
 
     @property
     def stored_quanta(self) -> int:
         """N up to which all cosine lines are stored, and none reads anything."""
-        return FIRST * self.packets.n
+        return self._limits[2] * self.packets.n
 
     def counts(self, quanta: int) -> np.ndarray:
         """Return how many cosine lines and shadow rays the patches of each packet have fired at N, (2, count) int64.
@@ -92,12 +96,18 @@ class Shares:
         """Return counts in proportion to the weights, within limits, that sum to N."""
         return np.clip(np.floor(factors.at(quanta) * self.weights + self._phases), least, most).astype(np.int64)
 
+    @property
+    def _limits(self) -> tuple[tuple[int, int], tuple[int, int], int]:
+        """The least and most lines of both kinds of a patch while lines are stored, and their mean number."""
+        if self.size == 1:
+            return LEAST, (STORED, FIRST_SHADOW), FIRST
+        most = max(STORED, OF_FUNCTION * self.size)
+        return (most // 2, most // 6), (most, most // 2), most
+
     @cached_property
     def _first(self) -> tuple[Factors, np.ndarray, np.ndarray]:
         """Factors and limits of the first lines, which are stored."""
-        least, most = (
-            np.broadcast_to(np.array(limit, float)[:, None], self.weights.shape) for limit in (LEAST, (STORED, FIRST_SHADOW))
-        )
+        least, most = (np.broadcast_to(np.array(limit, float)[:, None], self.weights.shape) for limit in self._limits[:2])
         return Factors.of(self.weights, self.packets.sizes, least, most), least, most
 
     @cached_property

@@ -12,7 +12,8 @@ from ..state import AbstractState, Sizes, array, number
 class GatherState(AbstractState):
     """Sums of what lines brought, in fixed point.
 
-    Where the lines of each patch hit is not kept: it follows from the seed, and is traced again.
+    Where the lines of each patch hit is not kept: it follows from the seed, and is traced again. With a basis of K functions,
+    groups in the layouts of arrays are columns: K for each group of bands (`moments`).
 
     Attributes:
         done: N up to which lines have been traced.

@@ -16,21 +16,21 @@ LOW = (1 << BITS) - 1
 
 
 class Sums:
-    """A sum for each lane and group of bands.
+    """A sum for each lane and column: a group of bands, or a coefficient of one.
 
     Attributes:
         kind: the type of the words, UInt64, or Int64 where sums may be negative.
-        low: of each group, words that lines are added to.
-        high: of each group, Int64, what was set apart, in units of 2^32; None where nothing was.
+        low: of each column, words that lines are added to.
+        high: of each column, Int64, what was set apart, in units of 2^32; None where nothing was.
     """
 
-    def __init__(self, packets: Packets, kind: Any, groups: int):
+    def __init__(self, packets: Packets, kind: Any, columns: int):
         self.packets, self.kind = packets, kind
-        self.low: list = [dr.zeros(kind, packets.lanes) for _ in range(groups)]
+        self.low: list = [dr.zeros(kind, packets.lanes) for _ in range(columns)]
         self.high: list | None = None
 
     def add(self, more: list) -> None:
-        """Add whole numbers of each group."""
+        """Add whole numbers of each column."""
         self.low = [total + self.kind(value) for total, value in zip(self.low, more, strict=True)]
 
     def set_apart(self) -> None:
@@ -42,7 +42,7 @@ class Sums:
         dr.eval(self.low, self.high)
 
     def about(self) -> list:
-        """Return the sums of each group, Float64. They do not depend on what was set apart."""
+        """Return the sums of each column, Float64. They do not depend on what was set apart."""
         types = self.packets.types
         wide = types.Float64
         if self.high is None:
@@ -57,7 +57,7 @@ class Sums:
         return other
 
     def read(self) -> tuple[np.ndarray, np.ndarray | None]:
-        """Return words, (replicates, n_patches, groups), and the words above them where there are any (see `Record.about`)."""
+        """Return words, (replicates, n_patches, columns), and the words above them where there are any (see `Record.about`)."""
         low = self._stacked(self.low)
         if self.high is None:
             return low, None
@@ -78,4 +78,4 @@ class Sums:
         return np.stack([self.packets.patch_values(frozen(one)) for one in columns], axis=-1)
 
     def _lanes(self, kind: Any, values: np.ndarray) -> list:
-        return [upload(kind, self.packets.lane_values(values[..., group])) for group in range(values.shape[-1])]
+        return [upload(kind, self.packets.lane_values(values[..., column])) for column in range(values.shape[-1])]

@@ -4,11 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...patches.bases import CONSTANT, Basis
 from ...problem.model import Problem
 from ...solution.books import by_difference, exact_sum
 from ..base import AbstractBiasedTally
 from .balance import factors
 from .lines import UNITS, most_read
+from .moments import units
 from .near import Near
 from .pilot import LINES
 from .state import GatherState
@@ -23,11 +25,13 @@ class GatherTally(AbstractBiasedTally[GatherState]):
 
     Attributes:
         near: light that few cosine lines find; None leaves it out.
+        basis: of the light on patches.
     """
 
     counts_hits = False
 
     near: Near | None = None
+    basis: Basis = CONSTANT
 
     def lines(self, problem: Problem, state: GatherState) -> int:
         return len(problem.patches) * LINES + (exact_sum(state.cosine) + exact_sum(state.rays)) * state.sizes.replicates
@@ -41,10 +45,8 @@ class GatherTally(AbstractBiasedTally[GatherState]):
 
         In each replicate all of it is multiplied so that the power of the scene balances, see `balance.factors`.
         """
-        rays, lines = (np.maximum(count, 1).astype(np.float64) for count in (state.rays, state.cosine))
-        brought = state.about("brought", (..., group)) * (problem.patches.area / (rays * UNITS))
-        met = state.about("met", (..., group)) * (problem.patches.area * most_read(problem) / (lines * UNITS))
-        unit = float(problem.unit[group])
+        brought, met = self._measured(problem, state, group, 0)
+        lines, unit = np.maximum(state.cosine, 1).astype(np.float64), float(problem.unit[group])
         if unit > 0 and problem.lights is None:  # what lights without area send past all patches is not known
             own = problem.groups.emission[:, group] * problem.patches.area / unit
             bias = self._bias_of_stored(problem, state, group)
@@ -52,17 +54,30 @@ class GatherTally(AbstractBiasedTally[GatherState]):
             brought, met = brought * factor, met * factor
         return brought, met, unit
 
+    def _measured(self, problem: Problem, state: GatherState, group: int, function: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return moments of what shadow rays bring, and of what cosine lines meet, (replicates, n_patches) each."""
+        column, unit, area = group * self.basis.size + function, UNITS * units(self.basis)[function], problem.patches.area
+        rays, lines = (np.maximum(count, 1).astype(np.float64) for count in (state.rays, state.cosine))
+        brought = state.about("brought", (..., column)) * (area / (rays * unit))
+        return brought, state.about("met", (..., column)) * (area * most_read(problem) / (lines * unit))
+
     def irradiance(self, problem: Problem, state: GatherState, group: int) -> tuple[np.ndarray, float]:
         brought, met, unit = self.parts(problem, state, group)
         return brought + met, unit
+
+    def moment(self, problem: Problem, state: GatherState, group: int, function: int) -> np.ndarray:
+        measured, of_mean = (sum(self._measured(problem, state, group, one)) for one in (function, 0))
+        balanced = self.irradiance(problem, state, group)[0]  # a polynomial keeps its shape
+        return measured * np.divide(balanced, of_mean, out=np.ones_like(balanced), where=of_mean > 0)
 
     def line(self, problem: Problem, state: GatherState, group: int) -> np.ndarray | float:
         """Return the power that one of a patch's lines brings where it hits the brightest lamp."""
         return problem.unit[group] * problem.patches.area / np.maximum(state.cosine, 1)
 
-    def _bias_of_stored(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
+    def _bias_of_stored(self, problem: Problem, state: GatherState, group: int, function: int = 0) -> np.ndarray:
         """Return the size of the bias of the solution along stored lines, (n_patches,), and of what iterations have left."""
-        first, left = (np.abs(x[..., group].mean(axis=0, dtype=np.float64)) for x in (state.first_bias, state.bias_left))
+        column = group * self.basis.size + function
+        first, left = (np.abs(x[..., column].mean(axis=0, dtype=np.float64)) for x in (state.first_bias, state.bias_left))
         of_all = state.stored / np.maximum(state.cosine, 1)  # that of the solution by all lines goes as 1 / m
         return (np.maximum(left, first * of_all) + state.unsolved.mean()) * problem.patches.area
 
@@ -78,6 +93,11 @@ class GatherTally(AbstractBiasedTally[GatherState]):
             return bias
         unseen = self.near.unseen(state.cosine.astype(np.float64) * state.sizes.replicates)[:, group]
         return np.hypot(bias, np.sqrt(unseen) * problem.patches.area)
+
+    def bias_of_moment(self, problem: Problem, state: GatherState, group: int, function: int) -> np.ndarray:
+        bias, largest = self._bias_of_stored(problem, state, group, function), self.basis.largest[function]
+        rest = self.bias(problem, state, group) - self._bias_of_stored(problem, state, group)  # of rounding, and unseen light
+        return bias + largest * rest
 
     def books(self, problem: Problem, state: GatherState, group: int) -> dict:
         values, unit = self.irradiance(problem, state, group)

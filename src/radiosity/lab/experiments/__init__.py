@@ -2,7 +2,17 @@
 
 from importlib import import_module
 
-EXPERIMENTS = {1: "order", 2: "lines", 3: "equation", 4: "numbers", 5: "beyond", 6: "baselines", 8: "quadrature", 9: "sorted"}
+EXPERIMENTS = {
+    1: "order",
+    2: "lines",
+    3: "equation",
+    4: "numbers",
+    5: "beyond",
+    6: "baselines",
+    7: "bases",
+    8: "quadrature",
+    9: "sorted",
+}
 
 
 def module(number: int):

@@ -11,6 +11,7 @@ from ...algorithms.gather.chances import Chances
 from ...algorithms.gather.lamps import Lamps
 from ...algorithms.gather.lines import UNITS, Lines
 from ...algorithms.gather.packets import Packets
+from ...algorithms.gather.stored_lines import StoredLines
 from ...method.presets import PRESETS
 from ...problem.model import Problem
 from ...sampling.streams import Purpose, Seed
@@ -88,11 +89,11 @@ class Gathering:
 
         packets = self.lines.packets
         few = np.full(packets.count, begin), np.full(packets.count, end - begin)
-        keep = dr.zeros(packets.types.UInt32, end * packets.lanes)
+        keep = StoredLines(packets, count=end)
         _, (_, lost) = self.lines.cosine(*few, keep=keep, bins=self.bins[0])
-        dr.eval(self.bins[0].table, keep)
+        dr.eval(self.bins[0].table, keep.hits)
         self.lost = self.lost + packets.patch_values(np.array(lost))[0]
-        hits = np.array(keep).reshape(end, packets.lanes)[begin:, packets.place]  # (lines, receivers) numbers
+        hits = np.array(keep.hits).reshape(end, packets.lanes)[begin:, packets.place]  # (lines, receivers) numbers
         line, receiver = np.nonzero(hits < packets.n)
         patches = self._patch_at[hits[line, receiver]]
         entries = coo_array((np.ones(len(patches)), (receiver, patches)), shape=self.seen.shape)
