@@ -20,7 +20,8 @@ class GatherLines:
     Attributes:
         kind: "shadow" or "cosine".
         done, counts: (packets,) lines of each patch so far, and now.
-        read: of each group, the reflected radiosity of each lane, float32; or its K coefficients in a basis. None for shadow rays.
+        read: of each group, the reflected radiosity of each lane, float32, or its K coefficients in a basis; None for shadow
+            rays.
     """
 
     kind: str
