@@ -67,11 +67,11 @@ def count_messages() -> None:
         counts[1] += 0 if hits is None else hits.nbytes
         await deliver(worker, address, hits, message)
 
-    post.deliver, vars(post)["messages"] = counted, counts
+    post.deliver, post.__dict__["messages"] = counted, counts
 
 
 def messages() -> list[int]:
-    return list(vars(post)["messages"])
+    return list(post.__dict__["messages"])
 
 
 def size(value) -> int:

@@ -3026,17 +3026,10 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/firing/own_rows.py",
-        "low = source.rho[rows].astype(np.uint64), fraction + phase[rows].astype(np.uint64)",
-        "low = source.rho[rows].astype(np.uint64), fraction + np.uint64(2**31)",
+        "after[rows] = fired - task.fired",
+        "after[rows] = goal - task.fired",
         ("test_cluster_one_replicate.py",),
-        "workers without barriers round the lines that rows must fire in another way",
-    ),
-    Mistake(
-        "cluster/wavefronts.py",
-        "*given, arrivals[rows], fired[rows],",
-        "*given, arrivals[rows] * 0, fired[rows],",
-        ("test_cluster_one_replicate.py",),
-        "workers without barriers forget the hits of earlier stages",
+        "workers without barriers say that they have fired what is still due",
     ),
     Mistake(
         "cluster/barrier.py",
