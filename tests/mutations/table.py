@@ -2075,8 +2075,8 @@ MISTAKES = (
     ),
     Mistake(
         "solution/intervals.py",
-        "few = solution.few[rows, None] | (mean == 0)",
-        "few = solution.few[:, None]",
+        "few = few_of(solution, rows)[:, None] | (mean == 0)",
+        "few = few_of(solution, rows)[:, None]",
         ("test_few_lines.py",),
         "a band that many lines brought nothing in is a certain zero",
     ),
