@@ -18,7 +18,7 @@ from radiosity.method.model import CHOICES
 from radiosity.method.options import METHOD
 
 DECIDING = ("equation", "lines", "order", "estimator", "absorption")  # which process runs a method; numbers have their own suite
-NUMBERS = ("numbers", "scrambling", "randomisation")  # likewise
+NUMBERS = ("numbers", "scrambling", "randomisation", "padding")  # likewise
 ON = {"switch": True, "flag": True, "share": 0.25, "whole": 2}
 OPTIONS = {  # the values of each other option that are not its default; not what changes the speed alone
     name: list(option.values)[1:] if option.kind == "choice" else [ON[option.kind]]

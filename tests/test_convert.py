@@ -341,3 +341,55 @@ def test_scenes_of_other_bands_are_refused(tmp_path):
     scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [[0.1, 0.2]], [[1, 2]], bands=("a", "b"))
     with pytest.raises(rd.OutputError, match="2 bands"):
         rd.save_scene(scene, tmp_path / "x.toml")
+
+
+@pytest.mark.parametrize("suffix", [".glb", ".obj", ".ply", ".stl", ".rad", ".mgf", ".hbjson"])
+def test_what_lines_pass_does_not_become_a_wall(suffix, tmp_path):
+    """A surface that lines pass and that does not shine is left out, one that shines becomes an opaque lamp; both are told."""
+    corners = [corner for z in range(3) for corner in ([0, 0, z], [1, 0, z], [0, 1, z])]
+    faces = np.arange(9).reshape(3, 3)
+    values = {"surface": [0, 1, 2], "names": ["air", "lamp", "wall"], "back": [rd.Back.OPEN, rd.Back.OPEN, rd.Back.RADIATES]}
+    scene = rd.Scene.from_arrays(corners, faces, [[0], [0], [0.5]], [[0], [1], [0]], **values)
+    read, told = again(scene, tmp_path / f"x{suffix}")
+    text = "\n".join(told)
+    assert "lines pass on both sides are left out: 'air'" in text
+    assert ("lamps that lines pass absorb what comes to them: 'lamp'" in text) == (suffix != ".rad")
+    assert read.area.sum() == pytest.approx(1.0)
+    with pytest.raises(rd.OutputError, match="nothing would be in it"):
+        rd.save_scene(scene.take(np.array([0])), tmp_path / f"y{suffix}")
+    read, told = again(scene, tmp_path / "z.toml")
+    assert not told
+    assert read.back.tolist() == scene.back.tolist()
+
+
+@pytest.mark.parametrize(("suffix", "says"), [(".glb", " -> surface 0"), (".ply", "loses its name"), (".stl", "loses its name")])
+def test_a_name_that_is_lost_is_told(suffix, says, tmp_path):
+    name = "" if suffix == ".glb" else "wall"
+    scene = rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.25, 0.0, two_sided=True, names=[name])
+    read, told = again(scene, tmp_path / f"x{suffix}")
+    assert any(says in text for text in told)
+    assert read.names == (("surface 0",) if suffix == ".glb" else ("x",))
+    kept, told = again(scene, tmp_path / "x.hbjson")
+    assert kept.names == (name,)
+    assert not told
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".glb", ".ply"])
+@pytest.mark.parametrize("far", [0.0, 1e5])
+def test_areas_that_single_precision_changes_are_told(suffix, far, tmp_path):
+    """A strip of 1 cm and of 1 m: coordinates of 32 bits lie 8 mm apart at 100 km; a glTF file has an origin for the surface."""
+    corners = np.array([[0, 0, 0], [1.0, 0, 0], [0, 0.01, 0]]) + far
+    scene = rd.Scene.from_arrays(corners, [[0, 1, 2]], 0.5, 0.0, two_sided=True, names=["strip"])
+    read, told = again(scene, tmp_path / f"x{suffix}")
+    changed = any("coordinates of 32 bits change areas" in text and "'strip'" in text for text in told)
+    assert changed == (suffix == ".stl" and far > 0)
+    assert (abs(read.area.sum() / scene.area.sum() - 1) > 1e-3) == changed
+
+
+def test_backs_of_other_colours_are_told_where_faces_have_one(tmp_path):
+    scene = rd.Scene.from_arrays(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 0.25, 0.0, two_sided=True, back_reflectance=0.75, names=["x"]
+    )
+    read, told = again(scene, tmp_path / "x.ply")
+    assert read.reflectance_paint.color[0, 0] * read.reflectance[0] == pytest.approx(np.full(3, 0.25))
+    assert any("backs that reflect otherwise get the reflectance of their fronts: 'x'" in text for text in told)

@@ -112,8 +112,8 @@ def test_lines_that_are_shared_out_but_not_weighted_are_rejected(lit, monkeypatc
     """Each line carries a quantum, whoever fires it: the same test sees it."""
     send = Exchange.send
 
-    def unweighted(self, power, expected):
-        return send(self, power * self.importance * (self.unit / LINE), expected)
+    def unweighted(self, power, expected, *more):
+        return send(self, power * self.importance * (self.unit / LINE), expected, *more)
 
     monkeypatch.setattr(Exchange, "send", unweighted)
     largest, bound = largest_t(lit, monkeypatch, np.array([1.0, 1.1, 0.9, 1.0, 0.8, 1.2]), 160)

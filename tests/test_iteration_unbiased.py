@@ -92,9 +92,9 @@ def test_missing_probabilities_are_rejected(room, monkeypatch):
     """A patch that fires a line with probability c sends its power, not its power over c."""
     send, counts, true = Exchange.send, Exchange.counts, {}
 
-    def wrong(self, power, expected):
+    def wrong(self, power, expected, *more):
         true["expected"] = expected
-        return send(self, power, dr.maximum(expected, LINE))
+        return send(self, power, dr.maximum(expected, LINE), *more)
 
     monkeypatch.setattr(Exchange, "send", wrong)
     monkeypatch.setattr(Exchange, "counts", lambda self, expected: counts(self, true["expected"]))

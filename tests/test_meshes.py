@@ -9,7 +9,7 @@ import radiosity as rd
 from radiosity.cli.app import run as command
 from radiosity.patches.cells_as_faces import cells_as_faces, turned
 from radiosity.patches.contact import cut_at_contacts
-from radiosity.patches.contact.convex import area, cut, parts, width
+from radiosity.patches.contact.convex import cut, parts, width
 from radiosity.patches.halves import Halves
 from radiosity.patches.model import Patches
 from radiosity.patches.variation import Variation
@@ -73,6 +73,12 @@ def test_no_light_leaks_under_a_block():
     assert dark[1] == 0
 
 
+def area(polygon: np.ndarray) -> float:
+    """The area of a counterclockwise polygon, (k, 2)."""
+    after = np.roll(polygon, -1, axis=0)
+    return (polygon[:, 0] @ after[:, 1] - polygon[:, 1] @ after[:, 0]) / 2
+
+
 def test_polygons_are_cut_and_put_together_again(random):
     outline = np.array([[0.0, 0], [3, 0], [3, 2], [0, 2]])
     polygons = [outline]
@@ -86,7 +92,7 @@ def test_polygons_are_cut_and_put_together_again(random):
     assert min(map(area, pieces)) > 0
     assert {len(piece) for piece in pieces} <= {3, 4}
     assert [len(part) for part in parts(outline)] == [4]
-    assert width(np.array([[0, 0], [1, 0], [0.5, 0.75**0.5]])) == pytest.approx(0.75**0.5)
+    assert width([0, 0], [1, 0], [0.5, 0.75**0.5]) == pytest.approx(0.75**0.5)
 
 
 @pytest.mark.parametrize("corners", [4, 3])

@@ -7,7 +7,7 @@ import radiosity as rd
 from radiosity.cli.app import run as command
 from radiosity.diagnostics.near_lamps import near_lamps
 from radiosity.patches.contact import cut_at_contacts
-from radiosity.patches.contact.lines import Boxes, contact_lines
+from radiosity.patches.contact.lines import Boxes, ContactLines, contact_lines, faces_beside
 from radiosity.scene.box_pairs import box_pairs
 
 GAP, RHO = 1e-3, 0.5
@@ -60,6 +60,13 @@ def test_a_mesh_cut_along_a_lamp_holds_its_light(turn):
     assert exact < 3e-3
 
 
+def lines_of_first(scene: rd.Scene, size: float) -> ContactLines:
+    """The contact lines of the first face, with patches of a size."""
+    boxes = Boxes.of(scene)
+    (others,) = faces_beside(boxes, np.array([0]), np.array([size]))
+    return contact_lines(scene, boxes, 0, others, size)
+
+
 def test_lines_are_those_of_outlines_that_are_near():
     """The diagonal of a lamp of two triangles is none. Farther lamps and sides that do not radiate have none."""
     for scene, expected in (
@@ -69,12 +76,12 @@ def test_lines_are_those_of_outlines_that_are_near():
         (ceiling_and_lamp(gap=-GAP), 4),
         (ceiling_and_lamp(gap=-GAP, two_sided=False), 0),
     ):
-        found = contact_lines(scene, Boxes.of(scene), 0, size=0.5)
+        found = lines_of_first(scene, 0.5)
         assert len(found.ends) == expected
         assert found.of_lamps.all()
     dark = ceiling_and_lamp(two_sided=False)  # the lamp shines down; its upper side hides the ceiling as a mat hides a floor
-    assert not contact_lines(dark, Boxes.of(dark), 0, size=0.5).of_lamps.any()
-    assert [len(contact_lines(dark, Boxes.of(dark), 0, size).ends) for size in (0.5, 0.04)] == [4, 0]
+    assert not lines_of_first(dark, 0.5).of_lamps.any()
+    assert [len(lines_of_first(dark, size).ends) for size in (0.5, 0.04)] == [4, 0]
 
 
 def test_check_tells_of_lamps_whose_light_patches_spread():

@@ -6,6 +6,7 @@ them. glTF is y-up: a root node turns scenes that are z-up.
 
 import base64
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from ..solution.whole import whole_file
 from .gltf_lights import PUNCTUAL, lights_of, matrix, turn
 from .gltf_materials import Materials
 from .pieces import Piece, called, painted, pieces, tell_of_rest, triangles
+from .rounding import tell_of_rounding
 from .told import Told
 
 HOLDS = frozenset({"names", "reflectance", "emission", "backs", "panes", "diffusing panes", "textures", "lights", "cameras"})
@@ -32,8 +34,7 @@ def write(scene: Scene, path: Path, told: Told) -> None:
     """
     holds = HOLDS | ({"units"} if scene.lights.luminaires or scene.lights.suns else set())
     tell_of_rest(scene, told, holds)
-    through = (scene.back == Back.PASSES) | (scene.back == Back.OPEN)
-    told.add("backs that let lines pass become backs that absorb", called(scene, through))
+    told.add("backs that let lines pass become backs that absorb", called(scene, scene.back == Back.PASSES))
     contents, blocks, _ = document(scene, told, whole=True)
     if path.suffix.lower() == ".glb":
         save(path, contents, blocks)
@@ -63,12 +64,16 @@ def document(scene: Scene, told: Told, *, whole: bool) -> tuple[dict, list, list
     """
     buffer = Buffer()
     materials = Materials(scene, buffer, told)
-    parts = pieces(scene, told)
+    parts = _named(pieces(scene, told), told)
     nodes, meshes = [], []
     for name in dict.fromkeys(piece.name for piece in parts):
         own = [piece for piece in parts if piece.name == name]
         used = np.unique(np.concatenate([piece.corners[piece.corners >= 0] for piece in own]))
         origin = _origin(scene.vertices[used])
+        for piece in own:
+            halves = triangles(piece.corners)
+            corners = scene.vertices[np.take_along_axis(piece.corners[halves[:, 0]], halves[:, 1:], axis=1)] - origin
+            tell_of_rounding(told, [name], np.zeros(len(halves), np.int64), corners)
         primitives = [one for piece in own for one in _primitives(scene, piece, origin, buffer, materials, told)]
         move = {"translation": origin.tolist()} if origin.any() else {}
         nodes.append({"name": name, "mesh": len(meshes), **move})
@@ -94,6 +99,19 @@ def document(scene: Scene, told: Told, *, whole: bool) -> tuple[dict, list, list
     if used_extensions:
         contents["extensionsUsed"] = sorted(used_extensions)
     return contents, buffer.blocks, [piece.name for piece in parts]
+
+
+def _named(parts: list[Piece], told: Told) -> list[Piece]:
+    """Return pieces with names that are not empty: nodes without one get it from readers."""
+    taken, result = {piece.name for piece in parts}, []
+    for piece in parts:
+        name = piece.name or f"surface {piece.surface}"
+        while not piece.name and name in taken:
+            name += "'"
+        if name != piece.name:
+            told.add("names that the format cannot hold are changed", [f"{piece.name} -> {name}"])
+        result.append(replace(piece, name=name))
+    return result
 
 
 def _origin(points: np.ndarray) -> np.ndarray:

@@ -59,8 +59,6 @@ class _Side:
 def _sides(piece: Piece, gap: float, told: Told) -> Iterator[_Side]:
     lit, radiates = piece.emission.any(), piece.back == Back.RADIATES
     differs = (piece.reflectance != piece.back_reflectance).any() or (piece.emission != piece.back_emission).any()
-    if piece.back == Back.OPEN:
-        told.add("lamps that lines pass absorb those that come to their fronts", [piece.name])
     if piece.back in (Back.PASSES, Back.OPEN):
         yield _Side(piece, True)
     elif radiates and not differs:

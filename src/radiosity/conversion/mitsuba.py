@@ -10,7 +10,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from ..errors import printable
-from ..scene.model import Back, Scene
+from ..scene.model import Scene
 from ..solution.whole import whole_file
 from .mitsuba_bsdf import bsdf
 from .mitsuba_lights import lights_of
@@ -23,7 +23,7 @@ from .sheets import Sheet, sheets
 from .told import Told
 from .toml import geometry_of
 
-HOLDS = frozenset({"names", "reflectance", "emission", "backs", "panes", "diffusing panes", "lights", "cameras"})
+HOLDS = frozenset({"names", "reflectance", "emission", "backs", "panes", "diffusing panes", "lights", "cameras", "open"})
 MADE_UP = ("_arg_", "_unnamed", "__root__")  # beginnings of names that Mitsuba gives
 
 
@@ -36,7 +36,7 @@ def write(scene: Scene, path: Path, told: Told) -> None:
     tell_of_rest(scene, told, HOLDS)
     if scene.photometric:
         told.add("lights in lm read back as lights in W", [light.name for light in scene.lights.all])
-    parts = [one for one in sheets(plain(scene, of_surfaces=True), told) if _is_there(one, told)]
+    parts = sheets(plain(scene, of_surfaces=True), told)
     names = unique_names([one.piece for one in parts], told, name_of, mark=" ")
     geometry = geometry_of(path, ".serialized")
     with whole_file(geometry) as file:
@@ -56,14 +56,6 @@ def name_of(name: str) -> str:
     """Return a name as Mitsuba takes it: without points, which part its paths, and without the sign of parameters."""
     name = printable(" ".join(name.split())).replace(".", "_").replace("$", "_")
     return "" if name.startswith(MADE_UP) else name
-
-
-def _is_there(one: Sheet, told: Told) -> bool:
-    """Return whether light meets a sheet: what lines pass on both sides is there only as a lamp."""
-    there = one.piece.back != Back.OPEN or one.piece.emission.any()
-    if not there:
-        told.add("surfaces that lines pass on both sides are left out", [one.piece.name])
-    return bool(there)
 
 
 def _shape(one: Sheet, name: str, file: str, index: int, told: Told) -> Iterator[str]:

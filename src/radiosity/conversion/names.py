@@ -1,5 +1,6 @@
 """Names of pieces that a format can hold: each is another one, and what changes is told."""
 
+import re
 import unicodedata
 from collections.abc import Callable
 
@@ -8,6 +9,7 @@ from .pieces import Piece
 from .told import Told
 
 LONGEST = 100  # bytes of a word: Radiance's programs take 127
+IDENTIFIER = 90  # characters of an identifier of honeybee before its number: it takes 100
 RESERVED = ("void", "inherit", "alias", "=")
 
 
@@ -47,3 +49,20 @@ def plain_word(name: str) -> str:
     plain = "".join(c for c in unicodedata.normalize("NFKD", word(name)) if not unicodedata.combining(c))
     plain = "".join(c if c.isascii() else "_" for c in plain)
     return plain if plain.lstrip("_")[:1].isalpha() or not plain else f"s{plain}"
+
+
+class Identifiers:
+    """Identifiers that honeybee takes, each given out once."""
+
+    def __init__(self):
+        self._used: dict[str, int] = {}
+
+    def of(self, name: str) -> str:
+        """Return one for a name; some of its characters become ``_``, and a number follows where it was given out before."""
+        base = re.sub(r"[^.A-Za-z0-9_-]", "_", plain_word(name[:IDENTIFIER]))[:IDENTIFIER] or "surface"
+        while True:
+            number = self._used[base] = self._used.get(base, 0) + 1
+            found = base if number == 1 else f"{base}_{number}"
+            if number == 1 or found not in self._used:
+                self._used.setdefault(found, 1)
+                return found

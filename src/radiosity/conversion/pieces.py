@@ -138,16 +138,18 @@ def tell_of_rest(scene: Scene, told: Told, holds: frozenset[str]) -> None:
     """Note what of a scene a format does not hold.
 
     Args:
-        holds: of "backs", "cameras", "diffusing panes", "emission", "glass", "heat", "lights", "names", "openings", "panes",
-            "patch sizes", "reflectance", "sensors", "textures" and "units" what it holds.
+        holds: of "backs", "cameras", "diffusing panes", "emission", "glass", "heat", "lights", "names", "open", "openings",
+            "panes", "patch sizes", "reflectance", "sensors", "textures" and "units" what it holds.
     """
     every, lights = np.ones(scene.n_faces, bool), scene.lights
     radiates, lit = scene.back == Back.RADIATES, glowing(scene)
     paints = [paint.painted for paint in (scene.reflectance_paint, scene.emission_paint) if paint is not None]
     openings = [] if lights.openings is None else [f"opening {i}" for i in range(len(lights.openings))]
-    single = (scene.emission > 0).any(axis=1) & (~radiates | (scene.back_emission != scene.emission).any(axis=1))
+    shines = (scene.emission > 0).any(axis=1)
+    single = shines & (~radiates | (scene.back_emission != scene.emission).any(axis=1))
     rest = (
         ("names", "surfaces become one, without their names", scene.names if len(scene.names) > 1 else ()),
+        ("names", "the surface loses its name", scene.names if len(scene.names) == 1 else ()),
         ("reflectance", "reflectances are left out", called(scene, every)),
         ("emission", "emission is left out", lit),
         ("units", "emission in lm/m² reads back as W/m²", lit if scene.photometric else ()),
@@ -157,6 +159,7 @@ def tell_of_rest(scene: Scene, told: Told, holds: frozenset[str]) -> None:
             "lamps that shine to one side read back as shining alike to both",
             called(scene, single) if "emission" in holds else (),
         ),
+        ("open", "lamps that lines pass absorb what comes to them", called(scene, (scene.back == Back.OPEN) & shines)),
         ("panes", "panes become opaque", called(scene, scene.panes)),
         ("diffusing panes", "diffusing panes become opaque", called(scene, scene.diffusers)),
         (

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..scene.model import Scene
+from ..scene.model import Back, Scene
 from ..solution.whole import whole_file
-from .pieces import tell_of_rest
+from .pieces import called, tell_of_rest
 from .plain import plain
 from .told import Told
 
@@ -20,6 +20,8 @@ def write(scene: Scene, path: Path, told: Told) -> None:
         OutputError: it cannot be written.
     """
     tell_of_rest(scene, told, frozenset({"reflectance"}))
+    other = (scene.back == Back.RADIATES) & (scene.back_reflectance != scene.reflectance).any(axis=1)
+    told.add("backs that reflect otherwise get the reflectance of their fronts", called(scene, other))
     flat = plain(scene, of_surfaces=False)
     colours = np.broadcast_to(flat.reflectance, (flat.n_faces, 3)) if flat.n_bands == 1 else flat.reflectance
     head = [

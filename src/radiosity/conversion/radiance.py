@@ -19,7 +19,7 @@ from .sheets import Sheet, sheets
 from .told import Told
 
 LUMENS = 179.0  # a watt, as Radiance's programs have it
-HOLDS = frozenset({"names", "reflectance", "emission", "units", "backs", "panes", "diffusing panes", "glass", "lights"})
+HOLDS = frozenset({"names", "reflectance", "emission", "units", "backs", "panes", "diffusing panes", "glass", "lights", "open"})
 
 
 def write(scene: Scene, path: Path, told: Told) -> None:

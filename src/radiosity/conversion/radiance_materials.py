@@ -24,7 +24,7 @@ def material(name: str, piece: Piece, watts: float, told: Told) -> str:
         watts: what emission is multiplied with.
     """
     if not piece.emission.any():
-        if piece.back in (Back.ABSORBS, Back.PASSES, Back.OPEN):
+        if piece.back in (Back.ABSORBS, Back.PASSES):
             told.add("one-sided surfaces read back as two-sided", [piece.name])
             return _statement("plastic", name, [*_three(piece.reflectance), 0, 0])
         return _reflecting(name, piece, piece.back_reflectance)

@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import OutputError
 from ..image.output import check_writable
 from ..scene.model import Scene
+from .air import without_air
 from .obj import library_of
 from .told import Told
 from .toml import geometry_of
@@ -25,6 +26,7 @@ SUFFIXES = {
     ".rad": "radiance",
     ".mgf": "mgf",
     ".xml": "mitsuba",
+    ".hbjson": "honeybee",
 }
 KNOWN_BANDS = (("grey",), ("red", "green", "blue"))
 
@@ -42,15 +44,16 @@ def files_of(path) -> tuple[Path, ...]:
 def save_scene(scene: Scene, path) -> None:
     """Write a scene to a file, whose suffix says the format.
 
-    Known are .toml and .xml (with the geometry beside them), .glb, .gltf, .obj (with an .mtl beside it), .ply, .stl, .rad, .mgf.
-    A warning for each kind of thing that the format cannot hold names what it is. A .toml holds most.
+    Known are .toml and .xml (with the geometry beside them), .glb, .gltf, .obj (with an .mtl beside it), .ply, .stl, .rad, .mgf
+    and .hbjson (honeybee). A warning for each kind of thing that the format cannot hold names what it is. A .toml holds most.
 
     Args:
         scene: to write.
         path: of the file.
 
     Raises:
-        OutputError: another suffix, a file that cannot be written, or a scene of other bands than files hold.
+        OutputError: another suffix, a file that cannot be written, or a scene of other bands than files hold, or
+            without a surface that the format holds.
 
     Example:
         >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -70,6 +73,7 @@ def save_scene(scene: Scene, path) -> None:
     told = Told()
     if scene.bands not in KNOWN_BANDS:
         told.add("bands read back as grey, or as red, green and blue", scene.bands)
+    scene = without_air(scene, path, told)
     with np.errstate(all="ignore"):
         import_module(f".{SUFFIXES[path.suffix.lower()]}", __package__).write(scene, path, told)
     told.report(path)

@@ -7,6 +7,7 @@ import numpy as np
 from ..scene.model import Scene, unit_normals
 from ..solution.whole import whole_file
 from .pieces import tell_of_rest, triangles
+from .rounding import tell_of_rounding
 from .told import Told
 
 HEAD = 80  # bytes
@@ -22,6 +23,7 @@ def write(scene: Scene, path: Path, told: Told) -> None:
     tell_of_rest(scene, told, frozenset())
     halves = triangles(scene.faces)
     points = scene.vertices[np.take_along_axis(scene.faces[halves[:, 0]], halves[:, 1:], axis=1)]
+    tell_of_rounding(told, scene.names, scene.surface[halves[:, 0]], points)
     rows = np.zeros(len(points), ROW)
     rows["corners"] = points
     rows["normal"] = unit_normals(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])

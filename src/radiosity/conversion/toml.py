@@ -20,7 +20,7 @@ from .pieces import Piece, pieces, tell_of_rest
 from .told import Told
 from .toml_heat import of_surface
 
-HOLDS = frozenset({"names", "reflectance", "emission", "units", "backs", "panes", "textures", "lights", "openings"}) | {
+HOLDS = frozenset({"names", "reflectance", "emission", "units", "backs", "panes", "textures", "lights", "openings", "open"}) | {
     "cameras",
     "sensors",
     "heat",

@@ -97,6 +97,19 @@ def _global(method) -> str:
     return "matrix" if method.order == "matrix" else "pooling"
 
 
+def _refuse_padding(method, found: str) -> None:
+    if found not in ("walks", "gathering") or method.order == "sorted":
+        raise MethodError(
+            f"padding '{method.padding}' is for walks that take numbers on each segment: take --absorption drawn or fractional, "
+            f"or --equation continuous; the lines of {method.equation}/{method.lines}/{method.order} take five numbers or fewer"
+        )
+    if method.points != "halton":
+        raise MethodError(
+            f"padding '{method.padding}' goes on with the next dimensions of the Halton sequence: take --numbers halton without "
+            f"scrambling, not {method.points}"
+        )
+
+
 def _refuse_options(method, found: str) -> None:
     if method.estimator != "collision" and found not in ("walks", "gathering", "iteration"):
         raise MethodError(
@@ -110,6 +123,8 @@ def _refuse_options(method, found: str) -> None:
             f"absorption '{method.absorption}': nothing is absorbed on the way in {method.lines}/{method.order}, "
             "power is weighed instead; leave it out"
         )
+    if method.padding != "shuffled":
+        _refuse_padding(method, found)
     if method.first_shot and found not in ("multipath", "pooling"):
         raise MethodError("a first shot is for global lines of order multipath or regular: other methods begin at the lights")
     if method.control_variate and found != "iteration":
@@ -118,6 +133,13 @@ def _refuse_options(method, found: str) -> None:
         raise MethodError("only regular iterations can begin with incremental ones (warm_up)")
     if method.warm_up and found != "iteration":
         raise MethodError("iterations by global lines have a warm-up of their own; leave warm_up out, or take --lines local")
+    if method.refine_lines and found != "iteration":
+        raise MethodError("refine_lines is for what iterations of local lines send; take --order incremental or regular")
+    if method.refine_lines and method.basis != "constant":
+        raise MethodError(
+            f"refine_lines brings light to elements whose patches share it evenly, and basis '{method.basis}' lets it vary on "
+            "each patch; leave one out"
+        )
     if method.reconstruction == "local-linear" and (
         found != "walks" or method.equation != "continuous" or method.estimator == "gathering"
     ):

@@ -32,6 +32,7 @@ class Method:
     numbers: str = "halton"
     scrambling: str | None = field(default=None, kw_only=True)  # becomes "none" when it is made with None
     randomisation: str = "by-patch"
+    padding: str = field(default="shuffled", kw_only=True)
     estimator: str = "collision"
     absorption: str = "auto"
     first_shot: float = 0.0
@@ -39,6 +40,7 @@ class Method:
     warm_up: bool = False
     reconstruction: str = "patches"
     basis: str = "constant"
+    refine_lines: float = 0.0
     coherent: bool = False
 
     def __post_init__(self):
@@ -57,8 +59,8 @@ class Method:
 
     @property
     def needs_powers_of_two(self) -> bool:
-        """False: patches of any cut will do."""
-        return False
+        """True where patches must be the leaves of a hierarchy."""
+        return self.refine_lines > 0
 
     @property
     def machine(self) -> str:
@@ -77,10 +79,12 @@ class Method:
 
     def __str__(self) -> str:
         extras = [self.randomisation] if self.randomisation != "by-patch" else []
+        extras += [self.padding] if self.padding != "shuffled" else []
         extras += [] if self.estimator == "collision" else [self.estimator]
         extras += [] if self.absorption == "auto" else [self.absorption]
         extras += [f"first-shot={self.first_shot:g}"] if self.first_shot else []
         extras += [self.reconstruction] if self.reconstruction != "patches" else []
         extras += [self.basis] if self.basis != "constant" else []
+        extras += [f"refine-lines={self.refine_lines:g}"] if self.refine_lines else []
         extras += [name.replace("_", "-") for name in ("control_variate", "warm_up", "coherent") if getattr(self, name)]
         return "/".join([self.equation, self.lines, self.order, self.points, *extras])

@@ -24,7 +24,8 @@ class Option:
             command line turns it off; "whole" is a whole number, a "share" a number between 0 and 1.
         values: the values of a choice, each with its meaning.
         most: the largest whole number; the smallest is 1.
-        zero: whether the share may be 0; it is then a share of all lines.
+        zero: whether the share may be 0.
+        share_of: what it is a share of, where it may be 0.
         optional: whether the value may be None.
         schemes: schemes of `Baseline` that use the option.
         tuning: whether it changes only the speed; it is then shown with the options of the run.
@@ -37,6 +38,7 @@ class Option:
     values: Mapping[str, str] = field(default_factory=dict)
     most: int = 0
     zero: bool = False
+    share_of: str = "all lines"
     optional: bool = False
     schemes: tuple[str, ...] = ()
     tuning: bool = False
@@ -57,7 +59,7 @@ class Option:
         if self.kind == "whole" and not (_is(int, value) and 1 <= value <= self.most):
             raise MethodError(f"{self.name} is {value!r}; it must be a whole number from 1 to {self.most}")
         if self.kind == "share" and not (_is(int | float, value) and (0 < value < 1 or (self.zero and value == 0))):
-            taken = "it is the share of all lines, a number at least 0" if self.zero else "it must be a number above 0"
+            taken = f"it is the share of {self.share_of}, a number at least 0" if self.zero else "it must be a number above 0"
             raise MethodError(f"{self.name} is {value!r}; {taken} and below 1")
 
     @property

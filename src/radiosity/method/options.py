@@ -10,6 +10,7 @@ from .estimator import ABSORPTIONS, ESTIMATORS
 from .lines import LINES
 from .option import Option, table
 from .order import ORDERS
+from .padding import PADDINGS
 from .randomisation import RANDOMISATIONS
 from .reconstruction import RECONSTRUCTIONS
 from .schemes import FACTORS, REFINEMENTS, SCHEMES, SOLVERS
@@ -47,6 +48,12 @@ METHOD = table(
         "fractional absorption) share one in any case.",
     ),
     Option(
+        "padding",
+        "Walks that draw numbers at each hit: where later segments have theirs from: shuffled or prime-bases (halton).",
+        values=PADDINGS,
+        details="See docs/numbers.md.",
+    ),
+    Option(
         "estimator",
         "What is counted of a walk or line: collision, absorption, survival, gathering, bidirectional.",
         values=ESTIMATORS,
@@ -82,6 +89,15 @@ METHOD = table(
         "How light varies over a patch: constant, linear or quadratic. Of iterations, gathers and particles.",
         values=BASES,
         details="See docs/bases.md.",
+    ),
+    Option(
+        "refine_lines",
+        "Iterations: lines bring light to elements of many patches, as large as may err by this share of what the scene emits, "
+        "such as 1e-5.",
+        kind="share",
+        zero=True,
+        share_of="what the scene emits",
+        details="0: to patches. See docs/iterations.md.",
     ),
     Option(
         "coherent",

@@ -32,7 +32,7 @@ def chosen_budget(method: Baseline, **asked) -> Budget:
 def cut_for(method: "Method | Baseline | Auto") -> dict:
     """Return arguments of `subdivide` for a scene that is not cut yet."""
     if not isinstance(method, Baseline):
-        return {}
+        return {"powers_of_two": True} if method.needs_powers_of_two else {}
     return {"about": PATCHES, "powers_of_two": method.needs_powers_of_two}
 
 

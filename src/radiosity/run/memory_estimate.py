@@ -23,6 +23,7 @@ FACE = 800  # bytes a face, for the BVH and the hit records
 REACHED = 100  # bytes a cell within a kernel, while planes are fitted; 76 to 100 were measured, and 12 are kept
 SMOOTHED, SMOOTHED_ONE = 650, 80  # bytes a patch, and a patch in a replicate, while values are smoothed; 8 of a group are kept
 TURNS = 12  # bytes a patch in a replicate, and 8 more in each group of bands: what steps in turns keep apart
+ELEMENTS, ELEMENT = 250, 16  # bytes a patch, and a patch in a replicate (27 more a group), where lines refine pairs of elements
 SKY, THROUGH = 165, 90  # bytes an entry of a sky's table, and of tables of its lines through openings, at their peak
 SORTED = 150e6  # bytes of particles that are sorted together, whose keys are copied
 STORED = 12  # bytes a line of a gather that is stored with where it begins and ends, and FITTED bytes for pairs of functions
@@ -76,6 +77,8 @@ def memory_needed(method: Method, patches: Patches, groups: int, replicates: int
         total += n * replicates * (TURNS + 8 * groups)
     if method.machine == "gather" and size > 1:
         total += n * replicates * (STORED * max(16, OF_FUNCTION * size) + FITTED * (size - 1) * (size + 2) // 2)
+    if method.refine_lines:
+        total += n * (ELEMENTS + replicates * (ELEMENT + 27 * groups))
     if method.reconstruction == "local-linear":
         first = replicates * first_stage(replicates, n)
         total += REACHED * _cells_reached(patches, min(first, rays or first))

@@ -2,7 +2,7 @@
 
 from ..errors import MethodError
 
-OLDER = {"randomisation": "shared", "basis": "constant"}  # of solutions written before there was a choice
+OLDER = {"randomisation": "shared", "basis": "constant", "padding": "shuffled"}  # of solutions written before there was a choice
 # like devices, like bits; a line set has a geometry and sources in place of a scene: its light does not matter
 SAME = (
     "scene",

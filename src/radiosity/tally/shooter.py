@@ -49,6 +49,19 @@ class Ends:
     groups: int | None = None
 
 
+@dataclass(frozen=True)
+class Receivers:
+    """Slots that receive what lines bring, where these are not those that lines hit.
+
+    Attributes:
+        size: the number of slots, those of the tracer first.
+        of: called in kernels with the patch number that sends and the slot that a line hit: the slot that receives.
+    """
+
+    size: int
+    of: Callable[[Any, Any], Any]
+
+
 class Shooter:
     """Counters of lines, and the kernel that fires them.
 
@@ -57,8 +70,10 @@ class Shooter:
         hits: the hit counts.
         fired: UInt32 (total,), lines of each patch in that sequence, modulo 2^32; ``upper`` has the upper words.
         basis: of the light on patches.
-        received: (slots * n_columns,) Int64, power of the last shot. A slot has a column for each group of bands, or with a basis
-            of K functions K columns for each: the power times each function, summed.
+        received: (slots * n_columns,) Int64, power of the last shot; of all receivers where it had them. A slot has a column for
+            each group of bands, or with a basis of K functions K columns for each: the power times each function, summed.
+        moved: (slots * n_columns,) Int64, what of the last shot with receivers other slots received than those that lines hit, by
+            the slots that they hit.
     """
 
     def __init__(
@@ -75,6 +90,7 @@ class Shooter:
         self.types, self.total, self.slots, self.groups = tracer.types, tracer.total, tracer.slots, n_groups
         self.hits, self.basis = HitCounts(tracer), basis
         self.received = dr.opaque(self.types.Int64, 0, self.slots * n_groups * basis.size) if n_groups else None
+        self.moved: Any = None
         self.sequence, self.unseen = 0, 0  # unseen: lines since counters were looked at
         self._tracers = [tracer, *(tracer.of_stream(Purpose.SEQUENCE, more) for more in range(1, sequences))]
         self._fired = [dr.opaque(self.types.UInt32, 0, self.total) for _ in range(sequences)]
@@ -105,7 +121,14 @@ class Shooter:
             upper.look(fired)
         self.unseen = 0
 
-    def shoot(self, counts, weights=None, ends: Ends | None = None, pairs: Pairs | None = None) -> int:
+    def shoot(
+        self,
+        counts,
+        weights=None,
+        ends: Ends | None = None,
+        pairs: Pairs | None = None,
+        receivers: Receivers | None = None,
+    ) -> int:
         """Fire lines, and return their number.
 
         Args:
@@ -115,17 +138,20 @@ class Shooter:
             ends: what lines add at both ends, in place of ``weights``.
             pairs: called for every launch with patch numbers and the slots that their lines hit, (m,) uint32 each; the
                 arrays are valid until it returns.
+            receivers: what receives, where it is not what lines hit; without polynomials.
         """
         if self.groups:
             groups = self.groups if ends is None or ends.groups is None else ends.groups
-            self.received = dr.opaque(self.types.Int64, 0, self.slots * groups * self.basis.size)
+            size = self.slots if receivers is None else receivers.size
+            self.received = dr.opaque(self.types.Int64, 0, size * groups * self.basis.size)
+            self.moved = dr.opaque(self.types.Int64, 0, self.slots * groups) if receivers else None
         total, left = 0, counts
         while left is not None:
-            lines, left = self._shoot(left, weights, ends, pairs)
+            lines, left = self._shoot(left, weights, ends, pairs, receivers)
             total += lines
         return total
 
-    def _shoot(self, counts, weights, ends: Ends | None, pairs: Pairs | None) -> tuple[int, Any]:
+    def _shoot(self, counts, weights, ends: Ends | None, pairs: Pairs | None, receivers: Receivers | None) -> tuple[int, Any]:
         """Fire lines of each patch that lie in one block. Return their number, and the counts of those that are left, or None."""
         types, tracer = self.types, self.tracer
         dr.eval(counts, weights)
@@ -145,7 +171,7 @@ class Shooter:
         bits = tracer.numbers.bits_for(int(largest[0]))
         mode = dr.ReduceMode.Expand if batch.total > DENSE * self.total else dr.ReduceMode.Direct
         for launch in batch.launches(types):
-            self._fire(launch, 32 if batch.total <= FEW else bits, weights, ends, pairs, mode)
+            self._fire(launch, 32 if batch.total <= FEW else bits, weights, ends, pairs, mode, receivers)
             self.unseen += launch.lanes
             if self.unseen > PERIOD:
                 self._look()
@@ -160,7 +186,7 @@ class Shooter:
         dr.eval(found)
         return found
 
-    def _fire(self, launch: Launch, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode) -> None:
+    def _fire(self, launch: Launch, bits: int, weights, ends: Ends | None, pairs: Pairs | None, mode, receivers) -> None:
         types, tracer = self.types, self.tracer
         (number, index, record), block = launch.read(types), launch.block(types)
         real = launch.mask(types)
@@ -169,19 +195,25 @@ class Shooter:
         else:
             landed = tracer.trace(number, index, record, bits, block)
         self.hits.add(landed, real, mode)
+        to, back_to = landed, number
+        if receivers is not None:
+            to = receivers.of(number, landed)
+            if ends is not None:  # behind patches nothing sends back
+                back_to = receivers.of(dr.select(landed < self.total, landed, number), number)
         for g in range(self.groups if self.basis.size == 1 else 0):
             here, there = number * self.groups + g, landed * self.groups + g
+            gets, gets_back = to * self.groups + g, back_to * self.groups + g
             if ends is None:
-                self._add(types.Int64(dr.gather(type(weights), weights, here)), there, real, mode)
+                self._add(types.Int64(dr.gather(type(weights), weights, here)), gets, there, real, mode)
                 continue
             both = dr.gather(types.Float, ends.density, number) + dr.gather(types.Float, ends.density, landed)
             forth, back = (dr.gather(types.Float, ends.carried, at) / both for at in (here, there))
-            self._add(types.Int64(dr.round(forth)), there, real, mode)
-            self._add(types.Int64(dr.round(back)), here, real, mode)
+            self._add(types.Int64(dr.round(forth)), gets, there, real, mode)
+            self._add(types.Int64(dr.round(back)), gets_back, here, real, mode)
         if pairs is not None:
             dr.schedule(number, landed)
         with shared(launch.lanes):
-            dr.eval(self.hits.arrivals, self.received)
+            dr.eval(self.hits.arrivals, self.received, self.moved)
         if pairs is not None:
             pairs(frozen(number)[: launch.lanes], frozen(landed)[: launch.lanes])
 
@@ -192,7 +224,7 @@ class Shooter:
         moments = Moments(self.basis, groups, self.total, self.types)
 
         def add(value, column, counts):
-            self._add(value, column, real & counts, mode)
+            self._add(value, column, column, real & counts, mode)
 
         if ends is None:
             moments.forth(weights, number, landed, begin, end, add)
@@ -200,8 +232,11 @@ class Shooter:
             moments.both(ends, number, landed, begin, end, add)
         return landed
 
-    def _add(self, value, index, real, mode) -> None:
+    def _add(self, value, index, hit, real, mode) -> None:
+        """Add a power to what a column receives, and note it where a line hit another one."""
         dr.scatter_add(self.received, value, index, active=real, mode=mode)
+        if self.moved is not None:
+            dr.scatter_add(self.moved, value, hit, active=real & (index != hit), mode=mode)
 
     def read(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
         """Copy the counts to the host.

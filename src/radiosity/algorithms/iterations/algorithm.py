@@ -11,6 +11,7 @@ from ..state import Arrays, Sizes
 from .control import Control
 from .exchange import Exchange
 from .incremental import Incremental
+from .refined_tally import RefinedTally
 from .regular import Regular
 from .state import IncrementalState, IterationState, RegularState
 from .tally import IterationTally
@@ -92,5 +93,6 @@ class Iteration(AbstractAlgorithm[IterationState]):
             self.scheme.restore(state.regular)
 
     @property
-    def tally(self) -> IterationTally:
-        return IterationTally(self.exchange.basis)
+    def tally(self) -> IterationTally | RefinedTally:
+        plain = IterationTally(self.exchange.basis)
+        return plain if self.exchange.refinement is None else RefinedTally(plain)

@@ -13,14 +13,17 @@ import drjit as dr
 import numpy as np
 
 from ...device.backend import frozen, small, upload
+from ...errors import MethodError
 from ...method import Method
 from ...patches.bases import BASES
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...sampling.streams import Purpose, Seed, stream
-from ...tally.shooter import Ends, Shooter
+from ...tally.shooter import Ends, Receivers, Shooter
 from ...tracing.geometry import Geometry
 from ..state import Sizes
+from .elements import Elements
+from .refinement import Refinement
 
 BITS = 30
 LINE = 2**BITS  # fixed point units of one expected line
@@ -57,6 +60,9 @@ class Exchange:
         step: the number of steps so far: each has rounding offsets of its own.
         turns: the number of sequences of points that steps take in turn; a warm-up has as many others.
         first: the first of the sequences that are used now.
+        refinement: of the lines' pairs of elements; None: lines land on patches.
+        blurred: (slots * columns,) Int64, what patches received in the last step less what lines brought where they hit; None
+            where lines are not refined.
     """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
@@ -92,6 +98,10 @@ class Exchange:
         row = dr.arange(self.types.UInt32, self.total * self.columns)
         self.column = self.by_patch(self.replicate) * self.columns + row % self.columns
         dr.eval(self.replicate, self.column)
+        self.refinement: Refinement | None = None
+        self.blurred: Any = None
+        if method.refine_lines:
+            self.refinement = Refinement(Elements(self.shooter.tracer), method.refine_lines)
         self.step = 0
 
     def share_out_by(self, importance: np.ndarray | None) -> None:
@@ -125,6 +135,17 @@ class Exchange:
 
     def _tiled(self, values: np.ndarray):
         return upload(self.types.Float64, np.tile(values.ravel(), self.replicates))
+
+    @staticmethod
+    def needed(blurred: np.ndarray | None) -> np.ndarray:
+        """Return what a state of refined lines must hold.
+
+        Raises:
+            MethodError: it does not.
+        """
+        if blurred is None:
+            raise MethodError("the solution to go on from lacks what its elements blurred; start anew")
+        return blurred
 
     def by_patch(self, values):
         """Spread a (total,) array over the columns."""
@@ -189,21 +210,36 @@ class Exchange:
     def end_warm_up(self) -> None:
         self.first = 0
 
-    def shoot(self, counts, weights=None, ends: Ends | None = None) -> int:
+    def shoot(self, counts, weights=None, ends: Ends | None = None, receivers: Receivers | None = None) -> int:
         """Fire the lines of a step, see `Shooter.shoot`."""
         self.shooter.take(self.first + self.turn)
         self.step += 1
-        return self.shooter.shoot(counts, weights, ends)
+        return self.shooter.shoot(counts, weights, ends, receivers=receivers)
 
     def _stream(self, replicate: int) -> np.random.SeedSequence:
         return stream(self.seed, replicate, Purpose.ROUNDING, self.step)
 
-    def send(self, power, expected) -> tuple[int, Callable[[], np.ndarray] | None]:
+    def _refined(self, power, whole, counts, weights=None, ends: Ends | None = None) -> int:
+        """Fire the lines of a step to elements, where lines are refined; see `send`."""
+        if self.refinement is None:
+            return self.shoot(counts, weights, ends)
+        self.refinement.begin(self.largest(power) / self.by_replicate(np.broadcast_to(whole, self.replicates)))
+        elements = self.refinement.elements
+        lines = self.shoot(counts, weights, ends, Receivers(elements.size, self.refinement.receiver))
+        received, types = self.shooter.received, self.types
+        self.shooter.received = elements.pushed(received, self.columns)
+        on_patches = dr.gather(types.Int64, received, dr.arange(types.UInt32, self.shooter.slots * self.columns))
+        self.blurred = self.shooter.received - on_patches - self.shooter.moved
+        dr.eval(self.blurred)
+        return lines
+
+    def send(self, power, expected, whole: float | np.ndarray) -> tuple[int, Callable[[], np.ndarray] | None]:
         """Send powers; `Shooter.received` then holds what arrived.
 
         Args:
             power: (total * columns,) Float64, signed, in the units of received power; below 2^30 of them for each expected line.
             expected: (total,) UInt64, mean number of lines that patches fire, times LINE; positive where there is power.
+            whole: Phi in the units of ``power``, or (replicates,) of them.
 
         Returns:
             Lines fired, and a function that reads the power that left each replicate in them, (replicates, groups) int64; None
@@ -213,7 +249,7 @@ class Exchange:
         counts = self.counts(expected)
         mean = types.Float64(expected) * (1.0 / LINE)
         if self.two_ended:
-            return self.shoot(counts, ends=self._ends(power, mean)), None
+            return self._refined(power, whole, counts, ends=self._ends(power, mean)), None
         # a patch that surely fires divides its power among its lines; one that may not fire sends it over its probability
         lines = dr.select(expected >= LINE, types.Float64(counts), mean)
         share = power / self.by_patch(dr.select(lines > 0, lines, 1.0))
@@ -222,7 +258,7 @@ class Exchange:
         kind = types.Int if self.importance is None else types.Int64  # a line of little importance carries many quanta
         weights = kind(dr.round(share))
         dr.eval(weights)
-        return self.shoot(counts, weights), lambda: self._left(weights, counts)
+        return self._refined(power, whole, counts, weights), lambda: self._left(weights, counts)
 
     def _left(self, weights, counts) -> np.ndarray:
         """Return the power that left along lines, (replicates, groups) int64."""

@@ -34,6 +34,7 @@ class Incremental:
     Attributes:
         quanta, begun: N of the stage, and how much of it has been emitted.
         received: (slots * columns,) Int64, all that arrived; Float64 beyond `EXACT` quanta.
+        blurred: the same of what elements share out wrongly, see `Exchange.blurred`; None where lines are not refined.
         unsent: (total * columns,) Float64, whole numbers.
         emitted, fired: (replicates, columns) int64, the power that sources gave and that left along lines.
     """
@@ -42,6 +43,7 @@ class Incremental:
         self.exchange, self.control, self.quanta, self.begun = exchange, control, 0, 0
         types = exchange.types
         self.received: Any = upload(types.Int64, np.zeros(exchange.shooter.slots * exchange.columns, np.int64))
+        self.blurred: Any = None if exchange.refinement is None else types.Int64(self.received)
         self.unsent = upload(types.Float64, np.zeros(exchange.total * exchange.columns))
         self.emitted, self.fired = (np.zeros((exchange.replicates, exchange.columns), np.int64) for _ in range(2))
         self.probing = 0
@@ -84,6 +86,7 @@ class Incremental:
         self.begun += more
         if self.quanta > EXACT // self.finer:
             self.received = types.Float64(self.received)
+            self.blurred = None if self.blurred is None else types.Float64(self.blurred)
         source = np.array(exchange.emitted)
         if self.control is not None and self.control.beta.any():
             self.probing = self.control.probe(max(more // SHARE, 1))
@@ -105,11 +108,13 @@ class Incremental:
         expected = exchange.lines_of(self.unsent)
         if exchange.basis.size > 1:
             self.unsent, expected = end_of_polynomials(exchange, self.unsent, self.quanta)
-        lines, fired = exchange.send(self.unsent, expected)
+        lines, fired = exchange.send(self.unsent, expected, float(self.begun) * exchange.unit)
         self.fired += 0 if fired is None or not self.exact else fired()
         self.received += type(self.received)(exchange.shooter.received)
         self.unsent = dr.round(exchange.scattered(types.Float64(exchange.patches(exchange.shooter.received))))
-        dr.eval(self.received, self.unsent)
+        if self.blurred is not None:
+            self.blurred += type(self.blurred)(exchange.blurred)
+        dr.eval(self.received, self.unsent, self.blurred)
         return lines
 
     @property
@@ -128,12 +133,15 @@ class Incremental:
             progress=np.array(progress),
             emitted=self.emitted.copy() if self.exact else None,
             left=self.fired.copy() if self.exact else None,
+            blurred=None if self.blurred is None else np.array(self.blurred),
         )
 
     def restore(self, state: IncrementalState) -> None:
         """Set the power to a captured one."""
         types = self.exchange.types
         self.received = upload(types.Float64 if state.received.dtype.kind == "f" else types.Int64, state.received)
+        if self.blurred is not None:
+            self.blurred = upload(type(self.received), self.exchange.needed(state.blurred))
         self.unsent = upload(types.Float64, state.unsent)
         self.quanta, self.probing, *begun = (int(x) for x in state.progress)
         self.begun = begun[0] if begun else self.quanta

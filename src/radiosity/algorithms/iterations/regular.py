@@ -14,6 +14,8 @@ incremental solution instead, which has no bias, so they have none (Bekaert 1999
 lambda^k is 1/10 000 or less, are a start-up that the result leaves out (RenderPark has such an option).
 """
 
+from typing import Any
+
 import drjit as dr
 import numpy as np
 
@@ -38,6 +40,7 @@ class Regular:
 
     Attributes:
         received: (slots * columns,) Float64, the mean of R_k over Phi.
+        blurred: the same of `Exchange.blurred`; None where lines are not refined.
         sources: (total * columns,) Float64 each, A over Phi: for each turn, of what steps of the other turn received.
         weights: (replicates,) float64, the sum of the weights of all R_k in the mean.
         constants: (replicates, columns) float64, the mean of beta_k.
@@ -51,6 +54,7 @@ class Regular:
         self.total = TOTAL * (1 - float(rho.max()))
         self.warm = Incremental(exchange, problem, None) if warm_up else None
         self.received = upload(types.Float64, np.zeros(exchange.shooter.slots * exchange.columns))
+        self.blurred: Any = None if exchange.refinement is None else types.Float64(self.received)
         self.sources = [upload(types.Float64, np.zeros(exchange.total * exchange.columns)) for _ in range(exchange.turns)]
         self.weights, self.constants = np.zeros(exchange.replicates), np.zeros((exchange.replicates, exchange.columns))
 
@@ -91,9 +95,11 @@ class Regular:
         types, plan = self.exchange.types, self.plan
         lines = round(warm.quanta / (1 - plan.mean))  # not the lines traced: these depend on the solution
         self.received = types.Float64(warm.received) * warm.scale
+        if self.blurred is not None:
+            self.blurred = types.Float64(warm.blurred) * warm.scale
         self.exchange.end_warm_up()
         source = self.exchange.patches(self.received)
-        dr.eval(source, self.received)
+        dr.eval(source, self.received, self.blurred)
         self.sources = [source] * self.exchange.turns
         sent = self._sent(self._largest(self.exchange.emitted + self.exchange.scattered(source)))
         self.weights = self._weight(lines, sent)
@@ -124,7 +130,8 @@ class Regular:
         largest = self._largest(power)
         sent = self._sent(largest)
         expected = types.UInt64(types.Float64(largest) * exchange.by_replicate(lines * LINE / (sent * self.total)))
-        fired, _ = exchange.send(power * exchange.by_patch(exchange.by_replicate(lines * UNIT / sent)), expected)
+        whole = lines * UNIT / sent
+        fired, _ = exchange.send(power * exchange.by_patch(exchange.by_replicate(whole)), expected, whole)
         arrived = types.Float64(exchange.shooter.received) * exchange.by_slot(sent / (lines * UNIT))
         dr.eval(arrived)
         weight = np.ones(exchange.replicates)
@@ -133,13 +140,16 @@ class Regular:
             self.weights += weight
             weight /= self.weights
             self.received = dr.lerp(self.received, arrived, exchange.by_slot(weight))
+            if self.blurred is not None:
+                blurred = types.Float64(exchange.blurred) * exchange.by_slot(1 / whole)
+                self.blurred = dr.lerp(self.blurred, blurred, exchange.by_slot(weight))
             if control is not None:
                 self.constants += weight[:, None] * (control.beta - self.constants)
         fresh = exchange.patches(arrived) + (0 if control is None else control.received())
         other = (turn + 1) % exchange.turns
         taken = exchange.by_patch(exchange.by_replicate(np.maximum(weight, FORGET[exchange.turns])))
         self.sources[other] = dr.lerp(self.sources[other], fresh, taken)
-        dr.eval(self.sources[other], self.received)
+        dr.eval(self.sources[other], self.received, self.blurred)
         return fired
 
     def capture(self) -> RegularState:
@@ -154,6 +164,7 @@ class Regular:
             weights=self.weights.copy(),
             progress=self.plan.capture(),
             warm=None if warm is None else warm.capture(),
+            blurred=None if self.blurred is None else np.array(self.blurred),
         )
 
     def restore(self, state: RegularState) -> None:
@@ -161,6 +172,8 @@ class Regular:
         types = self.exchange.types
         self.plan.restore(state.progress)
         self.received = upload(types.Float64, state.received)
+        if self.blurred is not None:
+            self.blurred = upload(types.Float64, self.exchange.needed(state.blurred))
         self.sources = [upload(types.Float64, part) for part in np.split(state.source, self.exchange.turns)]
         self.constants, self.weights = state.constants.copy(), state.weights.copy()
         if self.warm is not None and self.plan.starting:

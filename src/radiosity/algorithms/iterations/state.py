@@ -25,6 +25,7 @@ class IncrementalState(Record):
         scale: the factor from received power to shares of Phi.
         progress: quanta, lines of probes that are not reported yet, and within long stages the quanta that have been emitted.
         emitted, left: (replicates, groups) int64, where power is carried in whole numbers.
+        blurred: (slots * groups,), as ``received``, of `Exchange.blurred`; only where lines are refined.
     """
 
     received: np.ndarray = array("slots", "groups", flat=True)
@@ -33,6 +34,7 @@ class IncrementalState(Record):
     progress: np.ndarray = array("any", merged=alike)
     emitted: np.ndarray | None = array("replicates", "groups", optional=True)
     left: np.ndarray | None = array("replicates", "groups", optional=True)
+    blurred: np.ndarray | None = array("slots", "groups", flat=True, optional=True)
 
     @property
     def unfinished(self) -> bool:
@@ -52,6 +54,7 @@ class RegularState(Record):
         weights: (replicates,), the sum of the weights of all iterations in the mean.
         progress: (7,) counters of `Plan`.
         warm: the warm-up, while it lasts.
+        blurred: (slots * groups,) float64, the mean of `Exchange.blurred` over Phi; only where lines are refined.
     """
 
     received: np.ndarray = array("slots", "groups", flat=True)
@@ -61,6 +64,7 @@ class RegularState(Record):
     weights: np.ndarray = array("replicates")
     progress: np.ndarray = array(7, merged=alike)
     warm: IncrementalState | None = part(IncrementalState, "warm_", optional=True)
+    blurred: np.ndarray | None = array("slots", "groups", flat=True, optional=True)
 
     @property
     def unfinished(self) -> bool:

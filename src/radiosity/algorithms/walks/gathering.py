@@ -59,7 +59,7 @@ class Gathering(AbstractWalks[GatheringState]):
         self.types = types = self.tracer.types
         self.hits, self.fired = HitCounts(self.tracer), dr.opaque(types.UInt32, 0, self.tracer.total)
         panes = FarSides.of(self.tracer, self.problem.source)
-        self.segments = PathSegments(self.tracer, continuous=self.method.equation == "continuous", panes=panes)
+        self.segments = PathSegments(self.tracer, self.method, panes)
         self.source_sampling = SourceSampling.of_area(self.problem, self.seed, self.replicates)
         groups = self.problem.groups
         self.n, top = groups.n_groups, groups.reflectance.max(axis=1)

@@ -2,7 +2,7 @@
 
 A walk is (patch, replicate, index): its k-th point of the sequence gives the first segment. Later segments take points of the
 same sequence in orders of their own (Latin supercube sampling, see `sampling.numbers.shuffle`), each moved by its own
-randomisation.
+randomisation, or points of more dimensions (`sampling.numbers.prime_bases`).
 So a walk is a function of seed, replicate, patch and index, whatever the order in which walks are followed.
 """
 
@@ -13,6 +13,8 @@ import drjit as dr
 import numpy as np
 
 from ...device.backend import upload
+from ...method import Method
+from ...sampling.numbers.prime_bases import PrimeBases
 from ...sampling.numbers.shuffle import key, mix, shuffled
 from ...sampling.streams import Purpose, stream
 from ...tally.far_sides import FarSides
@@ -74,8 +76,13 @@ class Step:
 class PathSegments:
     """Traces segments of walks in kernels."""
 
-    def __init__(self, tracer: LineTracer, *, continuous: bool, panes: FarSides | None = None, block: int = 0):
-        self.tracer, self.continuous, self.panes, key = tracer, continuous, panes, (block,) if block else ()
+    def __init__(self, tracer: LineTracer, method: Method, panes: FarSides | None = None, block: int = 0):
+        self.tracer, self.method, self.panes, key = tracer, method, panes, (block,) if block else ()
+        self.continuous, fractional = method.equation == "continuous", method.absorption == "fractional"
+        self.one_sequence = fractional and method.padding == "prime-bases"  # the walks of all patches have points of one sequence
+        used = (0, 1) if self.continuous else (0, 1, 2, 3)
+        used = used if fractional and panes is None else (*used, 4)
+        self.primes = PrimeBases.of(tracer.types, used) if method.padding == "prime-bases" else None
         drawn = [
             tracer.numbers.randomisation(stream(tracer.seed, replicate, Purpose.LATER_SEGMENTS, segment, *key))
             for replicate in range(tracer.replicates)
@@ -87,7 +94,7 @@ class PathSegments:
         """Return the segments of walks whose indices lie in a block; these are of the first one."""
         if block == 0:
             return self
-        return PathSegments(self.tracer.of_block(block), continuous=self.continuous, panes=self.panes, block=block)
+        return PathSegments(self.tracer.of_block(block), self.method, self.panes, block)
 
     def first(self, number, index, record, bits: int) -> Step:
         """Trace the first segment of a walk, from a uniform point of its patch."""
@@ -103,9 +110,13 @@ class PathSegments:
         replicate = tracer.replicate(particles.walk)
         patch = particles.walk - replicate * tracer.n_opaque
         randomisation = self._words(replicate, segment)
-        index = shuffled(particles.index, key(randomisation, segment))
-        numbers = tracer.numbers.points(index, patch + segment * tracer.n_opaque, randomisation, INDEX_BITS)
-        numbers = self._moved(numbers, patch + segment * tracer.n_opaque)
+        if self.primes is None:
+            index = shuffled(particles.index, key(randomisation, segment))
+            numbers = tracer.numbers.points(index, patch + segment * tracer.n_opaque, randomisation, INDEX_BITS)
+        else:
+            numbers = self.primes.points(particles.index, segment, randomisation)
+        if not self.one_sequence:
+            numbers = self._moved(numbers, patch + segment * tracer.n_opaque)
         return self._leave(particles, numbers, replicate, active)
 
     def in_order(self, particles: ParticleBank, segment, array: Array) -> Step:

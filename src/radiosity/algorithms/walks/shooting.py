@@ -67,7 +67,7 @@ class Walks(AbstractWalks[WalkState]):
         self.hits = HitCounts(self.tracer)
         self.types = self.tracer.types
         panes = FarSides.of(self.tracer, self.problem.source)
-        self.segments = PathSegments(self.tracer, continuous=self.method.equation == "continuous", panes=panes)
+        self.segments = PathSegments(self.tracer, self.method, panes)
         self.source_sampling = SourceSampling.of_power(self.problem, self.seed, self.replicates)
         self.fractions = Fractions.of(self.tracer, self.problem) if self.method.absorption == "fractional" else None
         self.scores = Scores(self.tracer, self.problem, self.method)

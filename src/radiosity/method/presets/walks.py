@@ -55,10 +55,11 @@ WALKS = {
         Method(equation="continuous", absorption="fractional"),
         "Keller's quasi-Monte Carlo radiosity: walk n takes point n of a sequence, its birth patch too, and of M walks the "
         "first M rho^k go on at the k-th hit with weights, rho being the mean reflectance. Later segments take "
-        "the same sequence in other orders (Latin supercube sampling) in place of ever larger prime bases. What the last "
-        "walk leaves behind is cut off: a bias of the order of one walk.",
+        "the same sequence in other orders (Latin supercube sampling); his own rule, ever larger prime bases, is "
+        "padding prime-bases. What the last walk leaves behind is cut off: a bias of the order of one walk.",
         "To compare; random-walk and particle-tracing have less error where reflectances differ much.",
         "keller1996",
+        ("padding",),
     ),
     "density-estimation": Preset(
         Method(equation="continuous", reconstruction="local-linear"),

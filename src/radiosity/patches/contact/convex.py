@@ -6,18 +6,15 @@ All polygons are (k, 2) arrays.
 import numpy as np
 
 SAME = 1e-9  # of its size: corners of a parallelogram may be off by this
+EQUAL = 1e-9  # widths that differ by less are equal
 
 
-def area(polygon: np.ndarray) -> float:
-    """Return the area of a counterclockwise polygon."""
-    x, y = polygon.T
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
-
-
-def width(triangle: np.ndarray) -> float:
-    """Return the least height of a triangle over its longest edge: 0.87 where all edges are equal."""
-    edges = np.roll(triangle, -1, axis=0) - triangle
-    return 2 * area(triangle) / max(float((edges**2).sum(axis=1).max()), 1e-300)
+def width(one: list[float], two: list[float], three: list[float]) -> float:
+    """Return the least height of a counterclockwise triangle over its longest edge: 0.87 where all edges are equal."""
+    (ax, ay), (bx, by), (cx, cy) = one, two, three
+    twice = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    longest = max((bx - ax) ** 2 + (by - ay) ** 2, (cx - bx) ** 2 + (cy - by) ** 2, (ax - cx) ** 2 + (ay - cy) ** 2)
+    return twice / max(longest, 1e-300)
 
 
 def cut(polygon: np.ndarray, point: np.ndarray, along: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray] | None:
@@ -52,13 +49,13 @@ def inside(polygon: np.ndarray, one: np.ndarray, two: np.ndarray, least: float) 
     length = float(np.hypot(*along))
     if length < least:
         return None
-    for i in range(len(polygon)):
-        corner, edge = polygon[i], polygon[(i + 1) % len(polygon)] - polygon[i]
-        size = float(np.hypot(*edge))
+    edges = np.concatenate([polygon[1:], polygon[:1]]) - polygon
+    (x, y), (dx, dy), sizes = one.tolist(), along.tolist(), np.hypot(edges[:, 0], edges[:, 1]).tolist()
+    for (corner_x, corner_y), (edge_x, edge_y), size in zip(polygon.tolist(), edges.tolist(), sizes, strict=True):
         if size == 0:
             continue
-        start = (edge[0] * (one - corner)[1] - edge[1] * (one - corner)[0]) / size
-        slope = (edge[0] * along[1] - edge[1] * along[0]) / size
+        start = (edge_x * (y - corner_y) - edge_y * (x - corner_x)) / size
+        slope = (edge_x * dy - edge_y * dx) / size
         if abs(slope) < 1e-12 * length or max(start, start + slope) < least:
             if max(start, start + slope) < least:
                 return None
@@ -71,7 +68,10 @@ def inside(polygon: np.ndarray, one: np.ndarray, two: np.ndarray, least: float) 
 
 
 def parts(polygon: np.ndarray) -> list[np.ndarray]:
-    """Return triangles (3, 2) and parallelograms (4, 2) that make up a polygon, none of them thinner than need be."""
+    """Return triangles (3, 2) and parallelograms (4, 2) that make up a polygon, none of them thinner than need be.
+
+    Of cuts that are alike but for rounding the first is taken.
+    """
     polygon = _without_flat_corners(polygon)
     k = len(polygon)
     if k < 3:
@@ -83,18 +83,19 @@ def parts(polygon: np.ndarray) -> list[np.ndarray]:
         for j in range(i + 2, k - (i == 0)):
             two = polygon[i : j + 1], np.concatenate([polygon[j:], polygon[: i + 1]])
             quality = min(_quality(part) for part in two)
-            if quality > best:
+            if quality > best + EQUAL:
                 best, found = quality, two
     return [part for half in found for part in parts(half)]
 
 
 def _quality(polygon: np.ndarray) -> float:
     """Return how wide the thinnest part of a polygon may be."""
-    if len(polygon) == 3:
-        return width(polygon)
-    if len(polygon) == 4 and _is_parallelogram(polygon):
-        return 2 * width(polygon[:3])
-    return min(width(polygon[[i - 1, i, (i + 1) % len(polygon)]]) for i in range(len(polygon)))
+    corners = polygon.tolist()
+    if len(corners) == 3:
+        return width(*corners)
+    if len(corners) == 4 and _is_parallelogram(polygon):
+        return 2 * width(*corners[:3])
+    return min(width(corners[i - 2], corners[i - 1], corners[i]) for i in range(len(corners)))
 
 
 def _is_parallelogram(polygon: np.ndarray) -> bool:

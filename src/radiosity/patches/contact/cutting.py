@@ -15,7 +15,7 @@ from ...scene.model import Scene
 from ...scene.split import bent, split
 from ..subdivide import subdivide
 from . import convex
-from .lines import Boxes, contact_lines, near_lamps
+from .lines import Boxes, contact_lines, faces_beside, near_lamps
 
 THIN = 1e-4  # of a patch's size: thinner strips are not cut off
 SHORT = 0.5  # of a patch's size: shorter lines are left to finer patches, but for those of lamps
@@ -34,18 +34,14 @@ def cut_at_contacts(scene: Scene, patches: int, most: int, sizes: np.ndarray | N
     """
     size = float(np.sqrt(scene.area.sum() / patches))
     lines = _lines(scene, size, subdivide(scene, about=patches).sizes if sizes is None else sizes)
-    polygons: dict[int, list] = {}
-    frames = {face: _Flat(scene, face) for face in {line.face for line in lines}}
+    faces = {face: Pieces(_Flat(scene, face)) for face in {line.face for line in lines}}
     added = 0
     for line in lines:
         if added >= most:
             break
-        pieces = polygons.setdefault(line.face, [frames[line.face].outline])
-        cut = [part for piece in pieces for part in _cut(piece, frames[line.face].plane(line.ends), size)]
-        added += len(cut) - len(pieces)
-        polygons[line.face] = cut
-    cut = {face: pieces for face, pieces in polygons.items() if len(pieces) > 1}
-    return _rebuilt(scene, cut, frames) if cut else scene
+        added += faces[line.face].cut(line.ends, THIN * size)
+    cut = {face: pieces for face, pieces in faces.items() if len(pieces.polygons) > 1}
+    return _rebuilt(scene, cut) if cut else scene
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +62,10 @@ def _lines(scene: Scene, size: float, sizes: np.ndarray) -> list[_Line]:
     """
     boxes, result = Boxes.of(scene), []
     _, first, second = scene.frames
-    for face in np.flatnonzero(((scene.area > LARGE * size**2) | near_lamps(boxes, sizes)) & ~bent(scene)):
+    faces = np.flatnonzero(((scene.area > LARGE * size**2) | near_lamps(boxes, sizes)) & ~bent(scene))
+    for face, others in zip(faces, faces_beside(boxes, faces, sizes[faces]), strict=True):
         outline = SQUARE if scene.is_quad[face] else SQUARE[[0, 1, 3]]
-        found = contact_lines(scene, boxes, int(face), sizes[face])
+        found = contact_lines(scene, boxes, int(face), others, sizes[face])
         for line, of_lamp in zip(found.ends, found.of_lamps.tolist(), strict=True):
             within = convex.inside(outline, line[0], line[1], 1e-9)
             if within is not None:
@@ -96,25 +93,57 @@ class _Flat:
         return np.clip(points @ np.linalg.inv(self.axes), 0.0, 1.0)
 
 
-def _cut(piece: np.ndarray, line: np.ndarray, size: float) -> list[np.ndarray]:
-    """Return a polygon, or the two parts of it where a segment passes through it."""
+class Pieces:
+    """The pieces of a face so far, with boxes about them, so that a line looks only at pieces near it."""
+
+    def __init__(self, flat: _Flat):
+        self.flat = flat
+        self.polygons = [flat.outline]
+        self.boxes = _box(flat.outline)[None]
+
+    def cut(self, ends: np.ndarray, least: float) -> int:
+        """Cut the pieces that a segment passes through, and return how many more there are.
+
+        Args:
+            ends: (2, 2) face coordinates. least: metres; shorter parts of the segment, and thinner strips, do not count.
+        """
+        line = self.flat.plane(ends)
+        low, high = _box(line)
+        near = np.flatnonzero(((self.boxes[:, 0] <= high) & (self.boxes[:, 1] >= low)).all(axis=1))
+        added = 0
+        for row in (near[::-1]).tolist():
+            two = _cut(self.polygons[row], line, least)
+            if two is not None:
+                self.polygons[row : row + 1] = two
+                self.boxes = np.concatenate([self.boxes[:row], [_box(part) for part in two], self.boxes[row + 1 :]])
+                added += 1
+        return added
+
+    def parts(self) -> list[list[np.ndarray]]:
+        """Return the triangles and parallelograms of each piece, in face coordinates."""
+        return [[self.flat.face(part) for part in convex.parts(polygon)] for polygon in self.polygons]
+
+
+def _box(points: np.ndarray) -> np.ndarray:
+    return np.stack([points.min(axis=0), points.max(axis=0)])
+
+
+def _cut(piece: np.ndarray, line: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the two parts of a polygon where a segment passes through it, or None."""
     one, two = line
-    within = convex.inside(piece, one, two, THIN * size)
-    if within is None:
-        return [piece]
-    along = (two - one) / np.hypot(*(two - one))
-    parts = convex.cut(piece, one, along, THIN * size)
-    return [piece] if parts is None else list(parts)
+    if convex.inside(piece, one, two, least) is None:
+        return None
+    return convex.cut(piece, one, (two - one) / np.hypot(*(two - one)), least)
 
 
-def _rebuilt(scene: Scene, polygons: dict[int, list], frames: dict[int, _Flat]) -> Scene:
+def _rebuilt(scene: Scene, cut: dict[int, Pieces]) -> Scene:
     """Return the scene with some faces in parts, in the order of the faces."""
     found: list[tuple[int, np.ndarray, int]] = []  # face, corners, region
     region = 0
     for face in range(scene.n_faces):
         outline = SQUARE if scene.is_quad[face] else SQUARE[[0, 1, 3, 3]]
-        for polygon in polygons.get(face, [None]):
-            for part in [outline] if polygon is None else map(frames[face].face, convex.parts(polygon)):
+        for parts in cut[face].parts() if face in cut else [[outline]]:
+            for part in parts:
                 found.append((face, part if len(part) == 4 else part[[0, 1, 2, 2]], region))
             region += 1
     face, corners, regions = zip(*found, strict=True)

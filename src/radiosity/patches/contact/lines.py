@@ -54,17 +54,30 @@ class ContactLines:
     of_lamps: np.ndarray
 
 
-def contact_lines(scene: Scene, boxes: Boxes, face: int, size: float = 0.0) -> ContactLines:
+def faces_beside(boxes: Boxes, faces: np.ndarray, sizes: np.ndarray) -> list[np.ndarray]:
+    """Return the numbers of the faces that may touch each of some faces, or lie just in front of it, in order.
+
+    Args:
+        faces: (n,) their numbers. sizes: (n,) metres, of their patches.
+    """
+    if not len(faces):
+        return []
+    margin = np.maximum(boxes.touch[faces], NEAR_LAMP * sizes)[:, None]
+    pairs = box_pairs((boxes.low[faces] - margin, boxes.high[faces] + margin), (boxes.low, boxes.high))
+    row, other = (np.concatenate(part) for part in zip(*pairs, strict=True))
+    row, other = row[faces[row] != other], other[faces[row] != other]
+    order = np.lexsort((other, row))
+    return np.split(other[order], np.searchsorted(row[order], np.arange(1, len(faces))))
+
+
+def contact_lines(scene: Scene, boxes: Boxes, face: int, others: np.ndarray, size: float = 0.0) -> ContactLines:
     """Return the contact lines of a face.
 
     Args:
+        others: the faces that `faces_beside` found.
         size: metres, of a patch. Outlines of faces that are nearer than `NEAR` of it are contact lines, too, if they lie in front
             of a side that radiates.
     """
-    margin = max(boxes.touch[face], NEAR_LAMP * size)
-    beside = (boxes.low <= boxes.high[face] + margin).all(axis=1) & (boxes.high >= boxes.low[face] - margin).all(axis=1)
-    beside[face] = False
-    others = np.flatnonzero(beside)
     corners = boxes.corners[others]
     origin, first, second = (edge[face] for edge in scene.frames)
     height = (corners - origin) @ scene.normal[face]

@@ -2,7 +2,8 @@
 
 A surface is called by its kind and identifier: ``wall/office_north``, ``aperture/office_north_window``. Kinds are wall, floor,
 ceiling, aperture, door and shade. All have two sides; fronts of rooms' faces look into the room. Of the two faces between
-adjacent rooms the first is taken, and has the second one's reflectance on the side of its room.
+adjacent rooms the first is taken, and has the second one's reflectance on the side of its room. What `save_scene` wrote keeps the
+names of its surfaces.
 """
 
 import json
@@ -12,6 +13,8 @@ from ....errors import SceneError
 from ...assemble import assemble
 from ...model import Scene
 from ...parts import ReadOptions
+
+NAME_KEY = "radiosity"  # of ``user_data``: the name of the surface that an object was
 
 
 def read(path: Path, options: ReadOptions) -> Scene:

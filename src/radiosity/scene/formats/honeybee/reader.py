@@ -65,7 +65,7 @@ class Reader:
             role = ("", "context_modifier") if mesh.is_detached else ("shade_set", "exterior_modifier")
             faces = np.array([[*face, -1][:4] for face in mesh.geometry.faces], np.int64).reshape(-1, 4)
             vertices = np.array(mesh.geometry.vertices, float).reshape(-1, 3)
-            self._part(f"shade/{mesh.identifier}", vertices, faces, self._modifiers.of(mesh.light.modifier, None, role))
+            self._part(mesh.called("shade"), vertices, faces, self._modifiers.of(mesh.light.modifier, None, role))
 
     def _face(self, face: Face, of_room: Named, *, inward: bool) -> None:
         """Take a face; ``inward``: it is turned, since faces of rooms look outward, and what is in the room matters."""
@@ -137,7 +137,7 @@ class Reader:
         holes: Iterable = (),
         inward: bool = False,
     ) -> None:
-        name = f"{kind}/{one.identifier}"
+        name = one.called(kind)
         if one.light.dynamic_group_identifier is not None:
             self._dynamic[name] = None
         outline = np.array(shape.boundary, float)[:: -1 if inward else 1]

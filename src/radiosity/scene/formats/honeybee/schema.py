@@ -51,16 +51,28 @@ class Condition(_Table):
     boundary_condition_objects: list[str] = []
 
 
+class UserData(_Table):
+    """What programs keep with an object; `save_scene` keeps the name of its surface."""
+
+    radiosity: str | None = None
+
+
 class Object(_Table):
     """Anything with a name and properties."""
 
     identifier: str
+    user_data: UserData | None = None
     properties: Properties = Properties()
 
     @property
     def light(self) -> Radiance:
         """What it says about light."""
         return self.properties.radiance or Radiance()
+
+    def called(self, kind: str) -> str:
+        """Return the name of its surface: the one that was kept, or its kind and identifier."""
+        kept = None if self.user_data is None else self.user_data.radiosity
+        return f"{kind}/{self.identifier}" if kept is None else kept
 
 
 class Shade(Object):
