@@ -57,7 +57,8 @@ def adapt(
         patches: how many patches there may be; default: as many as `subdivide` makes of the scene.
         seed: with the same inputs, the same mesh.
         device, progress, memory: as of `solve`.
-        basis: of the run on the mesh: faces are cut where its polynomials leave out most.
+        basis: of the run on the mesh. With linear and quadratic, faces are cut where linear light leaves out most: of light that
+            is linear on two cells, quadratic light leaves out so little that it tells less.
 
     Raises:
         SceneError: nothing emits, or the scene has more faces and sides than there may be patches. MethodError: a value that
@@ -93,7 +94,7 @@ def adapt(
             if more <= 0:
                 break
             light, method = _pilot(halves.fine, method, number + step * APART, device, progress)
-            seen = halves.variation(light[..., 0]) if polynomials.size == 1 else variation(halves, light, polynomials)
+            seen = halves.variation(light[..., 0]) if polynomials.size == 1 else variation(halves, light, CELLS)
             found = seen.given(expected)
             columns, rows = halves.chosen(found, more, halves.weights(light[..., 0]))
             if (columns * rows == 1).all():
