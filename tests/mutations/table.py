@@ -3032,13 +3032,6 @@ MISTAKES = (
         "workers without barriers say that they have fired what is still due",
     ),
     Mistake(
-        "cluster/barrier.py",
-        "return found if len(found) == len(units) else []",
-        "return found",
-        ("test_cluster_one_replicate.py",),
-        "lines count that follow from hits of a worker that was lost",
-    ),
-    Mistake(
         "tally/shots.py",
         "fired = self.fired[some] + first.astype(np.uint32)",
         "fired = self.fired[some]",

@@ -14,7 +14,7 @@ from .crew import DaskCrew
 from .worker import fire, fire_all, fire_own_rows
 
 FEWEST = 1 << 17  # lines of a unit: smaller ones are given to fewer workers, and wavefronts of fewer than two are fired here
-LEAST = 1 << 16  # lines of own rows, for each worker that is told of their hits, that must be due before a worker fires them
+LEAST = 1 << 17  # lines of own rows, for each worker that is told of their hits, that must be due before a worker fires them
 SECONDS = 30.0  # after which workers that fire together come back: what all of them lose where one is killed
 ROWS = 64  # of a worker at least, where they have rows of their own: so that each has about as much to fire
 
