@@ -6,6 +6,8 @@ compared with something that it had no part in. Power of each wall, mean of 16 r
 walls of a test together (`methods.critical`); seeds are fixed.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from enclosures import cube, cube_irradiance
@@ -71,9 +73,11 @@ class TestContract:
 
 def test_a_continuous_walk_that_forgets_where_it_landed_is_rejected(exact, monkeypatch):
     begin = PathSegments.__init__
-    monkeypatch.setattr(
-        PathSegments, "__init__", lambda self, engine, **more: begin(self, engine, **more | {"continuous": False})
-    )
+
+    def forgetful(self, tracer, method, *more):
+        begin(self, tracer, replace(method, equation="discrete"), *more)
+
+    monkeypatch.setattr(PathSegments, "__init__", forgetful)
     found = differences(rd.Method(equation="continuous"), exact)
     assert found["continuous"] > 2
     assert found["discrete"] < 1

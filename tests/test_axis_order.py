@@ -70,8 +70,9 @@ class TestContract:
     def test_lines_only_grow(self, method):
         algorithm, (_, problem) = begun(method), scene_of(method)
         lines = [0]
-        for quanta in (500, *STAGES):
-            algorithm.advance(quanta, lambda lines: None)
+        times = 16 if method.order == "gather" and method.basis != "constant" else 1  # it stores lines, however small N is
+        for quanta in times * np.array((500, *STAGES)):
+            algorithm.advance(int(quanta), lambda lines: None)
             assert algorithm.quanta == quanta
             lines.append(algorithm.tally.lines(problem, algorithm.capture()))
         assert (np.diff(lines) > 0).all()

@@ -112,6 +112,15 @@ def test_arrays_are_copied():
     assert (scene.reflectance == 0.5).all()
 
 
+def test_faces_in_columns_keep_their_triangles():
+    """What measures faces reads columns, and arrays of Fortran's order lend theirs."""
+    corners = [*SQUARE, (0, 0, 1), (1, 0, 1)]
+    faces = np.array([(0, 1, 2, 3), (0, 1, 5, -1)])
+    scenes = [build(vertices=corners, faces=one) for one in (faces, np.asfortranarray(faces))]
+    assert all((scene.faces == faces).all() for scene in scenes)
+    assert scenes[1].area.tolist() == pytest.approx([1, 0.5])
+
+
 def test_default_back_absorbs():
     assert build().back.tolist() == [Back.ABSORBS] * 2
 

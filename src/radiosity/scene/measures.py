@@ -81,8 +81,8 @@ def _corners(axes: Vectors, faces: np.ndarray) -> tuple[list[Vectors], np.ndarra
     quad = columns[3] >= 0
     if not quad.any():
         return [[axis.take(column) for axis in axes] for column in columns[:3]], None
-    columns[3] = np.where(quad, columns[3], columns[2])
-    return [[axis.take(column) for axis in axes] for column in columns], quad
+    last = np.where(quad, columns[3], columns[2])  # not in place: columns may be the faces themselves
+    return [[axis.take(column) for axis in axes] for column in (*columns[:3], last)], quad
 
 
 def _doubled_and_longest(corners: list[Vectors]) -> tuple[np.ndarray, np.ndarray]:
