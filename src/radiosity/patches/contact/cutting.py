@@ -82,7 +82,10 @@ def _lines(scene: Scene, size: float, sizes: np.ndarray, near: float) -> list[Li
     for face, others in zip(faces, faces_beside(boxes, faces, sizes[faces]), strict=True):
         outline = SQUARE if scene.is_quad[face] else SQUARE[[0, 1, 3]]
         found = contact_lines(scene, boxes, int(face), others, sizes[face], near)
-        for line, of_lamp in zip(found.ends, found.of_lamps.tolist(), strict=True):
+        least = np.where(found.of_lamps, SMALL, SHORT) * size
+        steps = (found.ends[:, 1] - found.ends[:, 0]) @ np.stack([first[face], second[face]])
+        long = np.linalg.norm(steps, axis=1) > (1 - 1e-9) * least  # most lines are too short before they are cut off at the rim
+        for line, of_lamp in zip(found.ends[long], found.of_lamps[long].tolist(), strict=True):
             within = convex.inside(outline, line[0], line[1], 1e-9)
             if within is not None:
                 step = within[1] - within[0]
