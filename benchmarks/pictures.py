@@ -5,7 +5,7 @@ camera gets a fitted one. The error is the RMS of (picture - truth) in linear ra
 beside one, relative to the mean of the truth. The truth is two path traced pictures of other seeds, a and b; the mean of
 (picture - a)(picture - b) holds none of their own noise. CPU seconds of ours hold the solution.
 
-python benchmarks/pictures.py [--width 256] [--truth 256] [--contacts] [--scenes cornell-box room]
+python benchmarks/pictures.py [--width 256] [--truth 256] [--scenes cornell-box room] [--contacts room] [--lines 256 1024]
 """
 
 import argparse
@@ -71,7 +71,7 @@ def without_lamps(scene: rd.Scene, camera: rd.Camera) -> np.ndarray:
     return ~np.any(beside, axis=0)
 
 
-def compare(name: str, width: int, truth: int, contacts: bool) -> None:
+def compare(name: str, width: int, truth: int, contacts: bool, gathers: list[int] | None) -> None:
     """Print the rows of a scene."""
     scene = rd.load_scene(name, allow_outside=True)
     scene = replace(scene, back=np.where(scene.back == rd.Back.PASSES, rd.Back.ABSORBS, scene.back).astype(np.uint8))
@@ -91,7 +91,7 @@ def compare(name: str, width: int, truth: int, contacts: bool) -> None:
     print(ROW.format("", "CPU s", "RMS error"))
     print(ROW.format(f"path tracer, {SAMPLES} samples a pixel", f"{seconds:.2f}", error(picture.astype(float))), flush=True)
     with tempfile.TemporaryDirectory() as folder:
-        for lines, filtered in OURS:
+        for lines, filtered in (row for row in OURS if gathers is None or row[0] in gathers):
             for _ in range(2):  # the first compiles kernels
                 begun = used()
                 solution = rd.solve(rd.subdivide(scene, contacts=contacts), rays=LINES)
@@ -105,8 +105,9 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--width", type=int, default=256)
     parser.add_argument("--truth", type=int, default=256)
-    parser.add_argument("--contacts", action="store_true", help="cut faces along contact lines; the seconds are those of ours")
     parser.add_argument("--scenes", nargs="+", default=["cornell-box", "room"])
+    parser.add_argument("--contacts", nargs="*", default=[], help="scenes whose faces are cut along contact lines; ours pays for it")
+    parser.add_argument("--lines", nargs="*", type=int, help="final gathers of so many lines a pixel alone")
     given = parser.parse_args()
     for scene_name in given.scenes:
-        compare(scene_name, given.width, given.truth, given.contacts)
+        compare(scene_name, given.width, given.truth, scene_name in given.contacts, given.lines)
