@@ -106,7 +106,7 @@ if __name__ == "__main__":
     parser.add_argument("--width", type=int, default=256)
     parser.add_argument("--truth", type=int, default=256)
     parser.add_argument("--scenes", nargs="+", default=["cornell-box", "room"])
-    parser.add_argument("--contacts", nargs="*", default=[], help="scenes whose faces are cut along contact lines; ours pays for it")
+    parser.add_argument("--contacts", nargs="*", default=[], help="scenes that are cut along contact lines, at our cost")
     parser.add_argument("--lines", nargs="*", type=int, help="final gathers of so many lines a pixel alone")
     given = parser.parse_args()
     for scene_name in given.scenes:
