@@ -107,3 +107,12 @@ def geometry_of():
     from radiosity.tracing.geometry import Geometry
 
     return lambda patches: Geometry(patches, choose())
+
+
+@pytest.fixture(scope="module")
+def client():
+    """Two workers of Dask that are threads of this process."""
+    distributed = pytest.importorskip("distributed", reason="distributed is not installed")
+    options = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": "127.0.0.1:0"}
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
+        yield client

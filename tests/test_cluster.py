@@ -33,14 +33,6 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def client():
-    """Two workers that are threads of this process."""
-    options = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": "127.0.0.1:0"}
-    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
-        yield client
-
-
-@pytest.fixture(scope="module")
 def grey():
     return rd.subdivide(open_room(two_sided=True), cells=1)
 
