@@ -5,6 +5,7 @@ import signal
 import numpy as np
 import pytest
 from iterations import open_room
+from some_cases import some
 from test_merge import FIRST, INCREMENTAL, PARTS, TOGETHER, assert_same
 
 import radiosity as rd
@@ -52,11 +53,6 @@ def short(monkeypatch):
 
 def solved(patches, method, **options) -> rd.Solution:
     return rd.solve(patches, method, **{"quanta": QUANTA, "replicates": 5, "seed": 3} | options)
-
-
-def some(names, more):
-    """Some of many cases, and the rest among the slow tests."""
-    return pytest.mark.parametrize("name", [*names, *(pytest.param(name, marks=pytest.mark.slow) for name in more)])
 
 
 @some(GREY, MORE_GREY)

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from some_cases import some
 from test_merge import FIRST, INCREMENTAL, PARTS, TOGETHER, assert_same
 
 import radiosity as rd
@@ -33,11 +34,6 @@ def short(monkeypatch):
 
 def solved(patches, method, **options) -> rd.Solution:
     return rd.solve(patches, method, **{"quanta": 20_000, "replicates": 1, "seed": 3} | options)
-
-
-def some(names, more):
-    """Some of many cases, and the rest among the slow tests."""
-    return pytest.mark.parametrize("name", [*names, *(pytest.param(name, marks=pytest.mark.slow) for name in more)])
 
 
 CUT = {

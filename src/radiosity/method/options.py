@@ -49,7 +49,7 @@ METHOD = table(
     ),
     Option(
         "padding",
-        "Walks that draw numbers at each hit: where later segments have theirs from: shuffled or prime-bases (halton).",
+        "How walks that draw numbers at each hit get those of later segments: shuffled or prime-bases (halton).",
         values=PADDINGS,
         details="See docs/numbers.md.",
     ),
@@ -92,7 +92,7 @@ METHOD = table(
     ),
     Option(
         "refine_lines",
-        "Iterations: lines bring light to elements of many patches, as large as may err by this share of what the scene emits, "
+        "Iterations: lines bring light to elements of many patches. An element may err by this share of what the scene emits, "
         "such as 1e-5.",
         kind="share",
         zero=True,

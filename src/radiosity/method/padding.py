@@ -1,4 +1,4 @@
-"""The choice of the padding: where a walk that takes numbers on each of its segments has those of later segments from."""
+"""The choice of the padding: how a walk that takes numbers on each of its segments gets those of later segments."""
 
 PADDINGS = {
     "shuffled": "the same sequence with its points in another order for each segment (Latin supercube sampling)",
