@@ -1,6 +1,7 @@
-"""Efficiency of workers of Dask: CPU seconds of one process with two threads over those of two workers of one thread each.
+"""Efficiency of workers of Dask: CPU seconds of one process with two threads over those of workers of one thread each.
 
     python benchmarks/cluster.py --lines 1e7 3e7 1e8 --replicates 8 1 -o cluster.jsonl
+    python benchmarks/cluster.py --lines 1e8 --replicates 8 --workers 4   # more than cores: only CPU seconds tell something
 
 CPU seconds and not wall time, since other programs may run on the machine; workers of equal speed that do not wait take half of
 theirs each. Each figure is the least of some repetitions, taken in turns. The first run of each kind compiles kernels, and does
@@ -19,7 +20,6 @@ import radiosity as rd
 from radiosity.cluster import barrier, crew, post, wavefronts
 from radiosity.cluster.connect import connected
 
-WORKERS = 2
 SENT = {"Lines", "Hits", "Brought", "Outcome", "Share", "FiringState", "OwnRows"}  # values that hold arrays
 SENT |= {"Shot", "Landed", "WalkState", "GatherLines"}  # of steps
 
@@ -92,13 +92,13 @@ def main() -> None:
     parser.add_argument("--barriers", action="store_true", help="let each wavefront of a cut replicate end with a barrier")
     parser.add_argument("--method", default="random-walk")
     parser.add_argument("--scene", default="room")
-    parser.add_argument("--patches", type=int, default=20_000)
+    parser.add_argument("--workers", type=int, default=2, help="where there are more than cores, each has one thread")
     parser.add_argument("--repeat", type=int, default=2)
     parser.add_argument("-o", "--output", type=Path)
     given = parser.parse_args()
     patches, counted = rd.subdivide(rd.load_scene(given.scene)), Counted()
     wavefronts.ROWS = len(patches) if given.barriers else wavefronts.ROWS
-    with connected(f"local:{WORKERS}") as client:
+    with connected(f"local:{given.workers}") as client:
         client.run(count_messages)
         for replicates in given.replicates:
             measured(patches, client, counted, given.method, 1e6, replicates, 1)  # compiles kernels
@@ -111,19 +111,20 @@ def main() -> None:
 
 
 def measured(patches, client, counted, method: str, lines: float, replicates: int, repeat: int) -> dict:
-    alone, here, there, walls, waits = [], [], [], [], []
+    alone, here, there, walls, waits, same = [], [], [], [], [], True
     options = {"rays": lines, "replicates": replicates, "method": method}
     for _ in range(repeat):
         begun, clock = own_seconds(), time.perf_counter()
-        rd.solve(patches, **options)
+        one = rd.solve(patches, **options)
         alone.append(own_seconds() - begun)
         walls.append(time.perf_counter() - clock)
         begun, before = own_seconds(), sum(client.run(own_seconds).values())
         counted.taken()
         posted = np.sum(list(client.run(messages).values()), axis=0)
         clock = time.perf_counter()
-        rd.solve(patches, **options, cluster=client)
+        other = rd.solve(patches, **options, cluster=client)
         waits.append(time.perf_counter() - clock)
+        same &= one.radiosity.tobytes() == other.radiosity.tobytes()
         units = counted.taken()
         more = np.sum(list(client.run(messages).values()), axis=0) - posted
         units |= {"messages": int(more[0]), "bytes of messages": int(more[1])}
@@ -136,7 +137,9 @@ def measured(patches, client, counted, method: str, lines: float, replicates: in
         "lines": lines,
         "method": method,
         "replicates": replicates,
+        "workers there": len(client.nthreads()),
         "barriers": len(patches) == wavefronts.ROWS,
+        "same bits": same,
         "alone": round(min(alone), 2),
         "driver": round(here[best], 2),
         "workers": round(there[best], 2),

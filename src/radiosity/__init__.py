@@ -111,6 +111,12 @@ def _sensing(*of):
     return sensing(*of)
 
 
+def _years(*of):
+    from .cluster.years import years
+
+    return years(*of)
+
+
 HOOKS["export"] = _export  # of `Solution.export`
 HOOKS["adapt"] = _adapt  # of `subdivide(scene, patches=...)` and `solve(scene, adaptive=True)`
 HOOKS["cut at contacts"] = _cut_at_contacts  # of `subdivide(scene, contacts=True)`
@@ -119,6 +125,7 @@ HOOKS["sight"] = _sight  # of `solve(scene, importance=...)`
 HOOKS["cluster"] = _on_cluster  # of `solve(scene, cluster=...)`
 HOOKS["connected"] = _connected  # of what solves and traces on one cluster
 HOOKS["sensing"] = _sensing  # of `measure(scene, sensors, cluster=...)`
+HOOKS["years"] = _years  # of `annual(scene, weather, cluster=...)`
 
 # Loaded when first asked for: the command line then hears Ctrl-C before numpy and all the rest are imported.
 _HOMES = {

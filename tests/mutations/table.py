@@ -3060,6 +3060,27 @@ MISTAKES = (
         "workers begin parts that they have too little memory for",
     ),
     Mistake(
+        "sensors/annual/sunlight.py",
+        "start + number * len(towards)",
+        "start + number * len(here)",
+        ("test_cluster_year.py",),
+        "parts of the suns of a year that panes let through are met by other rays",
+    ),
+    Mistake(
+        "sensors/annual/elsewhere.py",
+        "((a, c), (b, d))",
+        "((a, c), (a, c))",
+        ("test_cluster_year.py",),
+        "parts of the lines of a year take the shadow rays of others",
+    ),
+    Mistake(
+        "cluster/connect.py",
+        "given[int(str(name)) % workers]",
+        "given[0]",
+        ("test_cluster_gpus.py",),
+        "all processes of a local cluster take the first GPU",
+    ),
+    Mistake(
         "cluster/scenes.py",
         "        there.append(found)\n",
         "",

@@ -55,10 +55,21 @@ class Tracing(Size):
     error: Share = None
 
 
+@dataclass(frozen=True)
+class Running(Replicated):
+    """What concerns the run.
+
+    Attributes:
+        cluster: Trace on the workers of Dask, as of `radiosity solve`: tcp://HOST:PORT, or local:N.
+    """
+
+    cluster: str | None = None
+
+
 YearOptions = Annotated[Year, Parameter(name="*", group=Group("The year", sort_key=0))]
 TracingOptions = Annotated[Tracing, Parameter(name="*", group=Group("Lines and patches", sort_key=2))]
-RunningOptions = Annotated[Replicated, Parameter(name="*", group=RUN)]
-NOWHERE, USUAL, PLAIN = Points(), Tracing(), Replicated()
+RunningOptions = Annotated[Running, Parameter(name="*", group=RUN)]
+NOWHERE, USUAL, PLAIN = Points(), Tracing(), Running()
 
 
 def annual(

@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from ..errors import DeviceError, MethodError, installing
+from .gpus import environments
 from .scenes import forget_scenes
 
 LOCAL = "local:"
@@ -77,7 +78,7 @@ def _count(cluster: str) -> int:
 
 @contextmanager
 def _local(workers: int) -> Iterator[Any]:
-    """Start processes on this machine, which share its cores."""
+    """Start processes on this machine, which share its cores, and take one of its GPUs each."""
     import dask.config
     from distributed import Client, LocalCluster
 
@@ -88,11 +89,24 @@ def _local(workers: int) -> Iterator[Any]:
         raise DeviceError(GUARD)
     with dask.config.set(QUIET):
         try:
-            cluster = LocalCluster(n_workers=workers, threads_per_worker=threads, processes=True, **options)
+            cluster = LocalCluster(n_workers=workers, threads_per_worker=threads, worker_class=_started(workers), **options)
         except RuntimeError as error:
             raise DeviceError(f"cluster 'local:{workers}': its processes do not start ({_why(error)}). {GUARD}") from None
         with cluster, Client(cluster) as client:
             yield client
+
+
+def _started(workers: int) -> type:
+    """Return Dask's class that starts a process of a local cluster, with an environment of its own each."""
+    from distributed import Nanny
+
+    given = environments(workers)
+
+    class OneGpu(Nanny):
+        def __init__(self, *of, name=None, env=None, **options):
+            super().__init__(*of, name=name, env={**(env or {}), **given[int(str(name)) % workers]}, **options)
+
+    return OneGpu
 
 
 def _cores() -> int:

@@ -10,6 +10,7 @@ from weakref import WeakKeyDictionary
 from ..device.backend import choose
 from ..problem.model import Problem
 from ..tracing.geometry import Geometry
+from .gpus import tell_of_shared
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +47,7 @@ def scene_on(client: Any, problem: Problem, device: str) -> SceneJob:
     there = _sent.setdefault(client, [])
     found = next((scene for scene in there if scene.problem is problem and scene.device == device), None)
     if found is None:
+        tell_of_shared(client, device)
         found = SceneJob(problem, device)
         client.register_plugin(JobPlugin(found))
         there.append(found)

@@ -14,6 +14,7 @@ from ..run.result import R
 from ..run.run import Run
 from .connect import connected
 from .crew import DaskCrew
+from .gpus import tell_of_shared
 from .job import Job
 from .steps import cut
 
@@ -34,6 +35,7 @@ def solve(cluster: Any, prepared: Callable[[], Run[R]]) -> R:
         lines = lines_of(run.method, run.budget, run.part.replicates)
         each = None if lines is None else lines / run.part.replicates
         crew = DaskCrew(client, Job(run.problem, run.method, run.part.seed, run.device.name, each), together(run.method))
+        tell_of_shared(client, run.device.name)
         crew.stopping = lambda: run.stop.asked
         crew.register()
         try:

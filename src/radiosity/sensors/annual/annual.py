@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from os import PathLike
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,7 @@ from ...errors import MethodError, shown
 from ...patches import Patches, subdivide
 from ...problem.model import Problem
 from ...run.budget import Budget
+from ...run.on_cluster import on_cluster
 from ...run.progress import Listener, Stop, Teller
 from ...run.whole_number import whole
 from ...sampling.streams import Seed
@@ -34,7 +36,8 @@ from ..measure import scene_of
 from ..model import Sensors
 from ..run import BEHIND
 from ..target import worst
-from .coefficients import Coefficients, Replicate
+from .coefficients import Coefficients, Replicate, Setup
+from .elsewhere import AbstractYearLines, tracing_on
 from .figures import Figures
 from .result import AnnualDaylight
 from .schedule import read_schedule, usual
@@ -63,6 +66,7 @@ def annual(
     device: str = "auto",
     progress: Listener | None = None,
     memory: str | float | None = None,
+    cluster: Any = None,
 ) -> AnnualDaylight:
     """Find the daylight that sensors get in each hour of a year, and its figures: DA, UDI, sDA, ASE.
 
@@ -83,7 +87,7 @@ def annual(
             the light of the year. The default is an error of 2 %.
         replicates: independent randomised runs, 2 or more.
         seed: with the same inputs, the same bits.
-        device, progress, memory: as of `solve`.
+        device, progress, memory, cluster: as of `solve`.
 
     Returns:
         The figures of each sensor and of each set, with errors. Ctrl-C ends the lines early; the year is summed up all the same.
@@ -122,10 +126,11 @@ def annual(
     axes = _axes(given, up, north)
     skies = YearOfSkies.of(year, sky, axes, ground)
     _tell_of_lights(given)
-    with memory_of.limited(memory), turn():
+    with memory_of.limited(memory), turn(), on_cluster(cluster) as client:
         patches = _prepared(scene, axes)
         _refuse_large(len(sensors), len(patches), len(sky), count, len(year) if hourly else 0)
-        return _Run(patches, sensors, sky, axes, year, skies, there, budget, count, number, device, progress).found(hourly)
+        given = patches, sensors, sky, axes, year, skies, there, budget, count, number, device, progress, client
+        return _Run(*given).found(hourly)
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,22 +147,21 @@ class _Run:
     seed: int
     device: str
     progress: Listener | None
+    client: Any
 
     def found(self, hourly: bool) -> AnnualDaylight:
         begun, stop, teller = perf_counter(), Stop(), Teller(self.budget, self.progress)
         geometry = Geometry(self.patches.solid, choose(self.device))
         _refuse_passing(geometry)
-        geometry.prepare()
         problem = Problem.of(self.patches)
         teller.begin(0)
-        with stop.listening():
-            runs = [
-                Replicate(geometry, problem, self.sensors, Seed(self.seed, r), self.sky, self.axes) for r in range(self.count)
-            ]
-            coefficients, status = self._staged(runs, teller, stop)
+        setup = Setup(self.sensors, Seed(self.seed), self.sky, self.axes)
+        with stop.listening(), tracing_on(self.client, setup, problem, geometry.device.name) as lines:
+            runs = [setup.replicate(geometry, problem, number) for number in range(self.count)]
+            coefficients, status = self._staged(runs, lines, teller, stop)
             inside = np.mean([run.behind() for run in runs], axis=0) > BEHIND
             self._tell_of_dark(coefficients, inside)
-            mean, each, lux = self._summed(runs, coefficients, teller, hourly)
+            mean, each, lux = self._summed(runs, lines, coefficients, teller, hourly)
         return AnnualDaylight(
             self.sensors,
             mean.values(),
@@ -174,14 +178,16 @@ class _Run:
             self.patches.scene.source,
         )
 
-    def _staged(self, runs: list[Replicate], teller: Teller, stop: Stop) -> tuple[Coefficients, str]:
+    def _staged(
+        self, runs: list[Replicate], lines: AbstractYearLines, teller: Teller, stop: Stop
+    ) -> tuple[Coefficients, str]:
         """Trace stage by stage; return the coefficients and a status."""
         lanes = len(self.sensors) + len(self.patches) / 4
         each = FIRST if self.budget.rays is None else max(int(self.budget.rays / (2 * lanes * self.count)), 2)
         light = self.skies.with_suns(self.sky)[self.occupied[self.skies.hours]].sum(axis=0)
         while True:
-            for run in runs:
-                teller.lines += run.advance(each)
+            for more in lines.advance(runs, each):
+                teller.lines += more
                 teller.tell("tracing")
             pairs = [run.coefficients() for run in runs]
             found = Coefficients(*(np.stack(column) for column in zip(*pairs, strict=True)))
@@ -210,7 +216,7 @@ class _Run:
             told = f"{source}: no line found the sky for {many}, straight or reflected"
             warn(f"{told}: their light is unknown and counts as 0; name the windows as openings, or take more lines")
 
-    def _summed(self, runs: list[Replicate], coefficients: Coefficients, teller: Teller, hourly: bool):
+    def _summed(self, runs: list[Replicate], lines: AbstractYearLines, coefficients: Coefficients, teller: Teller, hourly: bool):
         """Return the figures of means over replicates, those of each replicate, and the lux of hours where they are kept."""
         n, skies = len(self.sensors), self.skies
         mean, each = Figures.nothing(n), Figures.nothing(self.count, n)
@@ -223,8 +229,8 @@ class _Run:
             here = whole @ skies.radiance[rows].T
             by_sun = np.zeros_like(here)
             lit = np.flatnonzero(skies.direct[rows] > 0)
-            for replicate, run in enumerate(runs if len(lit) else []):
-                straight, reflected = run.suns(skies.towards[rows][lit], at)
+            shares = lines.suns(runs, skies.towards[rows][lit], at) if len(lit) else []
+            for replicate, (straight, reflected) in enumerate(shares):
                 by_sun[replicate][:, lit] = straight * skies.direct[rows][lit]
                 here[replicate][:, lit] += (straight + reflected) * skies.direct[rows][lit]
             mean.add(here.mean(axis=0), by_sun.mean(axis=0), occupied[rows])

@@ -5,7 +5,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from ...device.backend import small
+from ...device.backend import small, upload
 from ...scene.lights.sky_patches import SkyPatches
 
 
@@ -23,7 +23,7 @@ class Bins:
         Args:
             axes: (3, 3), directions of north, east and up, see `scene.lights.axes.sky_axes`.
         """
-        self.patches, self.types = patches, types
+        self.patches, self.types, self._of = patches, types, (patches, axes, lanes, types)
         self._axes = [types.Array3f(*axis) for axis in axes.tolist()]
         self._counts = small(types.UInt32, np.append(patches.counts, 1).astype(np.uint32))
         self._starts = small(types.UInt32, patches.starts.astype(np.uint32))
@@ -49,6 +49,15 @@ class Bins:
         column = types.UInt32(dr.select(turns < 0, turns + 1, turns) * whole + 0.5)
         column = dr.select(column >= count, column - count, column)
         return dr.select(up < 0, types.UInt32(len(patches) - 1), dr.gather(types.UInt32, self._starts, row, active) + column)
+
+    def emptied(self) -> "Bins":
+        """Return an empty table for the same lanes."""
+        return Bins(*self._of)
+
+    def add(self, table: np.ndarray) -> None:
+        """Add the table of other lines of the same lanes."""
+        self.table += upload(self.types.Int64, table)
+        dr.eval(self.table)
 
     def values(self) -> np.ndarray:
         """Return the table, (lanes, n_sky_patches) float64."""

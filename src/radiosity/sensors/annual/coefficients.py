@@ -23,6 +23,32 @@ PATCHES = (Purpose.YEAR_PATCHES, Purpose.YEAR_PATCHES_SHADOW)
 SENSORS = (Purpose.YEAR_SENSORS, Purpose.YEAR_SENSORS_SHADOW)
 
 
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """What the lines of a year follow from, besides the scene.
+
+    Attributes:
+        sensors: where.
+        seed: of the first replicate.
+        sky, axes: the sky's patches and directions, see `Bins`.
+    """
+
+    sensors: Sensors
+    seed: Seed
+    sky: SkyPatches
+    axes: np.ndarray
+
+    def replicate(self, geometry: Geometry, problem: Problem, number: int) -> "Replicate":
+        """Return a replicate without lines.
+
+        Args:
+            problem: whose only light is a sky of radiance 1.
+        """
+        geometry.prepare()
+        seed = Seed(self.seed.value, self.seed.first_replicate + number)
+        return Replicate(geometry, problem, self.sensors, seed, self.sky, self.axes)
+
+
 class Replicate:
     """The lines of one replicate, and what they say so far."""
 
@@ -40,10 +66,13 @@ class Replicate:
         self.patches = Gathering.of(Packets(geometry, 1), grey, seed, PATCHES, sky, axes)
         self.sensors = Gathering.of(self.receivers, grey, seed, SENSORS, sky, axes)
 
+    def of(self, *, patches: bool) -> Gathering:
+        """Return the lines of patches, or those of sensors."""
+        return self.patches if patches else self.sensors
+
     def advance(self, each: int) -> int:
         """Trace until each sensor has so many lines of both kinds; return the number of new lines."""
-        of_patches = max(int(each * OF_PATCHES), 2)
-        return self.patches.advance(of_patches, of_patches) + self.sensors.advance(each, each)
+        return sum(self.of(patches=kind).advance(count, count) for kind, count in counts_of(each))
 
     def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
         """Return what sensors get from each sky patch of radiance 1, straight and reflected, (n_sensors, n_sky_patches) each."""
@@ -64,10 +93,27 @@ class Replicate:
 
         Args: see `Sunlight.shares`.
         """
-        samples = 1 if self.receivers.geometry.panes is None else IN_PANES
-        straight = Sunlight(self.sensors.of_suns, self.receivers.place, samples).shares(towards, first)
-        lit = Sunlight(self.patches.of_suns, self.places).shares(towards, first)
+        straight, lit = (self.sunlight(patches=kind).shares(towards, first) for kind in (False, True))
+        return self.of_suns(straight, lit)
+
+    def sunlight(self, *, patches: bool, places: np.ndarray | None = None) -> Sunlight:
+        """Return the rays to suns: those of sensors, or those of patches.
+
+        Args:
+            places: of the patches that are asked; None: of those that sensors see, by the lines so far.
+        """
+        if patches:
+            return Sunlight(self.patches.of_suns, self.places if places is None else places)
+        return Sunlight(self.sensors.of_suns, self.receivers.place, 1 if self.receivers.geometry.panes is None else IN_PANES)
+
+    def of_suns(self, straight: np.ndarray, lit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return what sensors get by each sun, straight and reflected, from what rays of sensors and patches brought."""
         return self.receivers.mean_of_planes(straight.T), self.weights @ lit.T
+
+
+def counts_of(each: int) -> list[tuple[bool, int]]:
+    """Return the lines of a patch (True) and of a sensor (False), of each kind, where sensors have so many."""
+    return [(True, max(int(each * OF_PATCHES), 2)), (False, each)]
 
 
 def photopic_scatters(problem: Problem) -> list[tuple[float, Scatter]]:

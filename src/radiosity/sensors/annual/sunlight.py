@@ -28,18 +28,21 @@ class Sunlight:
     places: np.ndarray
     samples: int = 1
 
-    def shares(self, towards: np.ndarray, first: int) -> np.ndarray:
+    def shares(self, towards: np.ndarray, first: int, some: slice = slice(None)) -> np.ndarray:
         """Return what the receivers get of a unit of normal irradiance by each sun, (n_suns, n_places) float32.
 
         Args:
             towards: (n_suns, 3) unit directions to the suns.
             first: the number of the first sun among all: rays are a function of it, the receiver and the seed.
+            some: of the suns, which alone are asked.
         """
+        here = towards[some]
         if not len(self.places):
-            return np.zeros((len(towards), 0), np.float32)
-        found = self._cosines(towards, first * self.samples)
+            return np.zeros((len(here), 0), np.float32)
+        start = first * self.samples + (some.start or 0)
+        found = self._cosines(here, start)
         for number in range(1, self.samples):
-            found += self._cosines(towards, first * self.samples + number * len(towards))
+            found += self._cosines(here, start + number * len(towards))
         return found / self.samples
 
     def _cosines(self, towards: np.ndarray, start: int) -> np.ndarray:
