@@ -1,8 +1,9 @@
 """Time and memory of runs against the numbers of faces and patches, from 10^2 to 10^7: ``python benchmarks/scale.py``.
 
 Each row is a process of its own: a closed box in three colours, 8 replicates, four lines a patch in each. In one series all
-patches are faces; in the other at most 10^4 faces are cut. Rows are kept in `scale.jsonl`, and `scale_figure.py` draws them. A
-run is left out where the machine has not the memory that it is expected to take.
+patches are faces; in the other at most 10^4 faces are cut. Rows are appended to `scale.jsonl`, or to another file. Those of
+`docs/figures/scale.jsonl` are what `scale_figure.py` draws. A run is left out where the machine has not the memory that it is
+expected to take.
 """
 
 import argparse
@@ -75,6 +76,7 @@ def main() -> None:
     parser.add_argument("--series", nargs="+", choices=SERIES, default=list(SERIES))
     parser.add_argument("--sizes", nargs="+", type=float, default=list(SIZES))
     parser.add_argument("--replicates", type=int, default=8)
+    parser.add_argument("-o", "--output", type=Path, default=ROWS)
     parser.add_argument("--child", action="store_true", help="one row in this process; prints JSON")
     given = parser.parse_args()
     if given.child:
@@ -88,7 +90,7 @@ def main() -> None:
                 print(kind, f"{size:g}", "ended:", done.stderr.strip()[-300:], flush=True)
                 continue
             row = json.loads(done.stdout.splitlines()[-1])
-            with ROWS.open("a", encoding="utf-8") as file:
+            with given.output.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")
             print(told(row), flush=True)
 

@@ -1,21 +1,23 @@
-"""Figure of time and memory against faces and patches, from the rows of `scale.py`: ``scale_figure.py PATH``."""
+"""Figure of time and memory against faces and patches, from rows of `scale.py`: ``scale_figure.py PATH [ROWS]``.
+
+Rows are those of `docs/figures/scale.jsonl` unless another file is named.
+"""
 
 import json
 import sys
 from pathlib import Path
 
-from scale import ROWS
-
 from radiosity.lab.figures import COLOURS, MARKS, drawn
 
 GIB = 2**30
+ROWS = Path(__file__).parents[1] / "docs" / "figures" / "scale.jsonl"
 NAMES = {"faces": "every patch a face", "patches": "at most 10⁴ faces"}
 
 
-def draw(path: Path) -> None:
+def draw(path: Path, of: Path) -> None:
     """Draw the last row of each series and size."""
     rows = {}
-    for line in ROWS.read_text(encoding="utf-8").splitlines():
+    for line in of.read_text(encoding="utf-8").splitlines():
         row = json.loads(line)
         if "peak" in row:
             rows[row["series"], row["patches"]] = row
@@ -35,4 +37,4 @@ def draw(path: Path) -> None:
 
 
 if __name__ == "__main__":
-    draw(Path(sys.argv[1]))
+    draw(Path(sys.argv[1]), Path(sys.argv[2]) if len(sys.argv) > 2 else ROWS)
