@@ -7,6 +7,7 @@ Constants have four times the patches of polynomials. "smooth" are the points on
 "edges" are the others: floors with shadows, ceilings behind lamps, lamps.
 
 python benchmarks/bases.py [--scenes cornell-box room] [--patches 1200 5000] [--points 1500] [--meshes even follows] [--gather]
+    [--lines 8000]
 """
 
 import argparse
@@ -19,7 +20,7 @@ from meshes import EACH, LEAST, READ, Places, patch_at, solved, used
 import radiosity as rd
 from radiosity.patches.polynomials import Polynomials
 
-LINES = 8000  # of a patch, for each number of constants on it
+LINES = 8000  # of a patch of constants
 SMOOTH = ("wall", "box", "block")  # words in names of surfaces
 METHOD = {"method": "stochastic-jacobi-control-variate", "estimator": "bidirectional"}
 GATHER = {"method": "gather"}
@@ -56,7 +57,7 @@ def errors(solution: rd.Solution, places: Places, truth: rd.Measurement, groups:
     return rows
 
 
-def compare(name: str, counts: list[int], points: int, meshes: list[str], method: dict) -> None:
+def compare(name: str, counts: list[int], points: int, meshes: list[str], method: dict, lines: int) -> None:
     """Print the rows of a scene."""
     scene = rd.load_scene(name, allow_outside=True)
     scene = replace(scene, back=np.where(scene.back == rd.Back.PASSES, rd.Back.ABSORBS, scene.back).astype(np.uint8))
@@ -74,7 +75,7 @@ def compare(name: str, counts: list[int], points: int, meshes: list[str], method
             for basis, patches in (("constant", many), ("linear", few), ("quadratic", few)):
                 patches = patches if mesh == "even" else rd.adapt(scene, len(patches), basis=basis)
                 begun = used()
-                rays = max(LINES * 4 * count, LEAST)
+                rays = max(lines * 4 * count, LEAST)
                 solution = rd.solve(patches, **method, basis=basis, rays=rays, seed=1)
                 seconds = used() - begun
                 shown = [f"{total:.2%} ({own:.2%})" for total, own in errors(solution, places, truth, groups)]
@@ -87,8 +88,9 @@ if __name__ == "__main__":
     parser.add_argument("--patches", nargs="+", type=int, default=[1200, 5000])
     parser.add_argument("--points", type=int, default=1500)
     parser.add_argument("--meshes", nargs="+", default=["even", "follows"], choices=["even", "follows"])
+    parser.add_argument("--lines", type=int, default=LINES, help="of a patch of constants; polynomials have as many in all")
     parser.add_argument("--gather", action="store_true", help="solve by gathers, not by iterations")
     given = parser.parse_args()
     warnings.simplefilter("ignore")
     for scene_name in given.scenes:
-        compare(scene_name, given.patches, given.points, given.meshes, GATHER if given.gather else METHOD)
+        compare(scene_name, given.patches, given.points, given.meshes, GATHER if given.gather else METHOD, given.lines)

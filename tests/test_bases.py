@@ -203,6 +203,27 @@ def test_linear_light_needs_a_quarter_of_the_patches():
     assert errors[2] < 0.7 * errors[1]
 
 
+def test_the_rule_of_a_quarter_where_noise_does_not_matter():
+    """Gathers of the same light, whose own errors are below a quarter of all: half the error of constants at most."""
+    scene = lit_by_a_wall()
+    coarse = rd.subdivide(scene, cells=3)
+    fine = halved(halved(coarse))
+    rows, (u, v) = np.flatnonzero(fine.face > 0), middles(fine)
+    exact = falling(scene, fine.centroid[rows], fine.normal[rows])
+    errors = []
+    for patches, name in ((halved(coarse), "constant"), (coarse, "linear")):
+        found = rd.solve(patches, "gather", basis=name, rays=800_000, seed=1)
+        at, noise = parents(fine, patches)[rows], found.irradiance_standard_error[:, 0] ** 2
+        light, noise = found.irradiance[at, 0], noise[at]
+        if name == "linear":
+            shape = Polynomials(coarse, found.basis, found.irradiance, found.irradiance_coefficients)
+            light = shape.at(at, u[rows], v[rows])[:, 0]
+            noise = noise + (found.irradiance_coefficients_standard_error[at, 0] ** 2).sum(axis=1)  # functions have mean square 1
+        errors.append(np.sqrt(np.mean((light - exact) ** 2)))
+        assert np.sqrt(noise.mean()) < 0.25 * errors[-1]
+    assert errors[1] < 0.5 * errors[0]
+
+
 def falling(scene: rd.Scene, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """The irradiance of points by the first face, which emits 1, in closed form."""
     return from_points(points, normals, np.tile(scene.vertices[scene.faces[0]], (len(points), 1, 1)))

@@ -49,6 +49,41 @@ def test_backs_that_let_lines_pass_go_to_the_walk():
     assert "lines pass through some backs" in chosen(rd.subdivide(scene, cells=3), rays=20_000)["why"]
 
 
+@pytest.mark.parametrize(
+    ("patches", "basis", "lines", "name"),
+    [(ROOM, "linear", 400, "gather"), (FURNACE, "linear", 400, CONTROL), (ROOM, "linear", 100, "particle-tracing")],
+)
+def test_a_basis_goes_to_a_method_that_takes_it(patches, basis, lines, name):
+    solution = rd.solve(patches, basis=basis, rays=lines * len(patches), seed=3)
+    assert solution.provenance["auto"]["chosen"] == name
+    assert solution.basis.name == basis
+    again = rd.solve(patches, rd.Method(**solution.provenance["choices"]), seed=3, quanta=solution.quanta)
+    assert np.array_equal(solution.irradiance_coefficients, again.irradiance_coefficients)
+    with pytest.raises(rd.MethodError, match="and the solution to go on from has basis"):
+        rd.solve(patches, basis="quadratic" if basis == "linear" else "linear", seed=3, rays=1e6, resume=solution)
+
+
+def test_a_basis_and_lights_go_to_a_gather_where_it_runs():
+    corners = np.concatenate([quad((0, 0, z), (1, 0, 0), (0, 1, 0)) for z in (0.0, 1.0)])
+    globe = rd.point_light(position=(0.5, 0.5, 0.5), lumens=100, name="globe")
+    for back in (rd.Back.ABSORBS, rd.Back.PASSES):
+        scene = rd.Scene.from_arrays(corners, np.arange(8).reshape(-1, 4), 0.5, 0.0, back=[back] * 2, photometric=True)
+        patches = rd.subdivide(scene.with_lights([globe]), cells=2)
+        if back == rd.Back.ABSORBS:
+            told = chosen(patches, rays=4_000, basis="linear")
+            assert (told["chosen"], told["pilot_lines"]) == ("gather", 0)
+        else:
+            with pytest.raises(rd.MethodError, match="no method takes both with basis 'linear': leave basis out"):
+                rd.solve(patches, rays=4_000, basis="linear")
+
+
+def test_choices_besides_a_basis_ask_for_a_method():
+    with pytest.raises(rd.MethodError, match="take one of these, or leave basis out"):
+        rd.solve(ROOM, basis="linear", numbers="sobol", rays=1_000)
+    with pytest.raises(rd.MethodError, match="basis 'cubic' does not exist; known are constant, linear, quadratic"):
+        rd.solve(ROOM, basis="cubic", rays=1_000)
+
+
 def test_black_scenes_go_to_the_walk():
     corners = np.concatenate([quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0, 0, 1), (0, 1, 0), (1, 0, 0))])
     scene = rd.Scene.from_arrays(corners, np.arange(8).reshape(-1, 4), 0.0, [1.0, 0.0])

@@ -82,14 +82,18 @@ def test_gather_and_random_walk_agree_on_lights_of_all_kinds():
     assert one.error < 0.01
 
 
-@pytest.fixture(scope="module")
-def windowed() -> rd.Scene:
+def room_with_window() -> rd.Scene:
     """A room of 4 x 3 x 3 m with a window of 1 m2; walls are seen from inside, and black outside."""
     around = [((0, 0, 0), (0, 3, 0), (0, 0, 1)), ((0, 0, 2), (0, 3, 0), (0, 0, 1))]
     around += [((0, 0, 1), (0, 1, 0), (0, 0, 1)), ((0, 2, 1), (0, 1, 0), (0, 0, 1))]
     inside = [one for one in box((0, 0, 0), (4, 3, 3), inward=True) if np.ptp(np.asarray(one)[:, 0]) > 0 or one[0][0] > 1]
     assert len(inside) == 5
     return join([("walls", 0.5, 0.0, [*inside, *(quad(*one) for one in around)])], source="room with a window")
+
+
+@pytest.fixture(scope="module")
+def windowed() -> rd.Scene:
+    return room_with_window()
 
 
 @pytest.fixture(scope="module")

@@ -25,6 +25,14 @@ ALGORITHMS = {
 
 
 LIGHTS = ("firing", "gather")  # algorithms that take lights without area
+PLAIN = {"order": "incremental", "estimator": "collision", "control_variate": False, "basis": "constant", "refine_lines": 0.0}
+
+
+def takes_lights(method: Method | Baseline) -> bool:
+    """Return whether a method takes lights without area: of iterations those with the choices `PLAIN` do."""
+    if method.machine == "iteration":
+        return all(getattr(method, name) == value for name, value in PLAIN.items())
+    return method.machine in LIGHTS
 
 
 def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: Seed | int, replicates: int) -> AbstractAlgorithm:
@@ -33,7 +41,7 @@ def make(geometry: Geometry, problem: Problem, method: Method | Baseline, seed: 
     Raises:
         MethodError: there are lights without area, and the method cannot take them.
     """
-    if problem.lights is not None and method.machine not in LIGHTS:
+    if problem.lights is not None and not takes_lights(method):
         names = shown([one.name for one in problem.patches.scene.lights.all])
         raise MethodError(
             f"{method} sends light from patches only, and {problem.patches.scene.source} has lights without area: {names}; "

@@ -26,8 +26,8 @@ class Tracing:
         error: Trace until the relative error is below this, such as 1% (the default); in 95 % of runs the true error then is. A
             run that ends above it has the exit status 3.
         error_of: What --error is the error of: the mean of each set of sensors, or the worst sensor.
-        importance: Share out the lines of the solution by what they add at the sensors: for sensors far from all lamps, which
-            must be surfaces (docs/importance.md).
+        importance: Share out the lines of the solution by what they add at the sensors: for sensors far from all lamps
+            (docs/importance.md).
         patch_size: Longest edge of a patch, in metres. Default: about 20 000 patches in all.
         cells: Cut every face into CELLS x CELLS patches.
     """

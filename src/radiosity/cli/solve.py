@@ -50,8 +50,8 @@ def solve(
         A scene file (.xml .glb .gltf .obj .ply .stl .mgf .rad .hbjson .ifc .vs3 .toml) or a built-in scene: cornell-box,
         room, rooms, studio, labyrinth.
     method
-        Name of a method; `radiosity methods` lists them. auto chooses one for the scene, by a short pilot run. The options
-        below change a part of the method. Without a method they change random-walk.
+        Name of a method; `radiosity methods` lists them. auto chooses one for the scene, by a short pilot run; it takes
+        --basis. The other options below change a part of the method. Without a method they change random-walk.
     """
     given = budget.given
     seen.check(refines=cut.refine_check)

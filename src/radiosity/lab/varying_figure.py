@@ -29,4 +29,4 @@ def draw(found: dict[str, list[Curve]], title: str, path: Path) -> None:
                     name = f"{basis}, {one.patches}"
                     right.plot(one.lines, mean_error(one.errors), line, color=colour, marker=mark, label=name)
             left.legend(fontsize=8)
-            right.legend(fontsize=6)
+            right.legend(fontsize=6, title="basis, patches", title_fontsize=6)

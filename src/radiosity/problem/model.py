@@ -23,7 +23,7 @@ class Problem:
         source: the scalar problem of the largest band of each row (contract 3).
         rows: what fires lines: the patches, and lights without area.
         lights: lights without area, or None.
-        importance: (n_patches,) float64, positive: what light from each patch is worth, by which lines are shared out; None: all
+        importance: (n_rows,) float64, positive: what light from each row is worth, by which lines are shared out; None: all
             light is worth the same.
         prefers_sources: what emits gets a part of all lines, also by methods that would give it none.
     """
@@ -43,6 +43,11 @@ class Problem:
         if self.lights is None:
             return largest
         return np.maximum(largest, self.rows.emission[self.rows.n_patches :].sum(axis=0) / self.patches.area.sum())
+
+    @property
+    def shares(self) -> np.ndarray | None:
+        """By what iterations share lines out, (n_rows,): the importance, or else what `SourceRows.lines` says; None: by power."""
+        return self.rows.lines if self.importance is None else self.importance
 
     @cached_property
     def scalar(self) -> "Problem":

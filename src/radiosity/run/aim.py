@@ -64,19 +64,13 @@ class Aim:
         return Importance.of(geometry, problem, self.share / area * (albedo if self.radiosity else 1.0), method, seed)
 
 
-def method_of(chosen: Method | Baseline | Auto, patches: Patches) -> Method:
+def method_of(chosen: Method | Baseline | Auto) -> Method:
     """Return the method whose lines are shared out: the one that was chosen, or that of `METHOD` for auto.
 
     Raises:
         MethodError: it cannot share them out.
     """
-    method = resolve(METHOD) if isinstance(chosen, Auto) else chosen
-    if patches.scene.lights:
-        names = [one.name for one in patches.scene.lights.all]
-        raise MethodError(
-            f"{patches.scene.source}: importance shares out lines of surfaces that emit, and there are lights without area: "
-            f"{', '.join(map(str, names[:3]))}; leave importance out, or give the lamps as surfaces"
-        )
+    method = resolve(METHOD, basis=chosen.basis) if isinstance(chosen, Auto) else chosen
     if not isinstance(method, Method) or method.order != "incremental":
         raise MethodError(f"importance is for --order incremental, not {method}: take --method {METHOD}, or leave the method out")
     for name, usual in (("estimator", "collision"), ("control_variate", False), ("basis", "constant")):

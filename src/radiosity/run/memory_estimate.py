@@ -91,12 +91,12 @@ def memory_needed(method: Method, patches: Patches, groups: int, replicates: int
 
 
 def _of_sky(patches: Patches, method: Method) -> float:
-    """Return the bytes of the tables of a sky, and of those of its lines through openings, which random walks have."""
+    """Return the bytes of the tables of a sky, and of those of its lines through openings, which walks and iterations have."""
     lights = patches.scene.lights
     if lights.sky is None:
         return 0.0
     total, openings = SKY * lights.sky.radiance.size, lights.openings
-    if openings is None or method.machine != "firing":
+    if openings is None or method.machine not in ("firing", "iteration"):
         return float(total)
     rows, columns, bands = lights.sky.radiance.shape
     table = 2 * max(ROWS, rows // 2) * max(COLUMNS, columns) * bands

@@ -78,7 +78,7 @@ class Run(Generic[R]):
         self.watch: Callable[[R], None] | None = None  # is given the result of each complete stage
         self.spread: Callable[[AbstractAlgorithm], AbstractAlgorithm] | None = None  # makes an algorithm run on other machines
         self.seconds_before = 0.0 if resume is None else resume.seconds
-        self.problem = Problem.of(patches, through=method.machine == "firing") if problem is None else problem
+        self.problem = Problem.of(patches, through=method.machine in ("firing", "iteration")) if problem is None else problem
         bands = self.problem.groups.n_groups
         if self.problem.rows.lines is not None and method.order == "depth-first":
             raise MethodError(

@@ -68,8 +68,9 @@ def solve(
         method: a preset's name, a `Method` or a `Baseline`; or "auto", which takes gather, random-walk or an iteration with a
             control variate, as a pilot of the scene says (`Solution.provenance` holds which, and why). A run that goes on keeps
             the method of its solution.
-        choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. "auto" with choices
-            is random-walk with them. Without ``warm_up`` another order or other lines than the method's drop its warm-up.
+        choices: replace the method's own by name, such as ``numbers="sobol"``; see `Method` and `Baseline`. "auto" takes a
+            ``basis``, and then gather, particle-tracing or the iteration. With other choices it is random-walk with them. Without
+            ``warm_up`` another order or other lines than the method's drop its warm-up.
         rays, seconds, error, quanta: exactly one (with a baseline none is needed, which then goes on until it is done): lines
             traced in all (replicates together); wall time (the first stage is completed whatever it takes); relative error of the
             scene (`Solution.error`), which the true one is below in 95 % of runs; or N of each replicate, which replays a run of
@@ -96,7 +97,7 @@ def solve(
         importance: share lines out for one result, without a bias: "surface:NAME" (or a pattern; the mean irradiance over it),
             "camera" or "camera:2" of the scene, "sensors" of the scene's file, a `Camera` or `Sensors` (the mean radiosity that
             they see). ``error`` then is that of this result, unless error_of says another. Other patches have larger errors.
-            For scenes whose lights are surfaces, and incremental iterations, which "auto" takes (docs/importance.md).
+            Lights are surfaces, luminaires, suns and a sky. For incremental iterations, which "auto" takes (docs/importance.md).
         adaptive: True, or a number of patches: the scene is cut first where light varies, by `adapt` with the same seed, and
             then solved. The pilots that find the mesh come on top of the budget. To go on from its solution (``resume``), leave
             it out: the mesh is kept.
@@ -205,12 +206,12 @@ def prepared(
     if importance is not None:
         from .aim import method_of
 
-        chosen = method_of(chosen, scene)
+        chosen = method_of(chosen)
     if isinstance(chosen, Auto):
         from .choice import choice_for
 
         begun = perf_counter()
-        choice = choice_for(scene, budget, part, device, resume)
+        choice = choice_for(chosen, scene, budget, part, device, resume)
         choice = replace(choice, seconds=perf_counter() - begun)
         chosen = choice.method
     refuse_open(scene.scene, chosen)
@@ -250,7 +251,7 @@ def _adapted(scene, chosen, adaptive, seed, device, progress, resume) -> Patches
         raise MethodError("adaptive makes a new mesh, and resume keeps that of its solution: leave one of them out")
     refuse_hierarchical(chosen)
     count = len(subdivide(scene, **cut_for(chosen))) if adaptive is True else whole(adaptive, "adaptive", 1)
-    basis = chosen.basis if isinstance(chosen, Method) else "constant"
+    basis = "constant" if isinstance(chosen, Baseline) else chosen.basis
     return HOOKS["adapt"](scene, count, seed=seed, device=device, progress=progress, basis=basis)
 
 

@@ -57,8 +57,8 @@ def measure(
         groups: True measures the light of each group by itself, so that it can be dimmed afterwards (`Measurement.dimmed`):
             luminaires by their group (or name), suns, the sky, and surfaces that emit by name. A dictionary makes groups of names
             or patterns; what it leaves out is the group "others".
-        importance: the lines of the solution are shared out by what they add at the sensors: for sensors far from all lamps. The
-            lamps are surfaces (docs/importance.md).
+        importance: the lines of the solution are shared out by what they add at the sensors: for sensors far from all lamps
+            (docs/importance.md).
         replicates: independent randomised runs, those of the solution by default; from 2 on there are standard errors.
         seed: with the same inputs, the same bits.
         device, progress, memory, cluster: as of `solve`.

@@ -16,6 +16,7 @@ from ..device.backend import frozen, upload
 from ..device.launches import shared
 from ..method import Method
 from ..patches.bases import CONSTANT, Basis
+from ..problem.lights import AbstractLights
 from ..sampling.blocks import BLOCK
 from ..sampling.streams import Purpose, Seed
 from ..tracing.geometry import Geometry
@@ -64,7 +65,7 @@ class Receivers:
 
 
 class Shooter:
-    """Counters of lines, and the kernel that fires them.
+    """Counters of lines of patches, and of lights without area after them, and the kernel that fires them.
 
     Attributes:
         tracer: lines of the patches, with the numbers of the sequence that is taken now.
@@ -87,8 +88,9 @@ class Shooter:
         n_groups: int,
         sequences: int = 1,
         basis: Basis = CONSTANT,
+        lights: AbstractLights | None = None,
     ):
-        self.tracer = tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates)
+        self.tracer = tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates, lights)
         self.types, self.total, self.slots, self.groups = tracer.types, tracer.total, tracer.slots, n_groups
         self.hits, self.basis = HitCounts(tracer), basis
         self.received = dr.opaque(self.types.Int64, 0, self.slots * n_groups * basis.size) if n_groups else None

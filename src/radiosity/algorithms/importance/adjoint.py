@@ -7,7 +7,8 @@ algorithms for radiosity", thesis, K. U. Leuven 1999, chapter 6; J. C. Wagner an
 Monte Carlo shielding calculations using the discrete ordinates adjoint function", Nuclear Science and Engineering 128, 1998).
 
 A run of few lines from one end does not reach the other, if that is far. So light and importance are solved in turns, each
-shared out by what is known of the other, until both tell the same Q.
+shared out by what is known of the other, until both tell the same Q. Lights without area send light, and receive no importance:
+theirs follows from what their lines hit (`sources`).
 """
 
 from dataclasses import dataclass, replace
@@ -16,10 +17,12 @@ import numpy as np
 
 from ...method import Method
 from ...problem.model import Problem
+from ...problem.source_rows import SourceRows
 from ...sampling.streams import Seed
 from ...tracing.geometry import Geometry
 from ..iterations.algorithm import Iteration
 from .smoothing import Blocks
+from .sources import LEAST, FirstHits
 
 ROUNDS = 12  # at most, of light and importance
 QUANTA = 1 << 14  # of a round; later ones have more
@@ -33,7 +36,7 @@ class Importance:
     """What a pilot found.
 
     Attributes:
-        values: (n_patches,) float64, positive; the mean over emitted power is 1.
+        values: (n_rows,) float64, positive, of patches, then of lights without area; the mean over emitted power is 1.
         light, adjoint: Q as both ends told it, W or lm: that of the largest band.
         lines: that were traced.
     """
@@ -56,34 +59,52 @@ class Importance:
         emission = light.groups.emission[:, 0]
         blocks = Blocks.of(patches)
         base = Seed(Seed.of(seed).value).moved(APART)
-        ends = (light, _emitting(light, weights))
-        given, wanted = (emission, weights), (weights, emission)
+        first = FirstHits.of(geometry, light, method, base.moved(ROUNDS))
+        adjoint = _emitting(light, weights)
+        lights: np.ndarray | None = None  # their importance, once patches have one
         known: list[np.ndarray | None] = [None, None]  # what falls on patches, by each end
-        found, lines = [0.0, 0.0], 0
+        found, lines = [0.0, 0.0], first.lines
         for number in range(ROUNDS):
-            end = number % 2
-            other = known[1 - end]
-            shares = None if other is None else normalised(other, given[end], patches.area)
-            power, hits, fired = _irradiance(geometry, ends[end], shares, method, base.moved(number), QUANTA << (number // 4))
-            found[end], lines = float(power @ wanted[end]), lines + fired
-            known[end] = blocks.smooth(power, hits)
+            end, quanta, draw = number % 2, QUANTA << (number // 4), base.moved(number)
+            if end:
+                assert known[0] is not None
+                shares = normalised(known[0], adjoint)
+                power, hits, fired = _irradiance(geometry, adjoint, shares, method, draw, quanta)
+                known[1] = blocks.smooth(power, hits)
+                mean, lights = first.means(weights + light.groups.scatter.of(known[1][:, None])[:, 0])
+                found[1] = float(power @ emission) + float(mean @ first.power)
+            else:
+                shares = None if known[1] is None or lights is None else normalised(np.append(known[1], lights), light)
+                power, hits, fired = _irradiance(geometry, light, shares, method, draw, quanta)
+                known[0] = blocks.smooth(power, hits)
+                found[0] = float(power @ weights)
+            lines += fired
             if end and min(found) > 0 and abs(found[0] - found[1]) <= ALIKE * min(found):
                 break
-        values = known[1]
-        assert values is not None
-        return Importance(normalised(values, emission, patches.area), found[0], found[1], lines)
+        assert known[1] is not None
+        assert lights is not None
+        return Importance(normalised(np.append(known[1], lights), light), found[0], found[1], lines)
 
 
-def normalised(values: np.ndarray, emission: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """Return positive values over their mean over the emitted power, within limits."""
-    mean = float((values * emission) @ area) / float(emission @ area)
-    return np.clip(values / mean, 1 / LARGEST, LARGEST)
+def normalised(values: np.ndarray, problem: Problem) -> np.ndarray:
+    """Return values over their mean over the emitted power of a scalar problem, within limits, all positive.
+
+    Args:
+        values: (n_rows,) those of patches are positive; lights without area have `LEAST` or more.
+    """
+    rows = problem.rows
+    mean = float(values @ (rows.emission[:, 0] * rows.area)) / problem.source.power
+    found = np.clip(values / mean, 1 / LARGEST, LARGEST) if mean > 0 else np.ones(len(values))
+    found[rows.n_patches :] = np.maximum(found[rows.n_patches :], LEAST)
+    return found
 
 
 def _emitting(problem: Problem, emission: np.ndarray) -> Problem:
-    """Return a scalar problem with another emission."""
-    groups = replace(problem.groups, emission=emission[:, None])
-    return replace(problem, groups=groups, source=replace(problem.source, power=float(emission @ problem.patches.area)))
+    """Return a scalar problem with another emission of the patches, and without lights."""
+    groups, n = replace(problem.groups, emission=emission[:, None]), len(emission)
+    rows = SourceRows(n, groups.emission, groups.reflectance, problem.patches.area, None, groups.through, groups.other)
+    power = float(emission @ problem.patches.area)
+    return replace(problem, groups=groups, rows=rows, lights=None, source=replace(problem.source, power=power))
 
 
 def _irradiance(

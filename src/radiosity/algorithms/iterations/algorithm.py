@@ -29,7 +29,7 @@ class Iteration(AbstractAlgorithm[IterationState]):
                 "what sees the patch; estimator 'bidirectional' needs them equal: take collision"
             )
         self.exchange = Exchange(self.geometry, self.problem, method, self.seed, self.replicates)
-        self.importance = self.problem.importance
+        self.importance = self.problem.shares
         self.control = Control(self.exchange) if method.control_variate else None
         if method.order == "incremental":
             self.scheme: Incremental | Regular = Incremental(self.exchange, self.problem, self.control)

@@ -1,5 +1,7 @@
 """One stochastic Jacobi step: patches send powers along local lines, and patches receive them.
 
+Lights without area are rows after the patches, as in `LineTracer`: they send what they emit, and receive nothing.
+
 The number of lines of a patch is its expectation c_i, rounded systematically: with offset r, uniform in [0, 1), patch i fires
 floor(C_i + r) - floor(C_(i-1) + r) lines, where C_i is the sum of expectations up to it. Each count is one of the two whole
 numbers next to c_i, and its mean is c_i.
@@ -48,7 +50,7 @@ class Exchange:
     Attributes:
         shooter: fires the lines.
         basis: of the light on patches.
-        n, replicates, groups, columns, total: sizes; total is n * replicates.
+        n, replicates, groups, columns, total: sizes; n counts patches and lights without area; total is n * replicates.
         area: (total,) Float64, share of each patch in the area of all.
         rho: (total * columns,) Float64, reflectance, rounded as in the firing engine.
         tau: the same of diffuse transmittance; None where nothing diffuses light.
@@ -73,24 +75,25 @@ class Exchange:
         self.two_ended = method.estimator == "bidirectional"
         self.turns, self.first = TURNS if self.two_ended else 1, 0
         sequences = self.turns * (2 if self.two_ended and method.warm_up else 1)
-        self.shooter = Shooter(geometry, method, seed, replicates, self.groups, sequences, self.basis)
-        self.types, self.n, self.total = self.shooter.types, len(problem.patches), self.shooter.total
-        self.areas = problem.patches.area / problem.patches.area.sum()
+        self.shooter = Shooter(geometry, method, seed, replicates, self.groups, sequences, self.basis, problem.lights)
+        rows = problem.rows
+        self.types, self.n, self.total = self.shooter.types, len(rows.area), self.shooter.total
+        self.areas = rows.area / rows.area.sum()
         self.area = self._tiled(self.areas[:, None])
-        self.rho = self._tiled(self._by_function(Source.fixed(groups.reflectance) * 2.0**-32))
+        self.rho = self._tiled(self._by_function(Source.fixed(rows.reflectance) * 2.0**-32))
         self.tau: Any = None
         self.beyond: Any = None
-        if groups.through is not None and groups.other is not None:
-            self.tau = self._tiled(self._by_function(Source.fixed(groups.through) * 2.0**-32))
-            numbers = np.arange(replicates)[:, None] * self.n + groups.other
+        if rows.through is not None and rows.other is not None:
+            self.tau = self._tiled(self._by_function(Source.fixed(rows.through) * 2.0**-32))
+            numbers = np.arange(replicates)[:, None] * self.n + rows.other
             entries = numbers.reshape(-1, 1) * self.columns + np.arange(self.columns)
             self.beyond = upload(self.types.UInt32, entries.astype(np.uint32))
-        emitted = groups.emission * problem.patches.area[:, None] / problem.source.power
+        emitted = rows.emission * rows.area[:, None] / problem.source.power
         if self.basis.size > 1:  # emission is constant on a patch
             emitted = self._by_function(emitted) * (np.arange(self.columns) % self.basis.size == 0)
         self.emitted = self._tiled(emitted)
         self.importance: Any = None
-        self.share_out_by(problem.importance)
+        self.share_out_by(problem.shares)
         self.replicate = self.shooter.tracer.replicate(dr.arange(self.types.UInt32, self.total))
         every = np.arange(replicates)
         slots = np.concatenate([np.repeat(every, self.n), every, every])
@@ -105,7 +108,7 @@ class Exchange:
         self.step = 0
 
     def share_out_by(self, importance: np.ndarray | None) -> None:
-        """Share lines out by the importance of patches, (n_patches,) float64."""
+        """Share lines out by the importance of rows, (n_rows,) float64."""
         self.unit = units_of_a_quantum(importance)
         if importance is not None:
             self.importance = self._tiled(importance[:, None] * (LINE / self.unit))

@@ -114,7 +114,7 @@ class IterationState(AbstractState):
         fired_apart: (sequences, replicates, n_patches), uint32 or uint64, where several sequences are taken in turn; ``fired`` is
             the sum.
         step: the number of steps so far.
-        importance: (n_patches,) float64, by which lines are shared out.
+        importance: (n_rows,) float64, by which lines are shared out.
     """
 
     arrivals: np.ndarray = array("replicates", "rows")

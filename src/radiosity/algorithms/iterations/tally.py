@@ -28,7 +28,7 @@ class IterationTally(AbstractTally[IterationState]):
         return exact_sum(state.fired)
 
     def arrivals(self, problem: Problem, state: IterationState) -> np.ndarray:
-        return state.arrivals.sum(axis=0, dtype=np.int64)
+        return state.arrivals[:, : len(problem.patches)].sum(axis=0, dtype=np.int64)
 
     def irradiance(self, problem: Problem, state: IterationState, group: int) -> tuple[np.ndarray, float]:
         values, _ = _received(problem, state, group, self.basis.size)
@@ -43,17 +43,17 @@ class IterationTally(AbstractTally[IterationState]):
         Where lines are shared out by importance, it is that of a line from a patch as important as the one that it hits.
         """
         if state.importance is not None:
-            return line_of_quanta(problem, state.quanta, group) / state.importance
+            return line_of_quanta(problem, state.quanta, group) / state.importance[: len(problem.patches)]
         return line_of_quanta(problem, self.lines(problem, state) // len(state.fired), group)
 
     def books(self, problem: Problem, state: IterationState, group: int) -> dict:
         if isinstance(state.scheme, IncrementalState) and state.scheme.left is not None:
             return _exact(problem, state, state.scheme, group)
         values, missed = _received(problem, state, group, self.basis.size)
-        power, area = problem.source.power, problem.patches.area
+        power, rows = problem.source.power, problem.rows
         absorbed = float((values.mean(axis=0) * power) @ (1 - problem.groups.scatter.albedo[:, group]))
         escaped, lost = (float(x) * power for x in missed.mean(axis=1))
-        return by_difference(float(problem.groups.emission[:, group] @ area), absorbed, escaped, lost)
+        return by_difference(float(rows.emission[:, group] @ rows.area), absorbed, escaped, lost)
 
 
 def _received(problem: Problem, state: IterationState, group: int, size: int, function: int = 0) -> tuple[np.ndarray, np.ndarray]:
@@ -67,6 +67,7 @@ def _received(problem: Problem, state: IterationState, group: int, size: int, fu
     scheme, control = state.scheme, state.control
     received = scheme.received.reshape(replicates * (n + 2), -1)[:, group * size + function] * scheme.scale
     values, missed = received[: replicates * n].reshape(replicates, n), received[replicates * n :].reshape(2, replicates)
+    values = values[:, : len(problem.patches)]  # lights without area receive nothing
     if control is not None:
         beta = (control.beta if isinstance(scheme, IncrementalState) else scheme.constants)[:, group * size, None]
         area = problem.patches.area / problem.patches.area.sum()
@@ -82,7 +83,7 @@ def _exact(problem: Problem, state: IterationState, scheme: IncrementalState, gr
     replicates, n = state.fired.shape
     received = scheme.received.reshape(replicates * (n + 2), -1)[:, group].astype(np.uint64)
     counts, missed = received[: replicates * n].reshape(replicates, n), received[replicates * n :].reshape(2, replicates)
-    rho = Source.fixed_albedo(problem.groups.scatter, group)
+    rho = Source.fixed_albedo(problem.rows.scatter, group)
     arrived, reflected = exact_totals(counts, rho)
     assert scheme.emitted is not None
     assert scheme.left is not None

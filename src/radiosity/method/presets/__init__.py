@@ -22,15 +22,16 @@ __all__ = ["BASELINES", "PRESETS", "Citation", "Preset", "resolve"]
 def resolve(method: "str | Method | Baseline | Auto" = auto.NAME, **choices) -> "Method | Baseline | Auto":
     """Return a preset's method, or the given one, with the choices that are not None put into it.
 
-    ``auto`` with choices is random-walk with them.
+    ``auto`` takes a basis. With other choices it is random-walk with them.
 
     Raises:
         MethodError: unknown name, unknown value, a choice that it does not have, or a senseless combination.
     """
     known = PRESETS | BASELINES
     if method == auto.NAME or isinstance(method, Auto):
-        if all(value is None for value in choices.values()):
-            return Auto()
+        own = {"basis": method.basis} if isinstance(method, Auto) else {}
+        if all(value is None for choice, value in choices.items() if choice != "basis"):
+            return Auto(**own | {choice: value for choice, value in choices.items() if value is not None})
         method = auto.FALLBACK
     if isinstance(method, str):
         if method not in known:
