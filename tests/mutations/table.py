@@ -2640,6 +2640,27 @@ MISTAKES = (
         "View3D's quadrilaterals are triangles",
     ),
     Mistake(
+        "conversion/view3d.py",
+        "back = replace(piece, name=name, corners=turned(piece.corners))",
+        "back = replace(piece, name=name)",
+        ("test_convert_view3d.py",),
+        "backs of surfaces look to where their fronts do in files for View3D",
+    ),
+    Mistake(
+        "conversion/view3d.py",
+        'given = given.get(side) if isinstance(given, dict) else given',
+        'given = given.get("front") if isinstance(given, dict) else given',
+        ("test_convert_view3d.py",),
+        "backs have the emissivity of fronts in files for View3D",
+    ),
+    Mistake(
+        "scene/formats/ifc/__init__.py",
+        "back = Back.ABSORBS if style.get(\"side\") == ONE_SIDED else Back.RADIATES",
+        "back = Back.ABSORBS",
+        ("test_convert_ifc.py",),
+        "two-sided surfaces of IFC models of our own become one-sided",
+    ),
+    Mistake(
         "exchange/flow_picture.py",
         "                leave[i] += width\n",
         "",

@@ -66,6 +66,8 @@ def _shapes(file, excluded):
         told = {
             "class": product.is_a(),
             "name": product.Name or product.GlobalId,
+            "type": getattr(product, "ObjectType", None),
+            "listed": _listed(product),
             "materials": [one.Name for one in element.get_materials(product) if getattr(one, "Name", None)],
             "styles": [_style(file, style) for style in mesh.materials],
         }
@@ -75,16 +77,25 @@ def _shapes(file, excluded):
             return
 
 
+def _listed(product) -> int:
+    """The number of triangles that the file lists for a product; 0 where its shape is something else, or has openings."""
+    shapes = [shape for shape in product.Representation.Representations if shape.RepresentationIdentifier == "Body"]
+    items = [item for shape in shapes for item in shape.Items]
+    whole = not getattr(product, "HasOpenings", ()) and all(item.is_a("IfcTriangulatedFaceSet") for item in items)
+    return sum(len(item.CoordIndex) for item in items) if whole else 0
+
+
 def _style(file, style) -> dict:
-    """The name, colour and transparency of a style; none of them where it is only a default."""
+    """The name, colour, transparency and side of a style; none of them where it is only a default."""
     number = style.instance_id()
     if not number:
-        return {"name": None, "color": None, "transparency": None}
+        return {"name": None, "color": None, "transparency": None, "side": None}
     color, clear = style.diffuse, float(style.transparency)
     return {
         "name": getattr(file.by_id(number), "Name", None),
         "color": [float(color.r()), float(color.g()), float(color.b())],
         "transparency": clear if np.isfinite(clear) else None,
+        "side": getattr(file.by_id(number), "Side", None),
     }
 
 

@@ -24,10 +24,12 @@ class Product:
         kind: its IFC class.
         name: its name, or its GlobalId.
         materials: names of its IFC materials.
-        styles: name, color and transparency of each style, each None where it is not given.
+        styles: name, color, transparency and side of each style, each None where it is not given.
         vertices: (n, 3) m.
         triangles: (m, 3).
         style: (m,) number of each triangle's style; -1 where it has none.
+        type: what its IFC object says that it is, or None.
+        listed: triangles that the file lists for it; 0 where it is made of something else.
     """
 
     kind: str
@@ -37,6 +39,8 @@ class Product:
     vertices: np.ndarray
     triangles: np.ndarray
     style: np.ndarray
+    type: str | None = None
+    listed: int = 0
 
 
 def products(path: Path) -> tuple[list[Product], dict]:
@@ -60,7 +64,7 @@ def products(path: Path) -> tuple[list[Product], dict]:
             told = json.loads(found["told"].tobytes())
             shapes = [tuple(found[f"{key}{i}"] for key in "vtm") for i in range(len(told["products"]))]
     result = [
-        Product(one["class"], one["name"], tuple(one["materials"]), tuple(one["styles"]), *shape)
+        Product(one["class"], one["name"], tuple(one["materials"]), tuple(one["styles"]), *shape, one["type"], one["listed"])
         for one, shape in zip(told["products"], shapes, strict=True)
     ]
     return result, told
