@@ -2661,6 +2661,13 @@ MISTAKES = (
         "two-sided surfaces of IFC models of our own become one-sided",
     ),
     Mistake(
+        "image/quantity.py",
+        "(np.asarray(solution.arrivals) == 0) & (values == 0)",
+        "(np.asarray(solution.arrivals) <= 1) & (values == 0)",
+        ("test_image_false_color.py",),
+        "a 0 that was counted is shown as unknown",
+    ),
+    Mistake(
         "exchange/flow_picture.py",
         "                leave[i] += width\n",
         "",
