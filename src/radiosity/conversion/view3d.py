@@ -15,11 +15,12 @@ from ..scene.formats.vs3 import OBSTRUCTION
 from ..scene.model import Back, Scene
 from ..solution.whole import whole_file
 from .names import unique_names, word
-from .pieces import BEHIND, Piece, called, pieces, tell_of_rest, turned
+from .pieces import Piece, called, pieces, tell_of_rest, turned
 from .plain import plain
 from .told import Told
 
 HOLDS = frozenset({"names", "reflectance", "backs", "heat"})
+BEHIND = "_(back)"  # added to the name of a surface for its back: names have no blanks
 LEAST = 1e-3  # emissivity: View3D takes this in place of smaller ones
 
 

@@ -60,6 +60,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
         "shells that looked inward, of mirrored items, are turned": reader.turned,
         "transparent surfaces are clear panes, which let all colours through alike": reader.panes,
         "windows without a transparent part are opaque; give their glass a transmittance in a .toml": reader.opaque,
+        "a factor of the diffuse colour is left out, and the colour of the surface is the reflectance": reader.factors,
         "ifcopenshell leaves out triangles without area, or too near to others": reader.lost,
     }
     for text, names in kinds.items():
@@ -81,7 +82,7 @@ class Reader:
 
     Attributes:
         parts: found so far.
-        turned, panes, opaque, lost: names of what is told.
+        turned, panes, opaque, factors, lost: names of what is told.
     """
 
     def __init__(self):
@@ -89,6 +90,7 @@ class Reader:
         self.turned: dict[str, None] = {}
         self.panes: dict[str, None] = {}
         self.opaque: dict[str, None] = {}
+        self.factors: dict[str, None] = {}
         self.lost: dict[str, None] = {}
 
     def add(self, product: Product) -> None:
@@ -108,6 +110,8 @@ class Reader:
             style = product.styles[number] if 0 <= number < len(product.styles) else {}
             only = product.materials[0] if len(product.materials) == 1 else None
             label = style.get("name") or only
+            if style.get("factor") is not None and style["factor"] != 1:
+                self.factors[f"{label} ({style['factor']:g})"] = None
             for solid in (True, False):
                 rows = (product.style == number) & (closed == solid)
                 if rows.any():

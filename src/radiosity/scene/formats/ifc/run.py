@@ -24,7 +24,7 @@ class Product:
         kind: its IFC class.
         name: its name, or its GlobalId.
         materials: names of its IFC materials.
-        styles: name, color, transparency and side of each style, each None where it is not given.
+        styles: name, color, transparency, side and factor of each style, each None where it is not given.
         vertices: (n, 3) m.
         triangles: (m, 3).
         style: (m,) number of each triangle's style; -1 where it has none.
