@@ -61,10 +61,12 @@ def write(scene: Scene, path: Path, told: Told) -> None:
 
 def _obstructs(scene: Scene, piece: Piece, whole: list[Piece]) -> bool:
     """Return whether a piece is what the reader makes of obstructions: all of a black surface of their name."""
+    if piece.name != OBSTRUCTION:
+        return False
     black = piece.back == Back.RADIATES and not (piece.reflectance.any() or piece.back_reflectance.any() or piece.diffuse.any())
     known = scene.heat is not None and scene.heat.emissivity[piece.surface] is not None
     alone = sum(one.surface == piece.surface for one in whole) == 1
-    return piece.name == OBSTRUCTION and black and not known and not piece.transmittance and alone
+    return black and not known and not piece.transmittance and alone
 
 
 def _sides(scene: Scene, piece: Piece, told: Told) -> Iterator[tuple[Piece, float]]:

@@ -63,11 +63,12 @@ def products(path: Path) -> tuple[list[Product], dict]:
         with np.load(target) as found:
             told = json.loads(found["told"].tobytes())
             shapes = [tuple(found[f"{key}{i}"] for key in "vtm") for i in range(len(told["products"]))]
-    result = [
-        Product(one["class"], one["name"], tuple(one["materials"]), tuple(one["styles"]), *shape, one["type"], one["listed"])
-        for one, shape in zip(told["products"], shapes, strict=True)
-    ]
-    return result, told
+    return [_product(*one) for one in zip(told["products"], shapes, strict=True)], told
+
+
+def _product(one: dict, shape: tuple) -> Product:
+    materials, styles = tuple(one["materials"]), tuple(one["styles"])
+    return Product(one["class"], one["name"], materials, styles, *shape, type=one["type"], listed=one["listed"])
 
 
 def _reason(done: subprocess.CompletedProcess) -> str:
