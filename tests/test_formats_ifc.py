@@ -177,6 +177,49 @@ def test_a_model_that_ifcopenshell_writes(tmp_path):
     assert "transparent surfaces are clear panes, which let all colours through alike: 'IfcWindow/V/pane (0.70)'" in said
 
 
+def square(path, diffuse):
+    """A square of 1 m whose points have numbers of their own, of colour 0.9, 0.5, 0.6 with a diffuse colour or factor."""
+    ifc = pytest.importorskip("ifcopenshell", reason="ifcopenshell is not installed: pip install 'radiosity[ifc]'")
+    file = ifc.file(schema="IFC4")
+    new = file.create_entity
+    origin = new("IfcAxis2Placement3D", new("IfcCartesianPoint", (0.0, 0.0, 0.0)))
+    context = new("IfcGeometricRepresentationContext", "Body", "Model", 3, 1e-5, origin)
+    units = new("IfcUnitAssignment", [new("IfcSIUnit", UnitType="LENGTHUNIT", Name="METRE")])
+    new("IfcProject", GlobalId="0" * 22, RepresentationContexts=[context], UnitsInContext=units)
+    points = new("IfcCartesianPointList3D", [(9.0, 9.0, 9.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)])
+    item = new("IfcTriangulatedFaceSet", points, None, False, [(1, 2, 3), (1, 3, 4)], [2, 3, 4, 5])
+    kind, values = diffuse
+    look = new("IfcSurfaceStyleRendering", new("IfcColourRgb", None, 0.9, 0.5, 0.6), ReflectanceMethod="NOTDEFINED")
+    look.DiffuseColour = None if kind is None else new(kind, *values)
+    new("IfcStyledItem", item, [new("IfcSurfaceStyle", "paint", "BOTH", [look])])
+    shape = new("IfcProductDefinitionShape", None, None, [new("IfcShapeRepresentation", context, "Body", "Tessellation", [item])])
+    new("IfcWall", GlobalId="1" * 22, Name="W", Representation=shape)
+    file.write(str(path))
+
+
+@pytest.mark.parametrize(
+    ("diffuse", "color", "told"),
+    [
+        (("IfcNormalisedRatioMeasure", (0.0,)), (0.9, 0.5, 0.6), ["paint (0)"]),
+        (("IfcColourRgb", (None, 0.2, 0.3, 0.4)), (0.2, 0.3, 0.4), []),
+    ],
+)
+def test_colours_are_those_of_the_file_and_points_have_their_numbers(tmp_path, recwarn, diffuse, color, told):
+    """IfcOpenShell #2509 and #5075: it multiplies the surface's colour by the diffuse one; a factor of 0 is black."""
+    square(tmp_path / "m.ifc", diffuse)
+    scene = rd.load_scene(tmp_path / "m.ifc")
+    assert scene.area.sum() == pytest.approx(1.0)
+    np.testing.assert_allclose(scene.reflectance, [((np.array(color) + 0.055) / 1.055) ** 2.4])
+    assert [name for one in recwarn for name in told if name in str(one.message)] == told
+
+
+def test_a_factor_of_a_style_is_told():
+    reader = Reader()
+    style = {"name": "paint", "color": [0.9, 0.9, 0.9], "transparency": None, "side": "BOTH", "factor": 0.45}
+    reader.add(Product("IfcWall", "W", (), (style,), box((0, 0, 0), (1, 1, 1)), BOX, np.zeros(12, int)))
+    assert list(reader.factors) == ["paint (0.45)"]
+
+
 def test_a_file_that_is_no_ifc_is_an_error(tmp_path):
     pytest.importorskip("ifcopenshell", reason="ifcopenshell is not installed: pip install 'radiosity[ifc]'")
     (tmp_path / "m.ifc").write_text("no STEP file")

@@ -11,6 +11,7 @@ from radiosity.errors import RadiosityWarning, SceneError
 from radiosity.scene import Back, Camera
 from radiosity.scene.assemble import ReadOptions
 from radiosity.scene.formats import read, toml
+from radiosity.scene.formats.toml.schema import REQUIRED, TABLES, SceneFile
 
 TRIANGLES = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]])
 
@@ -281,7 +282,11 @@ def test_units_scale_the_cameras_of_files_as_they_scale_their_faces(load, tmp_pa
         ("", ["empty"]),
         ("[[surface", ["no TOML", "array declaration"]),
         ('geometri = ["room.obj"]', ["geometry is missing", "geometri: unknown key", "'geometry'"]),
-        ("geometry = []", ["geometry"]),
+        ('unit = "m"', ["geometry is missing; write a list of files of shapes, such as geometry = [\"room.obj\"]"]),
+        ('[[geometry]]\nunit = "m"', ["geometry 1, file is missing; write a file of shapes"]),
+        ('geometry = ["room.obj"]\n[[camera]]\nfov = 40', ["camera 1, origin is missing; write where", "camera 1, target is"]),
+        ('geometry = ["room.obj"]\n[[opening]]', ["opening 1, corners is missing; write three or four points"]),
+        ("geometry = []", ["geometry is empty; write a list of files of shapes"]),
         ('[geometry]\nfile = "room.obj"', ["write a list of files", 'geometry = ["room.obj"]', "[[geometry]] with two brackets"]),
         ("geometry = true", ["geometry 1", "write a table", "it is True"]),
         ('geometry = ["room.obj"]\n[surface]\nname = "x"', ["surface: write [[surface]] with two brackets"]),
@@ -302,7 +307,7 @@ def test_units_scale_the_cameras_of_files_as_they_scale_their_faces(load, tmp_pa
         ('geometry = ["room.obj"]\n[[surface]]\nname = "x"\nreflectance = [1, 2]', ["reflectance", "one number or"]),
         ('geometry = ["room.obj"]\n[[surface]]\nname = "x"\nemission = 1\npower = 2', ["surface 1", "emission and power"]),
         ('geometry = ["room.obj"]\n[[surface]]\nname = "x"\nsides = 1\nback = "passes"', ["sides and back"]),
-        ('geometry = ["room.obj"]\n[[surface]]\nsides = 3', ["name is missing", "sides"]),
+        ('geometry = ["room.obj"]\n[[surface]]\nsides = 3', ["name is missing; write the surfaces that it is about", "sides"]),
         ('geometry = ["room.obj"]\n[[camera]]\norigin = [0, 0, 0]\ntarget = [0, 0, 1]', ["camera 1", "up"]),
         ('geometry = ["room.obj"]\n[[camera]]\norigin = [0, 0]\ntarget = [0, 0, 1]', ["camera 1, origin"]),
     ],
@@ -312,6 +317,15 @@ def test_faults(load, text, words):
         load(text)
     for word in words:
         assert word in str(caught.value)
+
+
+def test_every_key_that_must_be_there_says_what_to_write():
+    wanted = {(table, key) for table, model in ({"": SceneFile} | TABLES).items() for key in _required(model)}
+    assert wanted == set(REQUIRED)
+
+
+def _required(model) -> list[str]:
+    return [key for key, field in model.model_fields.items() if field.is_required()]
 
 
 def test_power_without_area(load, tmp_path):

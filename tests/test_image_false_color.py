@@ -53,6 +53,21 @@ def test_the_legend_has_an_arrow_where_values_lie_beyond(monkeypatch, limits, ar
     assert found == [arrow]
 
 
+@pytest.mark.parametrize("quantity", ["radiosity", "irradiance"])
+@pytest.mark.parametrize("reflectance", [0.5, 0.0])
+def test_a_value_of_0_is_grey_where_no_line_came(monkeypatch, quantity, reflectance):
+    """Patches 0 and 1 are 0, and no line met patch 0. The radiosity of what reflects nothing is known to be 0."""
+    scene = replace(quad_scene(), reflectance=np.array([[reflectance]]))
+    found, titles = solution(rd.subdivide(scene, cells=2), [0.0, 0.0, 2.0, 4.0]), []
+    legend = false_color.Palette.legend
+    monkeypatch.setattr(false_color.Palette, "legend", lambda self, *rest: titles.append(rest[0]) or legend(self, *rest))
+    pixels = render(found, camera=ABOVE, hits=plain_hits, samples=1, smooth=False, quantity=quantity, false_color=True)
+    known = quantity == "radiosity" and reflectance == 0
+    assert (pixels[160, 190].tolist() == [128, 128, 128]) != known
+    assert ("(grey: unknown)" in titles[0]) != known
+    np.testing.assert_allclose(pixels[160, 210], shades([0.0])[0], atol=0.51)
+
+
 def test_logarithmic_scale():
     result = picture(range=(1, 16), log=True)
     np.testing.assert_allclose(result[[160, 160, 140], [190, 210, 190]], shades([0.0, 0.25, 0.5]), atol=0.51)

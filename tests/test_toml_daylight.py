@@ -104,7 +104,7 @@ def test_openings_of_surfaces_and_corners(tmp_path):
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ("[sky]\nhorizontal = 1", "sky, type is missing"),
+        ("[sky]\nhorizontal = 1", "sky, type is missing; write one of uniform, cie-overcast"),
         ('[sky]\ntype = "foggy"', "'uniform', 'cie-overcast'"),
         ('[sky]\ntype = "uniform"', "a sky of type uniform needs horizontal"),
         ('[sky]\ntype = "uniform"\nhorizontal = 1\ndirect = 4', "a sky of type uniform has no use for direct"),

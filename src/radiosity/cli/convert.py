@@ -22,9 +22,9 @@ def convert(
     """Convert a scene or a solution to files of other formats.
 
     A scene becomes .toml (with its geometry beside it), .glb, .gltf, .obj (with an .mtl beside it), .ply, .stl, .rad (Radiance),
-    .mgf, .xml (Mitsuba, with its meshes beside it) or .hbjson (honeybee); .toml holds most. A solution becomes what `radiosity
-    solve -o` writes: .npz, .glb, .ply, .vtp, .csv, .png or .exr. A warning for each kind of thing that a format cannot hold names
-    what it is.
+    .mgf, .xml (Mitsuba, with its meshes beside it), .hbjson (honeybee), .vs3 (View3D) or .ifc (with ifcopenshell, of the extra
+    `ifc`); .toml holds most. A solution becomes what `radiosity solve -o` writes: .npz, .glb, .ply, .vtp, .csv, .png or .exr. A
+    warning for each kind of thing that a format cannot hold names what it is.
 
     Parameters
     ----------

@@ -27,6 +27,8 @@ SUFFIXES = {
     ".mgf": "mgf",
     ".xml": "mitsuba",
     ".hbjson": "honeybee",
+    ".vs3": "view3d",
+    ".ifc": "ifc",
 }
 KNOWN_BANDS = (("grey",), ("red", "green", "blue"))
 
@@ -44,16 +46,17 @@ def files_of(path) -> tuple[Path, ...]:
 def save_scene(scene: Scene, path) -> None:
     """Write a scene to a file, whose suffix says the format.
 
-    Known are .toml and .xml (with the geometry beside them), .glb, .gltf, .obj (with an .mtl beside it), .ply, .stl, .rad, .mgf
-    and .hbjson (honeybee). A warning for each kind of thing that the format cannot hold names what it is. A .toml holds most.
+    Known are .toml and .xml (with the geometry beside them), .glb, .gltf, .obj (with an .mtl beside it), .ply, .stl, .rad, .mgf,
+    .hbjson (honeybee), .vs3 (View3D) and .ifc (with ifcopenshell). A warning for each kind of thing that the format cannot hold
+    names what it is. A .toml holds most.
 
     Args:
         scene: to write.
         path: of the file.
 
     Raises:
-        OutputError: another suffix, a file that cannot be written, or a scene of other bands than files hold, or
-            without a surface that the format holds.
+        OutputError: another suffix, a file that cannot be written, an .ifc without ifcopenshell, or a scene of other bands than
+            files hold, or without a surface that the format holds.
 
     Example:
         >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]

@@ -25,8 +25,8 @@ class Picture:
     """A picture in physical units.
 
     Attributes:
-        values: (height, width, n) float64, mean of the samples that see a patch; NaN where that patch is unknown,
-            0 where none is seen.
+        values: (height, width, n) float64, mean of the samples that see a patch; NaN where that patch is unknown or would show
+            the 0 of a patch that no line met (`Quantity.unmet`), 0 where none is seen.
         cover: (height, width) share of the samples that see a patch; the rest see nothing, or an absorbing back.
         own_light: (height, width) bool, pixels on surfaces that emit.
         variance: (height, width, n) of the mean of a pixel's samples, as if they were independent; NaN with one sample.
@@ -61,6 +61,8 @@ def take(solution, shown: Quantity, camera: View, *, look: Lookup | Gathered | N
     look = look or Lookup(solution.patches, shown.values, light=shown.light)
     sight = Sight(solution.patches.scene, look, hits, shown.adds)
     width, n = int(camera.width), int(camera.width) * int(camera.height)
+    unmet = None if isinstance(look, Gathered) or shown.unmet is None else np.append(shown.unmet, False)
+    unknown = np.zeros(n, bool)
     total, count, own = np.zeros((n, shown.values.shape[1])), np.zeros(n), np.zeros(n, bool)
     variance, flat, plane = np.full(total.shape, np.nan), np.full(n, -1), np.append(planes(solution.patches), -1)
 
@@ -78,12 +80,15 @@ def take(solution, shown: Quantity, camera: View, *, look: Lookup | Gathered | N
                 variance[pixel] = values.var(axis=1, ddof=1) / each
             flat[pixel] = np.where((seen == seen[:, :1]).all(axis=1), seen[:, 0], -1)
             own[pixel] |= lamps.reshape(len(pixel), each).any(axis=1)
+            if unmet is not None:
+                unknown[pixel] |= unmet[patch].reshape(len(pixel), each).any(axis=1)
 
     sample(np.arange(n), samples)
     if isinstance(look, Gathered) and 1 < samples < AT_EDGES:
         sample(rough(variance.max(axis=1), flat, total.mean(axis=1) / samples, width), AT_EDGES)
     shape = (int(camera.height), width)
     values = total / np.where(count > 0, count, 1)[:, None]
+    values[unknown & (total == 0).all(axis=1)] = np.nan
     return Picture(
         values.reshape(*shape, -1),
         (count / samples).reshape(shape),

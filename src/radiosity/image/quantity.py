@@ -34,6 +34,8 @@ class Quantity:
         own_light: (n_patches,) bool, patches that emit; they are left out where scales are found.
         adds: values of a pane and of what is behind it add up.
         light: the polynomials that ``values`` are the means of, where the solution has them; None elsewhere.
+        unmet: (n_patches,) bool, patches of the value 0 that no line met: their light is unknown. None where lines are not
+            counted, and for colours of the light itself.
     """
 
     values: np.ndarray
@@ -43,6 +45,7 @@ class Quantity:
     own_light: np.ndarray
     adds: bool = False
     light: Polynomials | None = None
+    unmet: np.ndarray | None = None
 
 
 def choose(solution, name: str = "radiosity", band: str | int | None = None, *, single: bool = False) -> Quantity:
@@ -78,7 +81,8 @@ def choose(solution, name: str = "radiosity", band: str | int | None = None, *, 
         values, base, names = tone.luminance(values)[:, None], tone.luminance(base)[:, None], ["all"]
         light = None if light is None else light.columns(_one_column)
     if name != "relative_error":
-        return Quantity(values, title, _unit(solution, name), tuple(names), own, name in ("radiosity", *OF_DIRECTIONS), light)
+        unmet, adds = _unmet(solution, name, values) if single else None, name in ("radiosity", *OF_DIRECTIONS)
+        return Quantity(values, title, _unit(solution, name), tuple(names), own, adds, light, unmet)
     ratio = np.divide(values, base, out=np.full(values.shape, np.nan), where=base > 0)
     return Quantity(100 * ratio, title, "%", tuple(names), own)
 
@@ -99,6 +103,16 @@ def _values(solution, name: str) -> np.ndarray:
     if name in OF_DIRECTIONS:
         return np.asarray(solution.radiosity, np.float64) / np.pi
     return np.asarray(getattr(solution, "standard_error" if name == "relative_error" else name), np.float64)
+
+
+def _unmet(solution, name: str, values: np.ndarray) -> np.ndarray | None:
+    """Return the patches of value 0 that no line met, (n_patches,) bool, or None; radiosity of what reflects nothing is known."""
+    if name not in LIGHT or solution.by_own_lines or getattr(solution, "by_baseline", False):
+        return None
+    patches, unmet = solution.patches, (np.asarray(solution.arrivals) == 0) & (values == 0).all(axis=1)
+    if name == "irradiance":
+        return unmet
+    return unmet & ((patches.reflectance > 0).any(axis=1) | patches.scene.diffusers[patches.face])
 
 
 def _one_column(values: np.ndarray) -> np.ndarray:

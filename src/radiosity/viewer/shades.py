@@ -70,11 +70,13 @@ class Colours:
 
     @property
     def label(self) -> str:
-        """The quantity in words, with its unit, and how many patches have no value."""
+        """The quantity in words, with its unit, and how many patches have no value, or 0 since no line met them."""
         unknown = int((~np.isfinite(self.quantity.values)).any(axis=1).sum())
         unit = "" if self.quantity.unit == "1" else f" [{self.quantity.unit}]"
         shade = "grey" if self.palette is not None else "black"
-        return f"{self.quantity.title}{unit}" + (f" ({shade}: unknown, {unknown} patches)" if unknown else "")
+        unmet = 0 if self.quantity.unmet is None else int(self.quantity.unmet.sum())
+        told = f" ({shade}: unknown, {unknown} patches)" if unknown else ""
+        return f"{self.quantity.title}{unit}{told}" + (f" ({unmet} patches of value 0: no line met them)" if unmet else "")
 
     def legend(self, height: int = LEGEND) -> np.ndarray | None:
         """Return a picture of the scale, (height, width, 3) uint8; None where colours are the light's own."""

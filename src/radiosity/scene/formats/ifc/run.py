@@ -24,10 +24,12 @@ class Product:
         kind: its IFC class.
         name: its name, or its GlobalId.
         materials: names of its IFC materials.
-        styles: name, color and transparency of each style, each None where it is not given.
+        styles: name, color, transparency, side and factor of each style, each None where it is not given.
         vertices: (n, 3) m.
         triangles: (m, 3).
         style: (m,) number of each triangle's style; -1 where it has none.
+        type: what its IFC object says that it is, or None.
+        listed: triangles that the file lists for it; 0 where it is made of something else.
     """
 
     kind: str
@@ -37,6 +39,8 @@ class Product:
     vertices: np.ndarray
     triangles: np.ndarray
     style: np.ndarray
+    type: str | None = None
+    listed: int = 0
 
 
 def products(path: Path) -> tuple[list[Product], dict]:
@@ -59,11 +63,12 @@ def products(path: Path) -> tuple[list[Product], dict]:
         with np.load(target) as found:
             told = json.loads(found["told"].tobytes())
             shapes = [tuple(found[f"{key}{i}"] for key in "vtm") for i in range(len(told["products"]))]
-    result = [
-        Product(one["class"], one["name"], tuple(one["materials"]), tuple(one["styles"]), *shape)
-        for one, shape in zip(told["products"], shapes, strict=True)
-    ]
-    return result, told
+    return [_product(*one) for one in zip(told["products"], shapes, strict=True)], told
+
+
+def _product(one: dict, shape: tuple) -> Product:
+    materials, styles = tuple(one["materials"]), tuple(one["styles"])
+    return Product(one["class"], one["name"], materials, styles, *shape, type=one["type"], listed=one["listed"])
 
 
 def _reason(done: subprocess.CompletedProcess) -> str:

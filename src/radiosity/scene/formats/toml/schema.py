@@ -6,7 +6,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
 
 from ....errors import SceneError, shown
 from ...heat import HOTTEST, MOST_EDGES
-from .schema_lights import LuminaireEntry, SkyEntry, SunEntry
+from .schema_lights import OF_SKIES, LuminaireEntry, SkyEntry, SunEntry
 from .schema_tables import Geometry, OpeningEntry, SensorsEntry, Surface, View
 from .schema_values import ALIKE, OF_SIDES, Positive, Table, Unit, ascending, listed
 
@@ -54,6 +54,16 @@ ARRAYS = {
     "opening": "write [[opening]] with two brackets, one for each entry",
 }  # what to write where something else than a list is given
 
+REQUIRED = {
+    ("", "geometry"): 'a list of files of shapes, such as geometry = ["room.obj"]',
+    ("geometry", "file"): 'a file of shapes, such as file = "room.obj"',
+    ("surface", "name"): 'the surfaces that it is about, such as name = "floor", or "*" for all',
+    ("camera", "origin"): "where the camera stands, such as origin = [0, 0, 1.6] in metres",
+    ("camera", "target"): "what the camera looks at, such as target = [1, 0, 1.6] in metres",
+    ("opening", "corners"): "three or four points, such as corners = [[0, 0, 1], [2, 0, 1], [2, 0, 2], [0, 0, 2]] in metres",
+    ("sky", "type"): f"one of {', '.join(OF_SKIES)}, such as type = \"uniform\"",
+}  # what to write where a key is missing, by table ("" for the file itself) and key
+
 
 def checked(values: dict, source: str) -> SceneFile:
     """The file's values.
@@ -81,7 +91,10 @@ def _sentence(fault, values: dict) -> str:
         table = TABLES.get(str(path[0]), SceneFile) if len(path) > 1 else SceneFile
         return f"{where}: unknown key; known are {shown(table.model_fields, 30)}"
     if fault["type"] == "missing":
-        return f"{where} is missing"
+        wanted = REQUIRED.get(("" if len(path) == 1 else str(path[0]), str(path[-1])))
+        return f"{where} is missing; write {wanted}" if wanted else f"{where} is missing"
+    if fault["type"] == "too_short" and path == ["geometry"]:
+        return f"{where} is empty; write {REQUIRED['', 'geometry']}"
     if fault["type"] == "list_type" and str(path[-1]) in ARRAYS:
         return f"{where}: {ARRAYS[str(path[-1])]} (it is {_kind(fault['input'])})"
     if fault["type"] in ("dict_type", "model_type"):
