@@ -24,6 +24,7 @@ ARGUMENTS = [
     "--disable-sync",
 ]
 SIZE = {"width": 900, "height": 700}
+PATIENCE = 120  # seconds that a page may take, on a machine that has other work
 
 missing = next((name for name in ("viser", "playwright", "matplotlib") if find_spec(name) is None), None)
 needed = pytest.mark.skipif(
@@ -40,6 +41,7 @@ def browser() -> Iterator:
         context = play.chromium.launch_persistent_context(
             settings, executable_path=CHROMIUM, headless=True, viewport=SIZE, args=ARGUMENTS, accept_downloads=True
         )
+        context.set_default_timeout(1000 * PATIENCE)
         try:
             yield context
         finally:

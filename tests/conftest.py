@@ -2,7 +2,7 @@
 
 import os
 import signal
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 
 import numpy as np
@@ -98,6 +98,14 @@ def cube() -> rd.Scene:
     names = ("south", "north", "west", "east", "floor", "ceiling")
     faces = box((0, 0, 0), (1, 1, 1), inward=True)
     return join([(name, 0.5, 1.0, [face]) for name, face in zip(names, faces, strict=True)], source="cube")
+
+
+@pytest.fixture
+def small_pictures(monkeypatch):
+    """Pictures among the outputs of a run are 80 pixels wide: large ones take seconds each."""
+    from radiosity.image import still
+
+    monkeypatch.setattr(still, "render", partial(still.render, width=80))
 
 
 @pytest.fixture(scope="session")

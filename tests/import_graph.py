@@ -44,9 +44,9 @@ class Package:
         return {".".join(self._parts(path)): path for path in sorted(self.root.rglob("*.py"))}
 
     @cached_property
-    def trees(self) -> dict[str, ast.Module]:
-        """The syntax tree of each module."""
-        return {name: ast.parse(path.read_text(encoding="utf-8")) for name, path in self.files.items()}
+    def nodes(self) -> dict[str, list[ast.AST]]:
+        """The nodes of the syntax tree of each module, outer ones before those within."""
+        return {name: list(ast.walk(ast.parse(path.read_text(encoding="utf-8")))) for name, path in self.files.items()}
 
     def path(self, module: str) -> str:
         """The path of a module below the root, such as ``scene/model.py``."""
@@ -58,10 +58,12 @@ class Package:
         return {module: tuple(self._imports(module)) for module in self.files}
 
     def _imports(self, module: str) -> Iterator[Import]:
-        tree, here = self.trees[module], list(self.files[module].relative_to(self.root).parent.parts)
-        functions = (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda))
-        late = {id(node) for function in functions for node in ast.walk(function)}
-        for node in ast.walk(tree):
+        nodes, here = self.nodes[module], list(self.files[module].relative_to(self.root).parent.parts)
+        late: set[int] = set()
+        for node in nodes:
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) and id(node) not in late:
+                late |= {id(inner) for inner in ast.walk(node)}
+        for node in nodes:
             if isinstance(node, ast.Import):
                 found = [alias.name for alias in node.names]
             elif isinstance(node, ast.ImportFrom):
@@ -78,11 +80,11 @@ class Package:
         They are the names of tables, relative to its folder, where it hands such names to `import_module`, and full names such as
         ``"radiosity.cli.solve:solve"`` wherever they stand.
         """
-        tree, here = self.trees[module], list(self.files[module].relative_to(self.root).parent.parts)
-        calls, found = import_calls(tree), set()
+        nodes, here = self.nodes[module], list(self.files[module].relative_to(self.root).parent.parts)
+        calls, found = import_calls(nodes), set()
         if any(begin_of(call).startswith(".") for call in calls):
-            found.update(*(self._table(node, here) for node in ast.walk(tree)))
-        for text in _texts(ast.walk(tree)):
+            found.update(*(self._table(node, here) for node in nodes))
+        for text in _texts(nodes):
             parts = _name(text)
             if parts[:1] == [self.name]:
                 found |= self._modules([parts[1:]])
@@ -128,9 +130,9 @@ class Package:
         return {".".join(parts) for parts in names if parts} & set(self.files)
 
 
-def import_calls(tree: ast.AST) -> list[ast.Call]:
-    """Calls of `import_module`."""
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+def import_calls(nodes: Iterable[ast.AST]) -> list[ast.Call]:
+    """Calls of `import_module` among nodes."""
+    calls = [node for node in nodes if isinstance(node, ast.Call)]
     return [call for call in calls if getattr(call.func, "id", getattr(call.func, "attr", "")) == "import_module"]
 
 

@@ -95,8 +95,8 @@ def shares(package: Package) -> dict[str, float]:
 def unknown_calls(package: Package) -> set[tuple[str, str]]:
     """Calls of `import_module` whose modules cannot be seen in the source."""
     found = set()
-    for module, tree in package.trees.items():
-        for call in import_calls(tree):
+    for module, nodes in package.nodes.items():
+        for call in import_calls(nodes):
             ours = begin_of(call).startswith((".", f"{package.name}."))
             others = begin_of(call) or ast.unparse(call.args[0]).endswith(".__module__")  # the module that a class is from
             if not (package.named(module) if ours else others):
@@ -131,8 +131,8 @@ def recording(package: Package) -> set[str]:
     In `device.recorded` uploads within a loop are an error and not the end of the process.
     """
     found = set()
-    for module, tree in package.trees.items():
-        attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute) and node.attr in RECORDING]
+    for module, nodes in package.nodes.items():
+        attributes = [node for node in nodes if isinstance(node, ast.Attribute) and node.attr in RECORDING]
         if any(isinstance(node.value, ast.Name) and node.value.id in ("dr", "drjit") for node in attributes):
             found.add(module)
         if any(imported.name.startswith("drjit.") and imported.name[6:] in RECORDING for imported in package.imports[module]):

@@ -7,11 +7,13 @@ Student's t at alpha = 1e-4 for all walls of a test together (`methods.critical`
 chance of 1 %, and seeds are fixed. Estimators that leave out a probability fail the same comparison.
 """
 
+from dataclasses import replace
+
 import drjit as dr
 import numpy as np
 import pytest
 from enclosures import cube, cube_irradiance
-from members import accepted, each, plainest, varied
+from members import accepted, each, plainest, said, varied
 from methods import critical
 from replicates import powers
 
@@ -52,6 +54,16 @@ def test_some_process_takes_the_absorption(absorption):
 
 def discrete(method: rd.Method) -> bool:
     return method.equation == "discrete"
+
+
+@pytest.mark.parametrize("absorption", ["rounded", "drawn"])
+def test_an_absorption_that_is_said_is_the_same(absorption):
+    """So the suites of the axes run such methods without its name alone."""
+    method = next(one for one in accepted() if said(one) and one.absorption == absorption)
+    patches = rd.subdivide(cube(RHO[:, None], LIGHT[:, None]), cells=1)
+    one, other = (rd.solve(patches, chosen, quanta=1000, replicates=2) for chosen in (method, replace(method, absorption="auto")))
+    assert np.array_equal(one.irradiance, other.irradiance)
+    assert one.rays == other.rays
 
 
 class TestContract:

@@ -273,11 +273,11 @@ from radiosity.cli import main
 checkpoint.TIMES = 0
 folder, size = sys.argv[1], int(sys.argv[2])
 cut = rd.subdivide(rd.load_scene("room"), cells=2)
-whole = rd.solve(cut, quanta=1 << 18, replicates=2)
+whole = rd.solve(cut, "random-walk", quanta=1 << 18, replicates=2)
 resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))  # Python ignores SIGXFSZ: a write fails, as on a full disk
 with warnings.catch_warnings(record=True) as told:
     warnings.simplefilter("always")
-    found = rd.solve(cut, quanta=1 << 18, replicates=2, checkpoint=folder + "/run.npz", checkpoint_every=0)
+    found = rd.solve(cut, "random-walk", quanta=1 << 18, replicates=2, checkpoint=folder + "/run.npz", checkpoint_every=0)
 assert (found.irradiance == whole.irradiance).all()
 for warning in told:
     print(warning.message)

@@ -13,9 +13,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from command_line import run
 
 import radiosity as rd
-from radiosity.cli import checkpoints, main
+from radiosity.cli import checkpoints
 from radiosity.image import tables
 from radiosity.run import checkpoint as engine_checkpoints
 
@@ -31,12 +32,6 @@ import drjit
 drjit.set_thread_count(1)
 sys.exit(main())
 """
-
-
-def run(capsys, *arguments):
-    status = main([str(argument) for argument in arguments])
-    out, err = capsys.readouterr()
-    return status, out, err
 
 
 @pytest.fixture

@@ -5,15 +5,10 @@ import sys
 import warnings
 
 import pytest
+from command_line import run
 
 import radiosity as rd
 from radiosity.cli import app, main
-
-
-def run(capsys, *arguments):
-    status = main([str(argument) for argument in arguments])
-    out, err = capsys.readouterr()
-    return status, out, err
 
 
 def one_line(err):

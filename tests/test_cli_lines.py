@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from command_line import run
 
 import radiosity as rd
 from radiosity.cli import main
@@ -9,12 +10,6 @@ from radiosity.cli.lines import _sources
 from radiosity.cli.relight import _values
 
 SMALL = ("--cells", "1", "--quanta", "3000", "--replicates", "2")
-
-
-def run(capsys, *arguments):
-    status = main([str(argument) for argument in arguments])
-    out, err = capsys.readouterr()
-    return status, out, err
 
 
 @pytest.fixture(scope="module")

@@ -6,19 +6,13 @@ import subprocess
 import sys
 
 import pytest
+from command_line import run
 
 import radiosity as rd
-from radiosity.cli import main
 from radiosity.image import bitmap, still
 from radiosity.image import output as place
 
 RUN = ("solve", "cornell-box", "--cells", "1", "--quanta", "64", "--replicates", "2")
-
-
-def run(capsys, *arguments):
-    status = main([str(argument) for argument in arguments])
-    out, err = capsys.readouterr()
-    return status, out, err
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ from typing import get_args
 
 import numpy as np
 import pytest
+from command_line import run
 
 import radiosity as rd
 from radiosity.cli import main, progress
@@ -24,12 +25,6 @@ SMALL = ("--cells", "2", "--rays", "20k", "--replicates", "2")
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
 
-def run(capsys, *arguments):
-    status = main([str(argument) for argument in arguments])
-    out, err = capsys.readouterr()
-    return status, out, err
-
-
 @pytest.fixture(scope="module")
 def solved(tmp_path_factory):
     path = tmp_path_factory.mktemp("solved") / "box.npz"
@@ -37,6 +32,7 @@ def solved(tmp_path_factory):
     return path
 
 
+@pytest.mark.usefixtures("small_pictures")
 def test_solve_writes_everything_at_once(capsys, tmp_path):
     paths = [tmp_path / f"box{suffix}" for suffix in (".npz", ".glb", ".ply", ".vtp", ".csv", ".png", ".exr")]
     status, out, err = run(capsys, "solve", "cornell-box", *SMALL, "-o", *paths[:3], "-o", *paths[3:])

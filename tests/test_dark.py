@@ -5,14 +5,14 @@ import pytest
 from light_samples import lit
 
 import radiosity as rd
-from radiosity.run import run
+from radiosity.run import goal
 from radiosity.scene.shapes import box
 
 
 @pytest.mark.parametrize("method", ["gather", "random-walk"])
 def test_a_closed_room_under_a_sky(method, monkeypatch):
     """It went on until the counters were full, for hours."""
-    monkeypatch.setattr(run, "DARK", 1e5)
+    monkeypatch.setattr(goal, "DARK", 1e5)
     scene = lit(("walls", 0.5, 0.0, box((0, 0, 0), (4, 4, 3), inward=True))).take(np.arange(1, 7))
     patches = rd.subdivide(scene.with_lights(sky=rd.uniform_sky(1e4)), cells=1)
     with pytest.warns(rd.RadiosityWarning, match=r"no light reached any patch in [\d,]+ lines.*does a window let the sky in"):
@@ -22,7 +22,7 @@ def test_a_closed_room_under_a_sky(method, monkeypatch):
 
 
 def test_sensors_in_a_closed_room_under_a_sky(monkeypatch):
-    monkeypatch.setattr(run, "DARK", 1e5)
+    monkeypatch.setattr(goal, "DARK", 1e5)
     scene = lit(("walls", 0.5, 0.0, box((0, 0, 0), (4, 4, 3), inward=True))).take(np.arange(1, 7))
     patches = rd.subdivide(scene.with_lights(sky=rd.uniform_sky(1e4)), cells=1)
     with pytest.warns(rd.RadiosityWarning) as told:

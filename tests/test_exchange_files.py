@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from command_line import run
 from PIL import Image
 from test_docs import blocks
 from test_exchange import big_box
@@ -141,12 +142,6 @@ def test_the_page_runs(tmp_path, monkeypatch):
         exec(compile(block, str(page), "exec"), names)
     (watts,) = (float(found) for found in re.findall(r"^heater .* (\d+) ± 19 ", page.read_text(encoding="utf-8"), re.MULTILINE))
     assert names["heat"]["heater"]["net"] == pytest.approx(watts, abs=30)
-
-
-def run(capsys, *arguments):
-    status = main([str(argument) for argument in arguments])
-    out, err = capsys.readouterr()
-    return status, out, err
 
 
 def test_the_command(capsys, tmp_path):

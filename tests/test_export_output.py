@@ -110,6 +110,7 @@ def test_npz_is_left_to_the_solution(tmp_path, result):
     assert export(result, tmp_path / "a.npz").read_text() == "saved"
 
 
+@pytest.mark.usefixtures("small_pictures")
 def test_pictures_are_exported(tmp_path):
     cornell = rd.load_scene("cornell-box")
     export(solution(rd.subdivide(cornell, cells=1)), tmp_path / "a.png", smooth=False)

@@ -47,6 +47,7 @@ def photometric():
 # ---- folders -------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.usefixtures("small_pictures")
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_outputs_make_their_folder_and_a_check_leaves_no_trace(room, tmp_path, suffix):
     path = tmp_path / "new" / "er" / f"a{suffix}"

@@ -1,10 +1,9 @@
 """What gathers promise as every method does: the same bits in any stages, threads and parts; lines that are counted; refusals."""
 
-import json
-import os
-import subprocess
 import sys
+from hashlib import sha256
 
+import drjit as dr
 import numpy as np
 import pytest
 from enclosures import lamp_lit
@@ -101,32 +100,28 @@ def test_replicates_in_parts_are_one_run(coloured, quanta):
     np.testing.assert_array_equal(merged.irradiance_standard_error, whole.irradiance_standard_error)
 
 
-THREADS = """
-import hashlib, json, sys
-import drjit, radiosity as rd
-drjit.set_thread_count(int(sys.argv[1]))
-found = []
-for name, choices in (("room", {}), ("cornell-box", {"numbers": "random"}), ("room", {"coherent": True})):
-    patches = rd.subdivide(rd.load_scene(name), cells=3)
-    solution = rd.solve(patches, rd.Method(order="gather", **choices), quanta=100 * len(patches), replicates=2, seed=3)
-    found.append(hashlib.sha256(b"".join(solution.state[key].tobytes() for key in sorted(solution.state))).hexdigest())
-    assert drjit.thread_count() == int(sys.argv[1])
-print(json.dumps(found))
-"""
-
-
 def test_threads_change_nothing():
-    def hashes(threads: int) -> list[str]:
-        done = subprocess.run(
-            [sys.executable, "-c", THREADS, str(threads)], capture_output=True, text=True, check=True, env=os.environ
-        )
-        return json.loads(done.stdout.splitlines()[-1])
+    before = dr.thread_count()
 
-    one, two = hashes(1), hashes(2)
+    def hashes(threads: int) -> list[str]:
+        dr.set_thread_count(threads)
+        found = []
+        for name, choices in (("room", {}), ("cornell-box", {"numbers": "random"}), ("room", {"coherent": True})):
+            patches = rd.subdivide(rd.load_scene(name), cells=3)
+            solution = rd.solve(patches, rd.Method(order="gather", **choices), quanta=100 * len(patches), replicates=2, seed=3)
+            found.append(sha256(b"".join(solution.state[key].tobytes() for key in sorted(solution.state))).hexdigest())
+            assert dr.thread_count() == threads
+        return found
+
+    try:
+        one, two = hashes(1), hashes(2)
+    finally:
+        dr.set_thread_count(before)
     assert len(set(one)) >= 2
     assert one == two
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL on this system")
 def test_kills(tmp_path):
     case = Case("room", "gather", 600_000)

@@ -82,16 +82,16 @@ def test_factors_are_reciprocal(random):
     np.testing.assert_allclose(forth[apart], back[apart], rtol=1e-12)
 
 
-def furnace(reflectance: float, **parameters) -> float:
+def furnace(reflectance: float, cells: int = 8, **parameters) -> float:
     """The largest error in a cube with emission 1 - reflectance, where B is 1 everywhere."""
-    result = solved(cut(enclosures.cube(reflectance, 1 - reflectance)), **parameters)
+    result = solved(cut(enclosures.cube(reflectance, 1 - reflectance), cells), **parameters)
     return float(np.abs(result.radiosity - 1).max())
 
 
 # Emitted power goes as 1 - rho, so epsilon over it asks for like links at each reflectance: of F A_r up to 10^-3 m² (dK up to
 # one hundredth, by the radiance norm). Such links leave 3 to 5 % in single rows of factors (measured; 5 % are allowed), and B
 # has rho / (1 - rho) times that. With smaller epsilon nothing of it is left: the test after this one.
-@pytest.mark.parametrize("reflectance", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("reflectance", [0.1, pytest.param(0.5, marks=pytest.mark.slow), 0.9])
 @pytest.mark.parametrize(
     ("refinement", "epsilon"), [("brightness-factor", 1e-3 / 6), ("error-radiance", 1e-2), ("error-power", 1e-3 / 6)]
 )
@@ -103,7 +103,7 @@ def test_furnace(reflectance, refinement, epsilon):
 def test_rows_of_links_between_patches_sum_to_one():
     """Where all links are of patches, a receiver's points see all of the cube: what is left is that near pairs take more
     points, 10^-5 of a row, and 1/(1 - rho) times that."""
-    assert furnace(0.9, refinement="error-radiance", epsilon=1e-6) < 2e-4
+    assert furnace(0.9, cells=4, refinement="error-radiance", epsilon=1e-6) < 2e-4
 
 
 def without_push(levels, values):
@@ -121,7 +121,7 @@ def without_areas(levels, values):
 
 @pytest.mark.parametrize(("name", "wrong"), [("push", without_push), ("pull", without_areas)])
 def test_the_furnace_rejects_wrong_variants(monkeypatch, name, wrong):
-    coarse = {"reflectance": 0.5, "refinement": "error-radiance", "epsilon": 0.05}
+    coarse = {"reflectance": 0.5, "cells": 4, "refinement": "error-radiance", "epsilon": 0.05}
     assert furnace(**coarse) < 0.1
     monkeypatch.setattr(Levels, name, wrong)
     assert not furnace(**coarse) < 0.1
@@ -173,14 +173,19 @@ def test_the_indicated_error_is_no_smaller_than_the_true_one(make, refinement):
         assert (np.abs(result.irradiance[rows, 0] - exact) <= result.indicated[rows, 0]).all()
 
 
-@pytest.mark.parametrize(("refinement", "first"), [("brightness-factor", 1e-2), ("error-radiance", 0.3), ("error-power", 1e-2)])
-@pytest.mark.parametrize("make", [enclosures.parallel_squares, enclosures.perpendicular_squares])
-def test_errors_fall_with_epsilon(make, refinement, first):
+FIRST = {"brightness-factor": 1e-2, "error-radiance": 0.3, "error-power": 1e-2}  # epsilon
+FALLS = [(enclosures.parallel_squares, refinement) for refinement in FIRST]
+FALLS += [(enclosures.perpendicular_squares, "error-radiance")]
+SLOW_FALLS = [(enclosures.perpendicular_squares, refinement) for refinement in ("brightness-factor", "error-power")]
+
+
+@pytest.mark.parametrize(("make", "refinement"), [*FALLS, *(pytest.param(*case, marks=pytest.mark.slow) for case in SLOW_FALLS)])
+def test_errors_fall_with_epsilon(make, refinement):
     scene, value = make()
     patches = cut(scene, 16)
     rows, exact = exact_irradiance(scene, patches)
     errors, links = [], []
-    for epsilon in first * 10.0 ** -np.arange(4):
+    for epsilon in FIRST[refinement] * 10.0 ** -np.arange(4):
         result = solved(patches, refinement=refinement, epsilon=epsilon)
         assert result.irradiance[rows, 0].mean() == pytest.approx(value, rel=1e-3)  # the mean is right with any links
         errors.append(math.sqrt(((result.irradiance[rows, 0] - exact) ** 2).mean()) / value)

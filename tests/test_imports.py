@@ -66,7 +66,7 @@ def test_modules_that_tables_name_are_imports(ours, module):
 
 
 def test_there_are_no_other_tables(ours):
-    calling = {module for module, tree in ours.trees.items() if any(begin_of(c).startswith(".") for c in import_calls(tree))}
+    calling = {module for module, nodes in ours.nodes.items() if any(begin_of(c).startswith(".") for c in import_calls(nodes))}
     assert calling == set(TABLES)
 
 

@@ -55,7 +55,7 @@ from pathlib import Path
 import radiosity as rd
 from radiosity.solution import whole
 moment, path = sys.argv[1], Path(sys.argv[2])
-solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), quanta=2000, replicates=2)
+solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=1), "random-walk", quanta=2000, replicates=2)
 
 def die(*_, **__):
     os.kill(os.getpid(), signal.SIGKILL)

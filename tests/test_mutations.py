@@ -5,6 +5,7 @@ import builtins
 import sys
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -21,27 +22,48 @@ def faults(mistake: Mistake, text: str) -> list[str]:
     if text.count(mistake.old) != 1:
         return [f"its text stands {text.count(mistake.old)} times in the file"]
     try:
-        after = ast.parse(text.replace(mistake.old, mistake.new))
+        after = statements(text.replace(mistake.old, mistake.new))
     except SyntaxError as error:
         return [f"is no Python ({error})"]
-    if dumped(text) == ast.dump(after):
+    if [one.dump for one in unmistaken(text)] == [one.dump for one in after]:
         return ["changes no code"]
-    unknown = read(after) - bound(after) - set(dir(builtins)) - {"__file__"}
+    unknown = set().union(*(one.read for one in after)).difference(*(one.bound for one in after), dir(builtins), {"__file__"})
     return [f"reads names that the file does not have: {', '.join(sorted(unknown))}"] if unknown else []
 
 
-@cache
-def dumped(text: str) -> str:
-    """The syntax tree of a file, which many rows may change."""
-    return ast.dump(ast.parse(text))
+class Statement(NamedTuple):
+    """A statement of a file at its top level: its syntax tree, and the names that it reads and gives to something."""
+
+    dump: str
+    read: set[str]
+    bound: set[str]
+
+
+KNOWN: dict[tuple[str, int, int], Statement] = {}  # by their source: a row changes one of the many of its file
+
+
+def statements(text: str) -> list[Statement]:
+    """The statements of a file."""
+    lines, found = text.split("\n"), []
+    for node in ast.parse(text).body:
+        first = min(part.lineno for part in (node, *getattr(node, "decorator_list", ())))
+        source = "\n".join(lines[first - 1 : node.end_lineno]), node.col_offset, node.end_col_offset
+        if source not in KNOWN:
+            KNOWN[source] = Statement(ast.dump(node), read(node), bound(node))
+        found.append(KNOWN[source])
+    return found
+
+
+unmistaken = cache(statements)
 
 
 def bound(tree: ast.AST) -> set[str]:
-    """Names that a file gives to something."""
-    imported = (a for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom) for a in node.names)
-    found = {(alias.asname or alias.name).split(".")[0] for alias in imported}
+    """Names that a statement gives to something."""
+    found = set()
     for node in ast.walk(tree):
-        if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            found |= {(alias.asname or alias.name).split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
             found.add(node.id)
         elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             found.add(node.name)
@@ -53,7 +75,7 @@ def bound(tree: ast.AST) -> set[str]:
 
 
 def read(tree: ast.AST) -> set[str]:
-    """Names that a file reads."""
+    """Names that a statement reads."""
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
 
 

@@ -246,6 +246,7 @@ NAMES = ["two words", 'it\'s "quoted"', "100 %s %d", "-rf", "Größe 壁", "a\nb
 
 
 @pytest.mark.filterwarnings("ignore::radiosity.RadiosityWarning")
+@pytest.mark.usefixtures("small_pictures")
 @pytest.mark.parametrize("name", NAMES)
 def test_names_of_files_and_surfaces(tmp_path, name, capsys):
     folder = tmp_path / name.replace("/", "")

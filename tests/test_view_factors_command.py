@@ -6,15 +6,9 @@ import sys
 
 import numpy as np
 import pytest
+from command_line import run
 
 import radiosity as rd
-from radiosity.cli import main
-
-
-def run(capsys, *arguments):
-    status = main([str(argument) for argument in arguments])
-    out, err = capsys.readouterr()
-    return status, out, err
 
 
 def test_a_process_of_its_own_writes_the_factors_of_the_library(tmp_path):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browsers import SIZE, browser, needed, pixels, pixels_of
+from browsers import PATIENCE, SIZE, browser, needed, pixels, pixels_of
 
 import radiosity as rd
 from radiosity.image import tone
@@ -39,7 +39,7 @@ def until(happened) -> None:
     """Wait until something has happened."""
     since = time.monotonic()
     while not happened():
-        assert time.monotonic() - since < 20, "it did not happen"
+        assert time.monotonic() - since < PATIENCE, "it did not happen"
         time.sleep(0.05)
 
 
@@ -58,9 +58,9 @@ class Shown:
 
     def steady(self) -> np.ndarray:
         """Return the page's pixels once all was sent, and the picture no longer changes."""
-        assert self.viewer.page.settled(20)
+        assert self.viewer.page.settled(PATIENCE)
         before, since = pixels(self.page), time.monotonic()
-        while time.monotonic() - since < 20:
+        while time.monotonic() - since < PATIENCE:
             time.sleep(0.15)
             now = pixels(self.page)
             if np.array_equal(now[:, :FREE], before[:, :FREE]) and now[:, :FREE].any():
@@ -208,7 +208,7 @@ def test_the_exported_page_needs_no_network(plain, tmp_path):
     patches = seen(plain)
     x, y = plain.places(patches).T
     since = time.monotonic()
-    while time.monotonic() - since < 20 and not np.array_equal(pixels(page)[y, x], found[y, x]):
+    while time.monotonic() - since < PATIENCE and not np.array_equal(pixels(page)[y, x], found[y, x]):
         time.sleep(0.2)
     assert np.array_equal(pixels(page)[y, x], found[y, x])
     assert page.locator("#radiosity-legend img").is_visible()

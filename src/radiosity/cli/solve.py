@@ -111,7 +111,7 @@ def _patches(scene, cut: Cut, method, before, run: Running, progress):
     import radiosity as rd
 
     from ..run.baseline_budget import cut_for
-    from ..run.solve import refuse_hierarchical
+    from ..run.refusals import refuse_hierarchical
 
     if cut.given and cut.follows:
         refuse_hierarchical(method)

@@ -60,15 +60,7 @@ class Barrier:
                 if not active and time.monotonic() - lonely > LONELY:
                     self.crew.tell("there are no workers; their lines are traced here until one comes")
                     yield from self.here(waiting.pop())
-                with aside():
-                    self.crew.awake.wait(AWAKE)
-                self.crew.awake.clear()
-                workers = self.workers()
-                for future, (unit, address) in list(active.items()):
-                    if future.status == "pending" and address in workers:
-                        continue
-                    del active[future]
-                    found = self._outcome(future)
+                for unit, found in self._ended(active):
                     if found is None:
                         waiting.append(unit)
                         continue
@@ -78,8 +70,7 @@ class Barrier:
                 yield from self.here(unit)
         finally:
             for future in active:
-                with suppress(Exception):  # the scheduler may have gone
-                    future.cancel()
+                _cancel(future)
 
     def together(self, units: dict[str, Any], work: Callable[..., Brought], end: Callable[[], None]) -> list[Brought]:
         """Return what units bring that workers do together, each by its address: all of them, or nothing.
@@ -93,24 +84,14 @@ class Barrier:
             for address, unit in units.items():
                 self._submit(unit, address, active, work)
             while active:
-                with aside():
-                    self.crew.awake.wait(AWAKE)
-                self.crew.awake.clear()
-                workers = self.workers()
-                for future, (_, address) in list(active.items()):
-                    if future.status == "pending" and address in workers:
-                        continue
-                    del active[future]
-                    outcome = self._outcome(future)
-                    found += [] if outcome is None else [outcome]
+                found += [outcome for _, outcome in self._ended(active) if outcome is not None]
                 lost = len(found) + len(active) < len(units)
                 if (lost or self.crew.stopping()) and not told:
                     told = True
                     end()
         finally:
             for future in active:
-                with suppress(Exception):  # the scheduler may have gone
-                    future.cancel()
+                _cancel(future)
         return found if len(found) == len(units) else []
 
     def _submit(self, unit: Any, address: str, active: dict, work: Callable[..., Brought] | None = None) -> None:
@@ -119,6 +100,17 @@ class Barrier:
         future = self.crew.client.submit(work or self.work, self.crew.job.key, unit, **given)
         future.add_done_callback(lambda _: self.crew.awake.set())
         active[future] = (unit, address)
+
+    def _ended(self, active: dict) -> Iterator[tuple[Any, Brought | None]]:
+        """Wait a moment, and yield the units that have ended, and what each brought: None where its worker has gone."""
+        with aside():
+            self.crew.awake.wait(AWAKE)
+        self.crew.awake.clear()
+        workers = self.workers()
+        for future, (unit, address) in list(active.items()):
+            if future.status != "pending" or address not in workers:
+                del active[future]
+                yield unit, self._outcome(future)
 
     def note(self, lines: int, found: Brought) -> None:
         """Note the rate of a worker, and refuse one that would give other bits."""
@@ -140,6 +132,10 @@ class Barrier:
                 self.crew.register()
             elif not isinstance(error, (*FAILED_TO_COME, KilledWorker)):
                 raise error
-        with suppress(Exception):  # the scheduler may have gone
-            future.cancel()
+        _cancel(future)
         return None
+
+
+def _cancel(future: Any) -> None:
+    with suppress(Exception):  # the scheduler may have gone
+        future.cancel()

@@ -2,7 +2,7 @@
 
 import platform
 import uuid
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any
 
@@ -16,7 +16,22 @@ from ..tracing.geometry import Geometry
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class AbstractJob:
+    """What is sent to workers once.
+
+    Attributes:
+        key: its name on workers.
+    """
+
+    key: str = field(default_factory=lambda: uuid.uuid4().hex, kw_only=True)
+
+    def __getstate__(self) -> dict:
+        """Leave out what is made on each machine: values of cached properties."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
+
+
+@dataclass(frozen=True, eq=False)
+class Job(AbstractJob):
     """A problem and the method that solves it.
 
     Attributes:
@@ -25,7 +40,6 @@ class Job:
         seed: of the run.
         device: the name of the device that the run is of.
         lines: of each replicate, where the memory of a run grows with them and they are known; else None.
-        key: the name of the job on workers.
     """
 
     problem: Problem
@@ -33,7 +47,6 @@ class Job:
     seed: Seed
     device: str
     lines: float | None = None
-    key: str = field(default_factory=lambda: uuid.uuid4().hex)
 
     @cached_property
     def geometry(self) -> Geometry:
@@ -44,10 +57,6 @@ class Job:
         """Return a new algorithm of some replicates."""
         seed = Seed(self.seed.value, self.seed.first_replicate + first)
         return make(self.geometry, self.problem, self.method, seed, count)
-
-    def __getstate__(self) -> dict:
-        """Leave out what is made on each machine."""
-        return {name: value for name, value in vars(self).items() if name != "geometry"}
 
 
 def facts() -> dict[str, str]:

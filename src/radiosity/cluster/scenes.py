@@ -1,8 +1,7 @@
 """Scenes on workers: each is sent once, for all measurements and pieces of final gathers of a connection."""
 
-import uuid
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -11,30 +10,25 @@ from ..device.backend import choose
 from ..problem.model import Problem
 from ..tracing.geometry import Geometry
 from .gpus import tell_of_shared
+from .job import AbstractJob
 
 
 @dataclass(frozen=True, eq=False)
-class SceneJob:
+class SceneJob(AbstractJob):
     """A scene on workers.
 
     Attributes:
         problem: the scene, and the numbers that the driver has computed from it.
         device: the name of the device that the run is of.
-        key: the name of the job on workers.
     """
 
     problem: Problem
     device: str
-    key: str = field(default_factory=lambda: uuid.uuid4().hex)
 
     @cached_property
     def geometry(self) -> Geometry:
         """The scene on the device of this process."""
         return Geometry(self.problem.patches, choose(self.device))
-
-    def __getstate__(self) -> dict:
-        """Leave out what is made on each machine."""
-        return {name: value for name, value in vars(self).items() if name != "geometry"}
 
 
 _sent: WeakKeyDictionary[Any, list[SceneJob]] = WeakKeyDictionary()  # by client

@@ -1,9 +1,8 @@
 """Lines of sensors on workers: ranges of the lines of each sensor, whose sums are added at a barrier."""
 
-import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -14,6 +13,7 @@ from ..problem.model import Problem
 from ..sensors.tracing import OfLines, Setup, Tracing
 from .barrier import Barrier
 from .crew import DaskCrew
+from .job import AbstractJob
 from .scenes import scene_on
 from .worker import job_of, sense
 
@@ -21,18 +21,16 @@ FEWEST = 1 << 17  # lines of a unit
 
 
 @dataclass(frozen=True, eq=False)
-class SensorJob:
+class SensorJob(AbstractJob):
     """What workers need of a measurement, besides the scene.
 
     Attributes:
         scene: the key of the `SceneJob`.
         setup: the sensors.
-        key: the name of the job on workers.
     """
 
     scene: str
     setup: Setup
-    key: str = field(default_factory=lambda: uuid.uuid4().hex)
 
     @cached_property
     def tracing(self) -> Tracing:
@@ -42,10 +40,6 @@ class SensorJob:
     def sums(self, before: np.ndarray, more: np.ndarray) -> OfLines:
         """Return the sums of lines, on the host."""
         return on_host(self.tracing.sums(before, more))
-
-    def __getstate__(self) -> dict:
-        """Leave out what is made on each machine."""
-        return {name: value for name, value in vars(self).items() if name != "tracing"}
 
 
 def on_host(sums: OfLines) -> OfLines:

@@ -13,8 +13,8 @@ from ..algorithms.firing.algorithm import Firing
 from ..algorithms.gather.algorithm import Gather
 from ..algorithms.gather.elsewhere import AbstractLinesElsewhere, GatherLines, Sums
 from ..algorithms.iterations.algorithm import Iteration
-from ..algorithms.walks.launches import AbstractElsewhere, AbstractWalks, Chunks
-from ..tally.shots import AbstractShots, Landed, Shot
+from ..algorithms.walks.launches import AbstractWalks, AbstractWalksElsewhere, Chunks
+from ..tally.shots import Landed, Shot, Shots
 from .barrier import Barrier
 from .crew import DaskCrew
 from .wavefronts import FEWEST, DaskFirer
@@ -39,23 +39,23 @@ def cut(whole: AbstractAlgorithm, crew: DaskCrew) -> bool:
     return True
 
 
-class DaskShots(AbstractShots):
+class DaskShots(Shots):
     """Fires the lines of iterations."""
 
     def __init__(self, crew: DaskCrew, replicates: int):
         self.barrier = Barrier(crew, shoot, lambda unit: [shot_of(crew.job, unit)])
         self.replicates, self.least = replicates, 2 * FEWEST
 
-    def fire(self, shot: Shot) -> Iterator[Landed]:
-        total = shot.total
+    def trace(self, lines: Shot) -> Iterator[Landed]:
+        total = lines.total
         parts = max(1, min(len(self.barrier.workers()), total // FEWEST))
         ends = [total * at // parts for at in range(parts + 1)]
-        units = [(self.replicates, shot.between(low, high)) for low, high in pairwise(ends)]
+        units = [(self.replicates, lines.between(low, high)) for low, high in pairwise(ends)]
         yield from self.barrier.done(units, lambda unit: unit[1].total)
         self.over = self.barrier.over
 
 
-class DaskWalks(AbstractElsewhere[Any]):
+class DaskWalks(AbstractWalksElsewhere[Any]):
     """Follows chunks of walks."""
 
     def __init__(self, crew: DaskCrew, replicates: int):
@@ -66,11 +66,11 @@ class DaskWalks(AbstractElsewhere[Any]):
         most = AT_A_TIME * MOST_CHUNKS * max(len(self.barrier.workers()), 1)
         return Chunks(chunks.before, chunks.quanta, chunks.first, min(chunks.end, chunks.first + most))
 
-    def follow(self, chunks: Chunks) -> Iterator[tuple[Any, int]]:
-        workers, count = max(len(self.barrier.workers()), 1), chunks.end - chunks.first
+    def trace(self, lines: Chunks) -> Iterator[tuple[Any, int]]:
+        workers, count = max(len(self.barrier.workers()), 1), lines.end - lines.first
         parts = min(count, AT_A_TIME * workers if count > AT_A_TIME * workers else workers)
-        ends = [chunks.first + count * at // parts for at in range(parts + 1)]
-        units = [(self.replicates, Chunks(chunks.before, chunks.quanta, *pair)) for pair in pairwise(ends)]
+        ends = [lines.first + count * at // parts for at in range(parts + 1)]
+        units = [(self.replicates, Chunks(lines.before, lines.quanta, *pair)) for pair in pairwise(ends)]
         yield from self.barrier.done(units, lambda unit: unit[1].end - unit[1].first)
         self.over = self.barrier.over
 

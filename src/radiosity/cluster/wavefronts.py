@@ -6,7 +6,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from ..algorithms.firing.elsewhere import AbstractFirer, Begun, Hits, Lines, cut
+from ..algorithms.firing.elsewhere import Begun, Due, Firer, Hits, Lines, cut
 from ..algorithms.firing.own_rows import OwnRows, dealt
 from . import post
 from .barrier import Barrier
@@ -19,7 +19,7 @@ SECONDS = 30.0  # after which workers that fire together come back: what all of 
 ROWS = 64  # of a worker at least, where they have rows of their own: so that each has about as much to fire
 
 
-class DaskFirer(AbstractFirer):
+class DaskFirer(Firer):
     """Fires the lines of a wavefront on the workers of a crew, in proportion to the rates at which these have traced before.
 
     Where lines that follow may be fired as well, workers fire those of rows of their own, and send
@@ -30,14 +30,14 @@ class DaskFirer(AbstractFirer):
         self.barrier = Barrier(crew, fire, lambda lines: list(fire_all(crew.job, lines)))
         self.least = 2 * FEWEST
 
-    def fire(self, lines: list[Lines], begun: Begun | None) -> Iterator[Hits]:
-        barrier, total = self.barrier, sum(one.total for one in lines)
+    def trace(self, lines: Due) -> Iterator[Hits]:
+        barrier, total = self.barrier, sum(one.total for one in lines.lines)
         chosen = sorted(barrier.workers(), key=lambda address: -barrier.rate(address))[: max(1, total // FEWEST)]
-        together = [] if begun is None else self._together(lines, begun, chosen)
+        together = [] if lines.begun is None else self._together(lines.lines, lines.begun, chosen)
         if together:
             yield from together
         else:
-            units = [one for one in cut(lines, [barrier.rate(address) for address in chosen] or [1.0]) if one]
+            units = [one for one in cut(lines.lines, [barrier.rate(address) for address in chosen] or [1.0]) if one]
             yield from barrier.done(units, lambda unit: sum(one.total for one in unit))
         self.over = barrier.over
 

@@ -111,12 +111,17 @@ def rung_after(quanta: int, first: int) -> int:
     return first if quanta < first else 1 << (quanta.bit_length())
 
 
+def climb(quanta: int, first: int) -> list[int]:
+    """Return the rungs up to the one above N, or to N itself where it is one."""
+    rungs = [first]
+    while rungs[-1] < quanta:
+        rungs.append(rung_after(rungs[-1], first))
+    return rungs
+
+
 def stages(quanta: int, first: int) -> list[int]:
     """Stages that lead to N: rungs below it, then N."""
-    found = [first]
-    while found[-1] < quanta:
-        found.append(rung_after(found[-1], first))
-    return [*found[:-1], quanta]
+    return [*climb(quanta, first)[:-1], quanta]
 
 
 def on_ladder(quanta: int, first: int) -> bool:
@@ -156,6 +161,17 @@ def next_quanta(budget: Budget, replicates: int, first: int, at: Progressed, *, 
     if blind and at.lines / replicates * target / at.quanta > BLIND:
         return None
     return target
+
+
+def missed(budget: Budget, at: Progressed, first: int) -> bool:
+    """Return whether a stage that was to be the last has missed its error, and the limits leave room for another run."""
+    more = 2 * rung_after(at.quanta, first) / at.quanta
+    return (
+        budget.error is not None
+        and not at.error <= budget.error
+        and not on_ladder(at.quanta, first)
+        and budget.allows(at.lines * more / 2, at.seconds + at.stage_seconds * more)
+    )
 
 
 def _wanted(budget: Budget, rung: int, at: Progressed, replay: bool) -> int:

@@ -81,9 +81,6 @@ def rows_of(patches: Patches, name: str) -> np.ndarray:
     return rows
 
 
-DARK = 1e7  # lines without any light on any patch: no error is looked for any longer
-
-
 def nothing_before_lights(patches: Patches) -> bool:
     """Return True where it is certain, by the vertices, that nothing lies in front of any light, so that no line can hit."""
     scene = patches.scene

@@ -21,24 +21,25 @@ from ..method import Baseline, Method
 from ..patches import Patches
 from ..problem.model import Problem
 from ..sampling.streams import Seed
-from ..scene.habits import warn
 from ..solution.status import NOT_REACHED
 from ..tally import unmet
 from ..tracing.geometry import Geometry
 from . import memory_estimate
 from .aim import Aim
 from .baseline_budget import warn_of_missing
-from .budget import Budget, Progressed, next_quanta, on_ladder, rung_after
+from .budget import Budget, Progressed, climb, missed, next_quanta
 from .checkpoint import Checkpoint
 from .choice import Choice
-from .error_target import DARK, Target, nothing_before_lights
+from .error_target import Target
+from .goal import Goal
 from .looks import looks
 from .part import Part, check_stages
 from .pilot import few_quanta
 from .progress import Listener, Stop, Teller
 from .record import AbstractRecord
+from .refusals import refuse_depth_first
 from .result import R
-from .same import check_same
+from .same import check_on_ladder, check_same
 from .shortfall import warn_of_few_ends, warn_of_importance, warn_of_more, warn_of_target
 from .snapshot import Snapshot
 
@@ -79,19 +80,9 @@ class Run(Generic[R]):
         self.spread: Callable[[AbstractAlgorithm], AbstractAlgorithm] | None = None  # makes an algorithm run on other machines
         self.seconds_before = 0.0 if resume is None else resume.seconds
         self.problem = Problem.of(patches, through=method.machine in ("firing", "iteration")) if problem is None else problem
-        bands = self.problem.groups.n_groups
-        if self.problem.rows.lines is not None and method.order == "depth-first":
-            raise MethodError(
-                "order 'depth-first' cannot send more lines through openings, each with less power: take breadth-first, or leave "
-                "out the openings"
-            )
-        if bands > 1 and method.machine == "firing" and method.order == "depth-first":
-            raise MethodError(
-                f"order '{method.order}' cannot carry {bands} different bands: "
-                "band power travels with whole wavefronts; take breadth-first, or solve one band at a time"
-            )
+        refuse_depth_first(self.problem, method)
         lines = memory_estimate.lines_of(method, budget, part.replicates)
-        memory_estimate.check(method, patches, bands, part.replicates, lines)
+        memory_estimate.check(method, patches, self.problem.groups.n_groups, part.replicates, lines)
         self.rung = part.rung(method.order, self.problem.source.share)
         part.check(method, budget, self.rung)
         self.teller, self.stop = Teller(budget, listener, 0.0 if choice is None else choice.seconds), Stop()
@@ -102,7 +93,8 @@ class Run(Generic[R]):
         made = None if choice is None else choice.geometry
         self.geometry = Geometry(self.problem.patches, self.device) if made is None else made
         aim = None if importance is None else self._share_out(importance)
-        self.error_of, self.target = error_of, Target.of(patches, error_of, None if aim is None else aim[0])
+        self.error_of = error_of
+        self.goal = Goal(patches, budget.error, Target.of(patches, error_of, None if aim is None else aim[0]))
         given = {name: value for name, value in {**vars(budget), "error_of": error_of}.items() if value is not None}
         facts = {} if aim is None else {"importance": (aim[0].name, aim[1])}
         self.record = record(patches, method, part, self.device.name, given, None if choice is None else choice.facts, **facts)
@@ -147,16 +139,9 @@ class Run(Generic[R]):
             resumed = algorithm.read(self.resume.state, algorithm.sizes)
             algorithm.restore(resumed)
             target = algorithm.quanta
-            last = not algorithm.stage_independent and not resumed.unfinished and not on_ladder(target, self.rung)
-            if last and (self.budget.seconds is not None or self.record.budget != self.resume.provenance.get("budget")):
-                kind = f"in {self.problem.groups.n_groups} groups of bands"
-                if self.problem.rows.lines is not None:
-                    kind += ", with lines through openings,"
-                raise MethodError(
-                    f"a run by {self.method} {kind} cannot go on from {target} quanta "
-                    "to the bits of one longer run: its results depend on its stages, and the last one was no power of two from "
-                    f"{self.rung} on. Start anew; runs to be continued end on such a number (quanta=, --quanta)"
-                )
+            longer = self.budget.seconds is not None or self.record.budget != self.resume.provenance.get("budget")
+            if longer and not algorithm.stage_independent and not resumed.unfinished:
+                check_on_ladder(self.problem, self.method, target, self.rung)
         self.teller.begin(0 if self.resume is None else algorithm.swept_so_far())
         status, pending, steps = "complete", None, [*self._looks(algorithm, target), target]
         while target:
@@ -174,8 +159,8 @@ class Run(Generic[R]):
                 give_back_memory()
             snapshot = self.snapshot = self._results(algorithm, self.also)
             known = self.replicates > 1 and self._error_matters
-            error = self.target.error(snapshot) if known else math.nan
-            margin = self._margin(snapshot)
+            error = self.goal.target.error(snapshot) if known else math.nan
+            margin = self.goal.margin(snapshot)
             counted = large or (known and self.budget.error is not None)  # whoever listens: the next stage depends on this number
             lines = snapshot.lines if counted else round(snapshot.about_lines)
             self.teller.complete(lines, target, error, margin, algorithm.tally.swept_lines(self.problem, snapshot.state))
@@ -184,14 +169,14 @@ class Run(Generic[R]):
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
                 break
-            if snapshot.done or self._no_light(snapshot):
+            if snapshot.done or self.goal.dark(snapshot):
                 break
             stage, slope = time.perf_counter() - started, self.teller.slope
             at = Progressed(target, lines, self.teller.elapsed, stage, error * margin, slope)
             replay = not algorithm.stage_independent
-            if replay and self._missed(at):
+            if replay and missed(self.budget, at, self.rung):
                 self.algorithm = algorithm = self._spread_out()
-                steps = self._climb(target)
+                steps = climb(target, self.rung)  # from N itself no run goes on to the bits of a longer one
                 target = steps[-1]
                 continue
             exact = self.budget.quanta is not None
@@ -203,19 +188,16 @@ class Run(Generic[R]):
         if self.snapshot is None:
             solution = self._so_far(status, pending or algorithm.capture())
         else:
-            if status == "complete" and self.budget.error is not None and not self._reached(self.snapshot):
+            if status == "complete" and self.budget.error is not None and not self.goal.reached(self.snapshot, self.teller.bound):
                 status = NOT_REACHED
             solution = self._solution(self.snapshot, status, pending)
         if self.checkpoint is not None:
             self.checkpoint.end(solution)
         if solution.quanta == 0:
             raise KeyboardInterrupt
-        if self.snapshot is not None and self._no_light(self.snapshot) and self.snapshot.lines >= DARK:
+        if self.snapshot is not None:
             with result_kept():
-                warn(
-                    f"{self.patches.scene.source}: no light reached any patch in {self.snapshot.lines:,.0f} lines, so that there "
-                    "is no error to reach; do lamps face the scene, and does a window let the sky in?"
-                )
+                self.goal.warn_of_dark(self.snapshot)
         return solution
 
     def merged(self, quanta: int, parts: list[tuple[dict, Part]]) -> R:
@@ -279,38 +261,6 @@ class Run(Generic[R]):
             return self.record.result(self.snapshot, status, state, seconds)
         return self.record.unfinished(self.resume, status, state, seconds)
 
-    def _missed(self, at: Progressed) -> bool:
-        """Return whether a stage that was to be the last has missed its error, and the limit leaves room for another run."""
-        more = 2 * rung_after(at.quanta, self.rung) / at.quanta
-        return (
-            self.budget.error is not None
-            and not at.error <= self.budget.error
-            and not on_ladder(at.quanta, self.rung)
-            and self.budget.allows(at.lines * more / 2, at.seconds + at.stage_seconds * more)
-        )
-
-    def _climb(self, quanta: int) -> list[int]:
-        """Return the rungs up to the one above N, for a new run: from N itself no run goes on to the bits of a longer one."""
-        rungs = [self.rung]
-        while rungs[-1] < quanta:
-            rungs.append(rung_after(rungs[-1], self.rung))
-        return rungs
-
-    def _reached(self, snapshot: Snapshot) -> bool:
-        """Return whether the error was reached, or is as small as it gets."""
-        return snapshot.done or self._no_light(snapshot) or self.teller.bound <= (self.budget.error or 0)
-
-    def _margin(self, snapshot: Snapshot) -> float:
-        """Return how many times the stated error the true one may be, where there is an error target; NaN with too few hits."""
-        if self.budget.error is None:
-            return 1.0
-        return self.target.margin(snapshot) if self.target.judged(snapshot) else math.nan
-
-    def _no_light(self, snapshot: Snapshot) -> bool:
-        """Return whether there is an error target, but no patch can receive anything, or none did in very many lines."""
-        dark = self.budget.error is not None and not snapshot.irradiance[0].any()
-        return dark and (snapshot.lines >= DARK or nothing_before_lights(self.patches))
-
     def _algorithm(self, problem: Problem, part: Part) -> AbstractAlgorithm:
         return make(self.geometry, problem, self.method, part.seed, part.replicates)
 
@@ -364,7 +314,7 @@ class Run(Generic[R]):
             if self.resume is None:
                 warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
             if status == NOT_REACHED:
-                warn_of_target(snapshot, self.budget, self.target, self.teller.bound, self.error_of)
+                warn_of_target(snapshot, self.budget, self.goal.target, self.teller.bound, self.error_of)
             if isinstance(snapshot.tally, AbstractMeanTally):
                 unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
             warn_of_few_ends(self.method, snapshot.lines / self.replicates / len(self.patches))

@@ -6,20 +6,18 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ..device.memory import limited
 from ..device.turn import turn
 from ..diagnostics.contact_findings import tell
 from ..diagnostics.lamps_at_faces import warn_of_spots
 from ..diagnostics.narrow import warn_of_light
 from ..diagnostics.near_lamps import warn_of_near_lamps
-from ..errors import MethodError, keeping, shown
+from ..errors import MethodError, keeping
 from ..hooks import HOOKS
 from ..method import Auto, Baseline, Method, resolve
 from ..patches import Patches, subdivide
 from ..sampling.streams import Seed
-from ..scene.model import Back, Scene
+from ..scene.model import Scene
 from ..solution.binomial import LEAST_REPLICATES
 from ..solution.model import Solution
 from .baseline_budget import chosen_budget, cut_for
@@ -27,14 +25,11 @@ from .budget import Budget
 from .checkpoint import Checkpoint
 from .part import Part
 from .progress import Listener
+from .refusals import refines, refuse_cut, refuse_hierarchical, refuse_open, refuse_panes
 from .whole_number import whole
 
 if TYPE_CHECKING:
     from .run import Run
-
-
-SHOOTING = ("firing", "walks")  # algorithms whose lines carry power from the patches where they begin
-
 
 def solve(
     scene: Scene | Patches,
@@ -253,62 +248,3 @@ def _adapted(scene, chosen, adaptive, seed, device, progress, resume) -> Patches
     count = len(subdivide(scene, **cut_for(chosen))) if adaptive is True else whole(adaptive, "adaptive", 1)
     basis = "constant" if isinstance(chosen, Baseline) else chosen.basis
     return HOOKS["adapt"](scene, count, seed=seed, device=device, progress=progress, basis=basis)
-
-
-def refuse_cut(patches: Patches, method: Method | Baseline | Auto) -> None:
-    """Raise where patches follow the light and the method makes a mesh of its own."""
-    if patches.scene.cut is not None:
-        refuse_hierarchical(method)
-
-
-def refines(method: Method | Baseline | Auto) -> bool:
-    """Return whether a method refines patches by itself."""
-    return isinstance(method, Baseline) and method.scheme == "hierarchical"
-
-
-def refuse_hierarchical(method: Method | Baseline | Auto) -> None:
-    """Raise where a method refines patches by itself."""
-    if refines(method):
-        raise MethodError(
-            "hierarchical radiosity refines its patches by itself, from whole faces: give it the scene, or patches by size or "
-            "cells, and no mesh that follows the light"
-        )
-
-
-def refuse_open(scene: Scene, method: Method | Baseline) -> None:
-    """Raise where a scene has open lamps and the method cannot solve it.
-
-    An open lamp is seen together with what is behind it. Only lines that carry power from their patch tell the two apart.
-    """
-    if method.machine in SHOOTING or not (scene.back == Back.OPEN).any():
-        return
-    names = shown([scene.names[i] for i in np.unique(scene.surface[scene.back == Back.OPEN])])
-    raise MethodError(
-        f"lines pass through the lamps {names} (null BSDF), and only walks that begin at the lights follow them: "
-        "take --method random-walk, or give the lamps a black diffuse BSDF"
-    )
-
-
-def refuse_panes(scene: Scene, method: Method | Baseline) -> None:
-    """Raise where a scene has panes and the method cannot solve it.
-
-    Global lines pair the two sides of what they cross, and do not go on through panes. Some algorithms do not send light on from
-    the other side of a face.
-    """
-    if isinstance(method, Method):
-        clear = "" if method.lines == "local" else f"lines '{method.lines}' pair the faces on both sides of a pane"
-        one_sided = method.machine in ("multipath", "pooling") or method.absorption == "fractional"
-    else:
-        clear, one_sided = "", method.scheme == "hierarchical"
-    glass = "" if isinstance(method, Method) else "form factors of baselines have one transmittance for all angles"
-    diffuse = f"method {method} sends no light on from the other side of a face" if one_sided else ""
-    for some, key, reason in (
-        (scene.panes, "transmittance", clear),
-        (scene.diffusers, "diffuse_transmittance", diffuse),
-        (np.zeros(1, bool) if scene.refractive_index is None else scene.refractive_index > 0, "refractive_index", glass),
-    ):
-        if reason and some.any():
-            names = shown([scene.names[i] for i in np.unique(scene.surface[some])])
-            raise MethodError(
-                f"{scene.source}: {names} let light through ({key}), and {reason}: take local lines, such as --method random-walk"
-            )

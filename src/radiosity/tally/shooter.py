@@ -26,7 +26,7 @@ from ..tracing.spots import traced
 from .hit_counts import HitCounts
 from .hit_tally import DENSE
 from .moments import Moments
-from .shots import AbstractShots, shoot_elsewhere
+from .shots import Shots, shoot_elsewhere
 from .wraps import PERIOD, Wraps
 
 FEW = 1 << 13  # batches of at most this many lines share one kernel
@@ -100,7 +100,7 @@ class Shooter:
         self._fired = [dr.opaque(self.types.UInt32, 0, self.total) for _ in range(sequences)]
         self._upper = [Wraps(self.types) for _ in range(sequences)]
         self.fired = self._fired[0]
-        self.elsewhere: AbstractShots | None = None
+        self.elsewhere: Shots | None = None
 
     @property
     def sequences(self) -> int:

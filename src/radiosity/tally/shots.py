@@ -1,13 +1,12 @@
 """Lines of a `Shooter` that are fired elsewhere: cut into ranges, whose hits and powers are whole numbers, and are summed."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ..device.backend import frozen, upload
+from .elsewhere import AbstractElsewhere
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,20 +51,7 @@ class Landed:
     received: np.ndarray
 
 
-class AbstractShots(ABC):
-    """Fires shots elsewhere.
-
-    Attributes:
-        least: lines of a shot from which it pays; smaller ones are fired here.
-        over: True where the run is to end: the lines that it was given have been fired all the same.
-    """
-
-    least: int = 0
-    over: bool = False
-
-    @abstractmethod
-    def fire(self, shot: Shot) -> Iterator[Landed]:
-        """Yield what all lines bring, in any order and in any pieces."""
+Shots = AbstractElsewhere[Shot, Landed]
 
 
 def between(counts: np.ndarray, low: int, high: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -76,7 +62,7 @@ def between(counts: np.ndarray, low: int, high: int) -> tuple[np.ndarray, np.nda
     return some, (first - begins)[some], (end - first)[some]
 
 
-def shoot_elsewhere(shooter: Any, shots: AbstractShots, numbers, counts, weights, ends) -> int:
+def shoot_elsewhere(shooter: Any, shots: Shots, numbers, counts, weights, ends) -> int:
     """Fire lines of a `Shooter` elsewhere, and add what they bring.
 
     Args:
@@ -91,7 +77,7 @@ def shoot_elsewhere(shooter: Any, shots: AbstractShots, numbers, counts, weights
         shot = replace(shot, density=frozen(ends.density), carried=frozen(ends.carried), groups=ends.groups)
     received = frozen(shooter.received).copy()
     arrivals, missed = (column.astype(np.uint64) for column in shooter.hits.read())
-    for landed in shots.fire(shot):
+    for landed in shots.trace(shot):
         received += landed.received
         arrivals += landed.arrivals
         missed += landed.missed

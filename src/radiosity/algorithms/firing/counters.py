@@ -30,7 +30,7 @@ from ...tracing.geometry import Geometry
 from ...tracing.lanes import PIECE, Batch, Launch, Wavefront, boxes_for, sums
 from ...tracing.line_tracer import LineTracer
 from ..base import Interrupted
-from .elsewhere import AbstractFirer, fire_elsewhere
+from .elsewhere import Firer, fire_elsewhere
 
 MANY = 4  # after wavefronts of at least a line for 4 patches, all patches are looked through, and no flags are kept
 FEW = 1 << 13  # up to this many lines, the host sorts the slots that they hit: that is faster than to look through all flags
@@ -76,7 +76,7 @@ class FiringCounters:
         self.everywhere, self.has_due, self.wide = True, False, False
         self.swept = self.unseen = 0  # swept: lines of the wavefronts so far
         self.emits_much, self.whole_upper, self.parted = False, None, False
-        self.firer: AbstractFirer | None = None  # where lines are fired elsewhere
+        self.firer: Firer | None = None  # where lines are fired elsewhere
 
     def set_quanta(self, quanta: int) -> None:
         """Begin a stage: N for each replicate; it may only grow."""

@@ -4,8 +4,6 @@ The lines of a wavefront are fixed before its first is fired. So whoever knows a
 fires now and what power they carry, can fire them. Hits are whole numbers, and so are powers of bands.
 """
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,6 +11,7 @@ import numpy as np
 
 from ...device.backend import frozen, upload
 from ...solution.books import exact_sum
+from ...tally.elsewhere import AbstractElsewhere
 from ...tally.shots import between
 from ...tally.wraps import PERIOD
 from ...tracing.lanes import Wavefront
@@ -77,27 +76,23 @@ class Begun:
     fired: np.ndarray
 
 
-class AbstractFirer(ABC):
-    """Fires lines elsewhere.
+@dataclass(frozen=True, eq=False)
+class Due:
+    """The lines of a wavefront.
 
     Attributes:
-        least: lines of a wavefront from which it pays; smaller ones are fired here.
-        over: True where the run is to end: the lines that it was given have been fired all the same.
+        lines: those of each replicate that has any.
+        begun: where it is given, lines that their hits make due may be fired as well.
     """
 
-    least: int = 0
-    over: bool = False
-
-    @abstractmethod
-    def fire(self, lines: list[Lines], begun: Begun | None) -> Iterator[Hits]:
-        """Yield the hits of all lines, in any order and in any pieces.
-
-        Args:
-            begun: where it is given, lines that these hits make due may be fired as well.
-        """
+    lines: list[Lines]
+    begun: Begun | None
 
 
-def fire_elsewhere(counters: Any, wavefront: Wavefront, largest: int, firer: AbstractFirer) -> None:
+Firer = AbstractElsewhere[Due, Hits]
+
+
+def fire_elsewhere(counters: Any, wavefront: Wavefront, largest: int, firer: Firer) -> None:
     """Fire a wavefront, and add its hits to the `FiringCounters`."""
     tracer, bands = counters.tracer, counters.bands
     numbers, counts = _on_host(counters, wavefront)
@@ -117,7 +112,7 @@ def fire_elsewhere(counters: Any, wavefront: Wavefront, largest: int, firer: Abs
     sums, more = _Sums.of(counters), 0
     alone = bands is not None or counters.panes is not None or wide or counters.parted
     begun = None if alone else Begun(counters.quanta, sums.arrivals, fired.reshape(sums.arrivals.shape))
-    for hits in firer.fire(found, begun):
+    for hits in firer.trace(Due(found, begun)):
         sums = sums.after(counters, hits)
         if hits.fired is not None:
             fired[hits.replicate * tracer.n : (hits.replicate + 1) * tracer.n] += hits.fired

@@ -1,7 +1,6 @@
 """Lines of a gather that are traced elsewhere: ranges of the lines of each packet, whose sums are whole numbers."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from abc import abstractmethod
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -9,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...device.backend import frozen, upload
+from ...tally.elsewhere import AbstractElsewhere
 
 Sums = tuple[list[np.ndarray], list[np.ndarray]]  # what lines bring, of each column; and lines that escaped and were lost
 
@@ -39,25 +39,13 @@ class GatherLines:
         return [replace(self, done=self.done + low, counts=high - low) for low, high in pairwise(ends)]
 
 
-class AbstractLinesElsewhere(ABC):
-    """Traces lines elsewhere.
-
-    Attributes:
-        least: lines from which it pays; fewer are traced here.
-        over: True where the run is to end.
-    """
-
-    least: int = 0
-    over: bool = False
+class AbstractLinesElsewhere(AbstractElsewhere[GatherLines, Sums]):
+    """Traces lines of a gather elsewhere."""
 
     @property
     @abstractmethod
     def slices(self) -> int:
         """How many slices of lines are traced at a time."""
-
-    @abstractmethod
-    def trace(self, lines: GatherLines) -> Iterator[Sums]:
-        """Yield the sums of all lines, in any order and in any pieces."""
 
 
 def trace_here(lines: Any, part: GatherLines) -> Sums:

@@ -3,7 +3,6 @@
 import functools
 import operator
 from dataclasses import dataclass
-from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -13,15 +12,14 @@ from ...device.recorded import loop
 from ...method import Method
 from ...patches.bases import CONSTANT, Basis, of_size
 from ...problem.model import Problem
-from ...sampling.blocks import BLOCK, Blocks, parts
-from ...sampling.numbers import AbstractNumbers, ready
 from ...sampling.streams import Seed
 from ...tracing.against import light_along, sends
 from ...tracing.hits import Hit, first_hit, patch_of
-from ...tracing.ray_generation import before, place_number
+from ...tracing.ray_generation import before
 from ...tracing.spots import Spot, spot, spot_of
 from .chances import Chances
 from .glow import Glow
+from .line_numbers import LineNumbers, largest
 from .moments import light_at, products
 from .packets import ESCAPED, LOST, Packets
 from .stored_lines import StoredLines
@@ -38,10 +36,7 @@ class Lines:
     Attributes:
         packets: the lanes.
         targets: what they find.
-        numbers: the points of the unit cube.
-        by_patch: each patch moves them by a shift of its own.
-        streams: randomisations of the replicates, for cosine lines and for shadow rays.
-        keys: those of the first block of each.
+        numbers: those that lines take.
         most: the largest value that a cosine line may read, for fixed point.
         finer: units of cosine lines are so many times finer than usual, where they find little light.
         basis: sums are moments of its functions where lines leave; columns are group by group (`moments`).
@@ -49,10 +44,7 @@ class Lines:
 
     packets: Packets
     targets: Targets
-    numbers: AbstractNumbers
-    by_patch: bool
-    streams: tuple[Blocks, Blocks]
-    keys: tuple[Any, Any]
+    numbers: LineNumbers
     most: float
     finer: int = 1
     basis: Basis = CONSTANT
@@ -75,15 +67,13 @@ class Lines:
             basis: of the sums.
         """
         types, emission, lights = packets.types, problem.groups.emission, problem.lights
-        numbers = ready(method.points, types)
-        one, other = (Blocks(numbers, types, seed, packets.replicates, purpose) for purpose in purposes)
+        numbers = LineNumbers.of(method, types, seed, packets.replicates, purposes)
         shares = emission / np.maximum(problem.unit, 1e-300)
         columns = [upload(types.Float, np.append(column, [0, 0]).astype(np.float32)) for column in shares.T]
         chances.prepare()
-        by_patch, keys = method.randomisation == "by-patch", (one.words(), other.words())
         sky = None if lights is None or lights.sky is None else Glow.of(lights.sky, packets.geometry, problem)
         targets = Targets(packets, chances, columns, sky)
-        return Lines(packets, targets, numbers, by_patch, (one, other), keys, most_read(problem), basis=basis)
+        return Lines(packets, targets, numbers, most_read(problem), basis=basis)
 
     @property
     def groups(self) -> int:
@@ -114,7 +104,7 @@ class Lines:
             keep: takes where the lines hit.
             bins: ``bins(lane, direction, value)`` is called with what each line brings of the first group, in fixed point.
         """
-        found = [self._cosine(*part, read, keep, bins, squares=squares) for part in self._parts(0, done, counts)]
+        found = [self._cosine(*part, read, keep, bins, squares=squares) for part in self.numbers.parts(0, done, counts)]
         return _added([sums for sums, _ in found]), _added([missed for _, missed in found])
 
     def _cosine(self, keys, done, counts, read, keep: StoredLines | None, bins, *, squares: bool) -> tuple[list, list]:
@@ -124,7 +114,7 @@ class Lines:
         lane, replicate, place, patch = packets.read()
         start, count = packets.of_packets(done, place), packets.of_packets(counts, place)
         record = packets.record(patch)
-        points = self.points_of(keys, replicate, record, patch, start, _largest(done, counts))
+        points = self.numbers.points_of(keys, replicate, record, patch, start, largest(done, counts))
         frame, position_of = packets.frame(record)
         normal, row = frame.normal * frame.side, chances.row(place)
         base, lanes, scale = replicate * packets.read_width, dr.opaque(UInt32, packets.lanes), dr.opaque(Float, self.unit)
@@ -196,14 +186,14 @@ class Lines:
 
         Args: see `cosine`.
         """
-        return _added([self._shadow(*part, bins, squares=squares) for part in self._parts(1, done, counts)])
+        return _added([self._shadow(*part, bins, squares=squares) for part in self.numbers.parts(1, done, counts)])
 
     def _shadow(self, keys, done, counts, bins, *, squares: bool) -> list:
         packets, chances = self.packets, self.targets.chances
         lane, replicate, place, patch = packets.read()
         start, count = packets.of_packets(done, place), packets.of_packets(counts, place)
         record = packets.record(patch)
-        points = self.points_of(keys, replicate, record, patch, start, _largest(done, counts))
+        points = self.numbers.points_of(keys, replicate, record, patch, start, largest(done, counts))
         frame, position_of = packets.frame(record)
         normal, row = frame.normal * frame.side, chances.row(place)
         zeros = self._zeros(self.shadow_kind, squares=squares)
@@ -231,14 +221,6 @@ class Lines:
 
     # ---- both ------------------------------------------------------------------------------------------------------
 
-    def _parts(self, kind: int, done, counts) -> list[tuple[Any, Any, Any]]:
-        """Return randomisation, lines so far and lines now of each block; one part where all are in the first block."""
-        if int((done + counts).max()) < BLOCK:
-            return [(self.keys[kind], done, counts)]
-        stream = self.streams[kind]
-        found = parts(done, counts)
-        return [(self.keys[kind] if block == 0 else stream.words(block), begin, more) for block, begin, more in found]
-
     @property
     def shadow_kind(self):
         """The type of sums of shadow rays: moments may be negative."""
@@ -265,21 +247,6 @@ class Lines:
         _, *sums = loop(state, lambda number, *_: number < count, body)
         dr.eval(sums, *([] if keep is None else keep.arrays()))
         return sums
-
-    def points_of(self, keys, replicate, record, patch, start, largest: int):
-        """Return a function from the number of a line to its numbers."""
-        numbers = self.numbers
-        halves = [dr.gather(self.types.Array4u, keys, replicate * 2 + half) for half in (0, 1)]
-        words = [word for half in halves for word in half]
-        if self.by_patch:
-            words = numbers.of_patch(words, place_number(record))
-        bits = numbers.bits_for(largest)
-        return lambda number: numbers.points(start + number + 1, patch, words, bits)
-
-
-def _largest(done: np.ndarray, counts: np.ndarray) -> int:
-    """Return the largest index of a block."""
-    return min(int((done + counts).max()), BLOCK - 1)
 
 
 def _added(found: list[list]) -> list:

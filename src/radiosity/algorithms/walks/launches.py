@@ -1,10 +1,11 @@
 """Algorithms that follow walks until they end, in launches of up to a million; between launches their state is whole."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
+from ...tally.elsewhere import AbstractElsewhere
 from ...tally.wraps import PERIOD
 from ...tracing.lanes import Launch, chunk
 from ..adding import added
@@ -30,24 +31,14 @@ class Chunks:
     end: int
 
 
-class AbstractElsewhere(ABC, Generic[S]):
-    """Follows chunks of walks elsewhere.
+class AbstractWalksElsewhere(AbstractElsewhere[Chunks, tuple[S, int]]):
+    """Follows chunks of walks elsewhere; yields their sums, and the number of their lines."""
 
-    Attributes:
-        least: chunks from which it pays; fewer are followed here.
-        over: True where the run is to end.
-    """
-
-    least: int = 2
-    over: bool = False
+    least = 2
 
     @abstractmethod
     def take(self, chunks: Chunks) -> Chunks:
         """Return as many of the chunks, from the first on, as are to be followed between two moments when the state is whole."""
-
-    @abstractmethod
-    def follow(self, chunks: Chunks) -> Iterator[tuple[S, int]]:
-        """Yield the sums of all chunks, in any order and in any pieces, and the number of their lines."""
 
 
 class AbstractWalks(AbstractAlgorithm[S]):
@@ -57,7 +48,7 @@ class AbstractWalks(AbstractAlgorithm[S]):
         elsewhere: follows chunks elsewhere; None: all here.
     """
 
-    elsewhere: AbstractElsewhere[S] | None = None
+    elsewhere: AbstractWalksElsewhere[S] | None = None
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
@@ -147,7 +138,7 @@ class AbstractWalks(AbstractAlgorithm[S]):
         elsewhere = self.elsewhere
         while elsewhere is not None and end - self._done >= elsewhere.least:
             taken, total, lines = elsewhere.take(Chunks(self._before, self._quanta, self._done, end)), self.capture(), 0
-            for sums, more in elsewhere.follow(taken):
+            for sums, more in elsewhere.trace(taken):
                 total, lines = added(total, sums), lines + more
             self._put_back(total)
             self._look()

@@ -19,8 +19,9 @@ from ..budget import Budget
 from ..checkpoint import Checkpoint
 from ..part import Part
 from ..progress import Listener
+from ..refusals import refuse_open, refuse_panes
 from ..shortfall import warn_of_more
-from ..solve import patches_of, refuse_open, refuse_panes
+from ..solve import patches_of
 from ..whole_number import whole
 from .model import LineSet
 from .problem import Sources, problem_of

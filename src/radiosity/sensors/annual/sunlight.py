@@ -59,7 +59,8 @@ class Sunlight:
         lane = dr.gather(types.UInt32, upload(types.UInt32, self.places.astype(np.uint32)), ray - sun * width)
         patch, replicate = dr.gather(types.UInt32, patch, lane), dr.gather(types.UInt32, replicate, lane)
         record = packets.record(patch)
-        points = self.lines.points_of(self.lines.keys[0], replicate, record, patch, dr.opaque(types.UInt32, start), start + n + 1)
+        numbers = self.lines.numbers
+        points = numbers.points_of(numbers.keys[0], replicate, record, patch, dr.opaque(types.UInt32, start), start + n + 1)
         frame, position_of = packets.frame(record)
         normal, u = frame.normal * frame.side, points(sun)
         s, t = position_of(u)
