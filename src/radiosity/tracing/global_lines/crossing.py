@@ -18,6 +18,7 @@ ESCAPED, LOST = 0xFFFFFFFD, 0xFFFFFFFC  # as in `line_tracer`: no patch has thes
 PENDING, NOBODY = 0xFFFFFFFB, 0xFFFFFFFA  # not known yet; and no side looks forward, since a passing back hides all behind
 CODES = NOBODY  # from here on numbers are no patches
 ONE_WAY = 1 << 31  # of a patch number: `one` sees it, but it does not see `one`
+SHORT = 16.0  # steps of less than so many offsets of a face do not begin anew from its coordinates
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,10 @@ class Crossings:
 
         Lines go on from the point with the hit's coordinates on the face, which is as exact as the face's own corners. The point
         at the hit's distance along the line is as inexact as the line is long, and may lie before a small face near the centre.
+
+        A line that meets the edge of two faces, but for rounding, crosses both within a few offsets. The point on the second one
+        may lie before the first again, and so on without end. After so short a step the line goes on from where it was, one
+        offset on: so it never goes back.
         """
         geometry = self.geometry
         types = geometry.device.types
@@ -78,7 +83,11 @@ class Crossings:
         words = [block[i // 4][i % 4] for i in range(16)]
         corner, first, second, normal = (types.Array3f(*words[at : at + 3]) for at in range(0, 12, 3))
         place = corner + first * dr.clip(hit.u, 0, 1) + second * dr.clip(hit.v, 0, 1)
-        onward = before(place, dr.select(hit.front, -normal, normal), words[14])
+        behind = dr.select(hit.front, -normal, normal)
+        onward = before(place, behind, words[14])
+        offset = dr.norm(onward - place)
+        beside = origin + direction * (hit.distance + offset) + behind * offset
+        onward = dr.select(hit.distance < SHORT * offset, beside, onward)
         free = hit.valid & (dr.select(hit.front, words[13], words[12]) > 0)
         return Crossing(
             hit.valid, near, far, hit.back(Back.PASSES), turned.back(Back.PASSES), dr.select(hit.valid, onward, origin), free
