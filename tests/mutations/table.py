@@ -2948,7 +2948,21 @@ MISTAKES = (
         "a range that makes no sense is refused after all lines are traced",
     ),
     Mistake(
-        "image/false_color.py",
+        "image/legend.py",
+        "if needed > width:",
+        "if needed > 2 * width:",
+        ("test_image_false_color.py",),
+        "long numbers push a legend's text over its edge",
+    ),
+    Mistake(
+        "image/legend.py",
+        "DIGITS = range(6, 18)",
+        "DIGITS = range(6, 7)",
+        ("test_image_false_color.py",),
+        "marks of a narrow legend have equal numbers",
+    ),
+    Mistake(
+        "image/legend.py",
         "if bar.yaxis.get_offset_text().get_text():",
         "if not bar.yaxis.get_offset_text().get_text():",
         ("test_image_false_color.py",),
