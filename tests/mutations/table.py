@@ -2605,6 +2605,20 @@ MISTAKES = (
         "sensors on a large tilted floor are below it",
     ),
     Mistake(
+        "sensors/shares.py",
+        "(variance * sizes)[:, there]",
+        "variance[:, there]",
+        ("test_final_gather.py",),
+        "variances of neighbours do not count by their points",
+    ),
+    Mistake(
+        "sensors/shares.py",
+        "beside = PILOT // pilot // 2",
+        "beside = 0",
+        ("test_final_gather.py",),
+        "a short pilot gives too few lines to packets where it found no variance",
+    ),
+    Mistake(
         "sensors/tracing.py",
         "self._planes(met) / (cosine * self.lines.unit)",
         "self._planes(met) / (rays * self.lines.unit)",
