@@ -18,6 +18,7 @@ from radiosity.image.view import directions
 from radiosity.scene.paint import Paint
 from radiosity.scene.sampler import Sampler
 from radiosity.scene.shapes import box, join, quad
+from radiosity.sensors.shares import PILOT, pooled
 
 ABOVE = rd.Camera((0.1, 0.2, 2.5), (0.1, 0.2, 0), (0, 1, 0), 60.0, 9, 7)
 
@@ -150,6 +151,17 @@ def test_equal_seeds_give_equal_bits(standing):
     one, again, other = (render(solution, camera=ABOVE, final_gather=32, seed=seed) for seed in (3, 3, 4))
     assert np.array_equal(one, again)
     assert not np.array_equal(one, other)
+
+
+def test_a_short_pilot_takes_the_variances_of_neighbours_too():
+    """Pilots of 2 lines take nine packets by their points, those of 4 five, and full ones, or nearly, each alone."""
+    variance, sizes = np.random.default_rng(0).random((2, 40)), np.where(np.arange(40) == 39, 3, 16)
+    for pilot, beside in ((2, 4), (4, 2), (9, 0), (PILOT, 0)):
+        found = pooled(variance, sizes, pilot)
+        for at in (0, 1, 20, 39):
+            there = slice(max(at - beside, 0), at + beside + 1)
+            np.testing.assert_allclose(found[:, at], np.average(variance[:, there], axis=1, weights=sizes[there]), rtol=1e-12)
+    assert pooled(variance[:, :2], sizes[:2], 2) == pytest.approx(np.repeat(variance[:, :2].mean(axis=1), 2).reshape(2, 2))
 
 
 def test_pieces_have_numbers_of_their_own(monkeypatch, standing, tmp_path):

@@ -7,7 +7,7 @@ import pytest
 from image_samples import plain_hits, quad_scene, solution
 
 import radiosity as rd
-from radiosity.image import false_color, render
+from radiosity.image import false_color, legend, render
 from radiosity.image.false_color import automatic_limits
 from radiosity.image.picture import take
 from radiosity.image.quantity import choose
@@ -42,13 +42,13 @@ def test_colours_are_those_of_the_map_and_the_legend_stands_beside():
 )
 def test_the_legend_has_an_arrow_where_values_lie_beyond(monkeypatch, limits, arrow):
     """Of the values 1, 2 and 4; the unknown one is beyond nothing."""
-    legend, found = false_color._legend, []
+    drawn, found = legend.drawn, []
 
     def watched(norm, shades, label, extend, *size):
         found.append(extend)
-        return legend(norm, shades, label, extend, *size)
+        return drawn(norm, shades, label, extend, *size)
 
-    monkeypatch.setattr(false_color, "_legend", watched)
+    monkeypatch.setattr(legend, "drawn", watched)
     picture(range=limits)
     assert found == [arrow]
 
@@ -130,6 +130,25 @@ def test_no_factor_stands_beside_a_legend(size):
     legend = false_color.Palette(0.0, 1.2 * size).legend("radiosity [W/m²]", np.array([0.5]) * size, 300)
     assert (legend[:, :10] == 255).all()
     assert (legend < 100).any()
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.062, 0.0622), (20000.0, 20000.1), (0.0, 1.0)])
+def test_long_numbers_push_no_text_over_the_edge(low, high):
+    """The title ends before the right edge, which is white, however long the numbers are."""
+    drawn = false_color.Palette(low, high).legend("irradiance [W/m²]", np.array([low]), 240)
+    assert (drawn[:, -3:] == 255).all()
+    assert (drawn[:, -30:] < 100).any()
+
+
+@pytest.mark.parametrize("base", [1.0, 2e4, 1e6, 1e-9])
+def test_marks_of_a_narrow_range_have_unlike_numbers(monkeypatch, base):
+    """Four ten-millionths of a value are drawn apart, and so are the numbers of the marks (pyGIMLi's issue 48)."""
+    found, numbers = [], legend.numbers
+    monkeypatch.setattr(legend, "numbers", lambda values: found.append(numbers(values)) or found[-1])
+    false_color.Palette(base, base * (1 + 4e-7)).legend("light [lx]", np.ones(1), 240)
+    marks = found[-1]
+    assert len(marks) > 2
+    assert len(set(marks)) == len(marks)
 
 
 def test_letters_of_a_legend_grow():

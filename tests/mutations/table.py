@@ -2626,6 +2626,20 @@ MISTAKES = (
         "sensors on a large tilted floor are below it",
     ),
     Mistake(
+        "sensors/shares.py",
+        "(variance * sizes)[:, there]",
+        "variance[:, there]",
+        ("test_final_gather.py",),
+        "variances of neighbours do not count by their points",
+    ),
+    Mistake(
+        "sensors/shares.py",
+        "beside = PILOT // pilot // 2",
+        "beside = 0",
+        ("test_final_gather.py",),
+        "a short pilot gives too few lines to packets where it found no variance",
+    ),
+    Mistake(
         "sensors/tracing.py",
         "self._planes(met) / (cosine * self.lines.unit)",
         "self._planes(met) / (rays * self.lines.unit)",
@@ -2997,7 +3011,21 @@ MISTAKES = (
         "a range that makes no sense is refused after all lines are traced",
     ),
     Mistake(
-        "image/false_color.py",
+        "image/legend.py",
+        "if needed > width:",
+        "if needed > 2 * width:",
+        ("test_image_false_color.py",),
+        "long numbers push a legend's text over its edge",
+    ),
+    Mistake(
+        "image/legend.py",
+        "DIGITS = range(6, 18)",
+        "DIGITS = range(6, 7)",
+        ("test_image_false_color.py",),
+        "marks of a narrow legend have equal numbers",
+    ),
+    Mistake(
+        "image/legend.py",
         "if bar.yaxis.get_offset_text().get_text():",
         "if not bar.yaxis.get_offset_text().get_text():",
         ("test_image_false_color.py",),

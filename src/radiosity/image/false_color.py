@@ -1,12 +1,11 @@
 """False colours: values as colours of a map, with a legend in physical units beside the picture."""
 
-import textwrap
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import OutputError
-from . import tone
+from . import legend, tone
 from .picture import Picture
 
 UNKNOWN = 0.5  # grey of pixels whose value is unknown
@@ -93,7 +92,7 @@ class Palette:
         beyond = known.size and known.max() > self.high * (1 + 1e-9), known.size and known.min() < self.low * (1 - 1e-9)
         names = {(True, True): "both", (True, False): "max", (False, True): "min"}
         extend = names.get((bool(beyond[0]), bool(beyond[1])), "neither")
-        return _legend(self._norm, self._shades, label, extend, height, letters)
+        return legend.drawn(self._norm, self._shades, label, extend, height, letters)
 
     @property
     def _norm(self):
@@ -141,36 +140,6 @@ def _checked(limits, log: bool) -> tuple[float, float]:
     if log and low <= 0:
         raise OutputError(f"range is {low} to {high}; a logarithmic scale must begin above 0")
     return low, high
-
-
-def _legend(norm, shades, label: str, extend: str, height: int, letters: float) -> np.ndarray:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import LogNorm
-    from matplotlib.figure import Figure
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    dpi = 100 * max(1.0, height / 600) * letters
-    label = "\n".join(textwrap.wrap(label, max(16, int(height / dpi * 12))))
-    width = int((1.05 + 0.16 * label.count("\n")) * dpi)
-    figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi, facecolor="white")
-    canvas = FigureCanvasAgg(figure)
-    bar = figure.add_axes((0.12 * dpi / width, 0.06, 0.2 * dpi / width, 0.88))
-    scale = figure.colorbar(ScalarMappable(norm, shades), cax=bar, extend=extend)
-    scale.set_label(label, fontsize=8)
-    bar.tick_params(labelsize=8)
-    if isinstance(norm, LogNorm):
-        # 1, 2, 5, 10 rather than powers in small print; more of them where the range is short
-        low, high = bar.get_ylim()
-        steps = (1, 2, 5) if high > 6 * low else tuple(np.arange(1, 10, 0.5))
-        bar.yaxis.set_major_locator(LogLocator(10, steps))
-        bar.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        bar.yaxis.set_minor_formatter(NullFormatter())
-    canvas.draw()
-    if bar.yaxis.get_offset_text().get_text():  # a factor of all numbers stands beside the bar, where it is cut off and missed
-        bar.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        canvas.draw()
-    return np.asarray(canvas.buffer_rgba())[..., :3]
 
 
 def beside(picture: np.ndarray, legend: np.ndarray) -> np.ndarray:

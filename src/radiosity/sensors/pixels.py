@@ -20,7 +20,8 @@ from .model import Sensors
 from .reflected import mean_reflected
 from .result import in_bands
 from .run import AT_ONCE, sensing_on
-from .tracing import PILOT, Tracing
+from .shares import PILOT
+from .tracing import Tracing
 
 PIECE = 1 << 18  # points at once
 OF_PILOT = 8  # a pilot takes one line of so many; where those are too few there is none

@@ -20,13 +20,11 @@ from ..sampling.streams import Purpose, Seed
 from ..tracing.geometry import Geometry
 from .model import Sensors
 from .receivers import Receivers
+from .shares import PILOT, of_packets, pooled
 
 OfLines = tuple[list, list, list]  # see `Tracing.sums`
-PILOT = 16  # lines of each kind of each plane
-LEAST = 0.1  # of the mean: the least share of lines of a packet
 DARK = 256.0  # units of a line in the mean: with fewer, rounding would be a part of what a sensor sees
 FINEST, ROOM = 12, 35  # bits: of finer units, and of a line in the mean, so that sums of 2^24 lines and more fit in 64 bits
-POWER = 0.435  # shares go as variance to this power, as those of patches do (`algorithms.gather.shares`)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,9 +108,9 @@ class Tracing:
             few, none = np.full(one.count, pilot), np.zeros(one.count, np.int64)
             cosine, _ = trial.cosine(none, few, read=mean, squares=True)
             shadow = trial.shadow(none, few if direct else none, squares=True)
-            variance = np.stack([_variance(one, sums, pilot) for sums in (cosine, shadow)])
+            variance = pooled(np.stack([_variance(one, sums, pilot) for sums in (cosine, shadow)]), one.sizes, pilot)
             finer = _finer(np.stack([one.patch_values(np.array(total)) for total in cosine[: trial.groups]]) / pilot * trial.unit)
-        shares = _shares(variance, one.sizes, has_targets=direct and chances.targets > 0)
+        shares = of_packets(variance, one.sizes, has_targets=direct and chances.targets > 0)
         receivers = one if replicates == 1 else Receivers(geometry, replicates, sensors=sensors, seed=seed, faces=faces)
         lines = Lines.of(receivers, chances, problem, method, seed, (Purpose.SENSORS, Purpose.SENSORS_SHADOW))
         lines = replace(lines if direct else _without_direct(lines), finer=finer)
@@ -212,13 +210,3 @@ def _variance(receivers: Receivers, sums: list, lines: int) -> np.ndarray:
         mean, of_squares = (receivers.patch_values(np.array(one, np.float64))[0] / lines for one in (total, square))
         found.append(np.maximum(of_squares - mean**2, 0))
     return receivers.by_packet(np.max(found, axis=0)) / receivers.sizes
-
-
-def _shares(variance: np.ndarray, sizes: np.ndarray, *, has_targets: bool) -> np.ndarray:
-    """Return the shares of lines of packets, (2, count); one in the mean over planes, both kinds together."""
-    mean = float((variance.sum(axis=0) * sizes).sum() / sizes.sum())
-    weight = (variance + 1e-2 * mean) ** POWER if mean > 0 else np.ones_like(variance)
-    weight[1] *= has_targets
-    each = weight.sum(axis=0)
-    weight *= np.maximum(each, LEAST * each.mean()) / each
-    return weight * (sizes.sum() / (weight.sum(axis=0) * sizes).sum())
