@@ -98,8 +98,8 @@ def test_a_lamp_is_worth_the_mean_square_of_what_its_lines_hit(geometry_of):
     worth = np.array([0.0, 3.0, 0.0, 0.0, 0.0, 0.0])
     mean, root = found.means(worth)
     assert found.power.tolist() == [4.0]
-    assert mean[0] == pytest.approx(3 / 6, rel=0.04)  # five standard errors of 65 536 lines
-    assert root[0] == pytest.approx(3 / 6**0.5, rel=0.02)
+    assert mean[0] == pytest.approx(3 / 6, rel=0.062)  # five standard errors of 32 768 lines
+    assert root[0] == pytest.approx(3 / 6**0.5, rel=0.031)
 
 
 @pytest.fixture(scope="module")
@@ -145,7 +145,7 @@ def test_suns_and_skies_send_the_light_that_random_walks_find():
     scene = replace(scene, surface=np.arange(scene.n_faces), names=tuple(f"wall {i}" for i in range(scene.n_faces)))
     patches = lit(scene, suns=(SUN,), sky=Sky("sky", OVERCAST, np.eye(3)), openings=WINDOW, cells=2)
     walk = rd.solve(patches, "random-walk", rays=200_000, replicates=16, seed=1)
-    aimed = rd.solve(patches, METHOD, rays=400_000, replicates=16, seed=2, importance="surface:wall 1")
+    aimed = rd.solve(patches, METHOD, rays=1_000_000, replicates=16, seed=2, importance="surface:wall 1")
     one, other = received(walk), received(aimed)
     lit_at = one.any(axis=0)
     errors = [x.std(axis=0, ddof=1) / len(x) ** 0.5 for x in (one, other)]

@@ -46,7 +46,7 @@ class Problem:
 
     @property
     def shares(self) -> np.ndarray | None:
-        """By what iterations share lines out, (n_rows,): the importance, or else what `SourceRows.lines` says; None: by power."""
+        """Lines of a unit of power of each row in iterations, (n_rows,): the importance, or else `SourceRows.lines`; None: 1."""
         return self.rows.lines if self.importance is None else self.importance
 
     @cached_property

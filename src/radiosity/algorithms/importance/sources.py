@@ -19,8 +19,8 @@ from ...sampling.streams import Seed
 from ...tally.shooter import Shooter
 from ...tracing.geometry import Geometry
 
-LINES = 1 << 16  # of a light, at most
-IN_ALL = 1 << 18  # of all lights, about
+LINES = 1 << 15  # of a light, at most
+IN_ALL = 1 << 17  # of all lights, about
 FEWEST = 64  # of a light
 LEAST = 0.01  # of the lines that a light's power asks for: it has these in any case
 
