@@ -3087,4 +3087,18 @@ MISTAKES = (
         ("test_refine_lines.py",),
         "noise of what elements blur counts as a bias",
     ),
+    Mistake(
+        "tracing/lanes.py",
+        "lines >= MOST_LINES * total]",
+        "lines > 0]",
+        ("test_strata.py",),
+        "boxes of coherent firing are taken where few of the lines fill them",
+    ),
+    Mistake(
+        "tracing/lanes.py",
+        "dr.select(counts >= strata.lines(*size), counts, 0)",
+        "dr.select(counts >= strata.boxes(*size), counts, 0)",
+        ("test_strata.py",),
+        "boxes are taken with a line each",
+    ),
 )
