@@ -9,6 +9,7 @@ from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.device.backend import choose, upload
 from radiosity.problem.quanta import Source, phases, target_counts
 from radiosity.run import budget as budgets
+from radiosity.sampling.numbers import strata
 from radiosity.tracing import lanes
 
 QUANTA = 40_000
@@ -84,12 +85,21 @@ def test_quanta_a_little_above_a_rung_are_met(method):
     np.testing.assert_array_equal(again.irradiance, at_once.irradiance)
 
 
-def test_coherent_firing_traces_the_same_lines():
+def test_coherent_firing_traces_the_same_lines(monkeypatch):
+    taken = []
+
+    def boxes_for(*given):
+        taken.append(lanes.boxes_for(*given))
+        return taken[-1]
+
+    monkeypatch.setattr(strata, "FULL", 1)  # boxes of a line each, which few lines fill
+    monkeypatch.setattr(firing, "boxes_for", boxes_for)
     patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
     plain = rd.solve(patches, "random-walk", quanta=2_000_000, replicates=1)
     coherent = rd.solve(patches, quanta=2_000_000, replicates=1, coherent=True)
     difference = np.abs(plain.state["arrivals"].astype(np.int64) - coherent.state["arrivals"].astype(np.int64)).sum()
     assert difference < 1e-5 * plain.rays  # ties alone
+    assert any(boxes is not None for boxes in taken)
     assert coherent.provenance["choices"]["coherent"]
 
 

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from radiosity.device.backend import choose, upload
 from radiosity.sampling.numbers import strata
+from radiosity.tracing.lanes import boxes_for
 
 
 def radical_inverse(index: np.ndarray, base: int) -> np.ndarray:
@@ -43,11 +45,19 @@ class TestBoxes:
 
 
 def test_the_finest_boxes_that_lines_fill():
-    sizes = [strata.largest(lines) for lines in np.geomspace(1e3, 1e8, 200)]
-    counts = [0 if size is None else strata.boxes(*size) for size in sizes]
-    assert sizes[0] is None
-    assert sizes[-1] == strata.SIZES[-1]
+    types = choose("cpu").types
+    lines = np.geomspace(1e3, 1e8, 40).astype(np.uint32)
+    found = [boxes_for(types, upload(types.UInt32, np.array([some, some, 0, 7]))) for some in lines]
+    counts = [0 if boxes is None else boxes.count for boxes in found]
     assert counts == sorted(counts)
-    assert set(sizes) == {None, *strata.SIZES}
-    for lines, count in zip(np.geomspace(1e3, 1e8, 200), counts, strict=True):
-        assert count * strata.FULL <= lines
+    assert set(counts) == {0, *(strata.boxes(*size) for size in strata.SIZES)}
+    assert all(count * strata.FULL <= some for some, count in zip(lines, counts, strict=True))
+
+
+@pytest.mark.parametrize(("others", "taken"), [(60, True), (140, False)])
+def test_lines_of_patches_that_fill_no_boxes_are_few(others, taken):
+    """A patch with a hundred thousand lines takes the second boxes, unless those with a hundred each fire a tenth in all."""
+    types = choose("cpu").types
+    found = boxes_for(types, upload(types.UInt32, np.array([110_000] + [100] * others, dtype=np.uint32)))
+    assert (found is not None) is taken
+    assert found is None or found.count == strata.boxes(*strata.SIZES[1])

@@ -15,6 +15,20 @@ class Mistake(NamedTuple):
 
 MISTAKES = (
     Mistake(
+        "tracing/lanes.py",
+        "lines >= MOST_LINES * total]",
+        "lines > 0]",
+        ("test_strata.py",),
+        "boxes of coherent firing are taken where few of the lines fill them",
+    ),
+    Mistake(
+        "tracing/lanes.py",
+        "dr.select(counts >= strata.lines(*size), counts, 0)",
+        "dr.select(counts >= strata.boxes(*size), counts, 0)",
+        ("test_strata.py",),
+        "boxes are taken with a line each",
+    ),
+    Mistake(
         "tracing/global_lines/crossing.py",
         "hit.distance < SHORT * offset",
         "hit.distance < 0.0 * offset",

@@ -101,8 +101,8 @@ METHOD = table(
     ),
     Option(
         "coherent",
-        "Trace similar lines together. Faster where a patch fires 50 000 lines or more in a wavefront; bits may differ where a "
-        "line meets two faces in one point.",
+        "Trace similar lines together. With AVX-512 faster where patches fire 50 000 lines or more in a wavefront, slower on "
+        "some other processors; bits may differ where a line meets two faces in one point.",
         kind="flag",
         tuning=True,
         details="It sets Embree's coherent flag: at an exact tie of two faces the winner then depends on the packet of lines.",

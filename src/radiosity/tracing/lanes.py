@@ -13,6 +13,7 @@ CHUNK = 1 << 20  # lanes of one launch on a CPU: enough to keep all cores busy, 
 CORE_CHUNK = 1 << 18  # lanes for each core where cores are many: launches wait for the last one (measured on 4 to 16 cores)
 CUDA_CHUNK = 1 << 24  # lanes of one launch on a GPU, which runs many more lanes at a time, and has memory for them
 PIECE = 1 << 18  # patches of a batch: memory is needed for the patches of one batch, not for all of them at a time
+MOST_LINES = 0.9  # of a batch: so many are of patches that fill the boxes of coherent firing; with the other lines packets lose
 
 
 @dataclass(frozen=True)
@@ -283,9 +284,12 @@ def sums(types, *columns) -> tuple[int, ...]:
 
 
 def boxes_for(types, counts) -> Boxes | None:
-    """Return the boxes of coherent firing that suit the patch of a typical line; None where boxes would not pay."""
-    wide = types.Float64(counts)
-    squares, total = dr.sum(wide * wide), dr.sum(wide)
-    dr.eval(squares, total)
-    size = strata.largest(float(squares[0]) / float(total[0]))
-    return None if size is None else Boxes(strata.boxes(*size), upload(types.UInt32, strata.walk(*size)))
+    """Return the finest boxes of coherent firing that the patches of most lines fill; None where boxes would not pay.
+
+    Args:
+        counts: UInt32, lines of each patch.
+    """
+    filling = [dr.select(counts >= strata.lines(*size), counts, 0) for size in strata.SIZES]
+    total, *filled = sums(types, counts, *filling)
+    fitting = [size for size, lines in zip(strata.SIZES, filled, strict=True) if total and lines >= MOST_LINES * total]
+    return Boxes(strata.boxes(*fitting[-1]), upload(types.UInt32, strata.walk(*fitting[-1]))) if fitting else None

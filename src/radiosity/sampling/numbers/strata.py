@@ -20,10 +20,9 @@ def boxes(a: int, b: int) -> int:
     return 2**a * 3**b
 
 
-def largest(lines_per_patch: float) -> tuple[int, int] | None:
-    """Return the finest boxes that a patch's lines fill, or None where even the coarsest are too many."""
-    fitting = [size for size in SIZES if boxes(*size) * FULL <= lines_per_patch]
-    return fitting[-1] if fitting else None
+def lines(a: int, b: int) -> int:
+    """Return how many lines of a patch fill the boxes."""
+    return boxes(a, b) * FULL
 
 
 def walk(a: int, b: int) -> np.ndarray:
