@@ -383,8 +383,8 @@ def test_gathers_cross_the_border(geometry, problem):
     done, few, many = np.full(count, 2**32 - 5), np.full(count, 4), np.full(count, 9)
     above = np.full(count, 2**32 - 1), many - few  # its index wraps around to 0
     read = [upload(lines.types.Float, np.random.default_rng(1).random(run.packets.lanes, np.float32))]
-    cosine = lines._cosine(lines.streams[0].words(1), *above, read, None, None, squares=False)[0]
-    shadow = lines._shadow(lines.streams[1].words(1), *above, None, squares=False)
+    cosine = lines._cosine(lines.numbers.streams[0].words(1), *above, read, None, None, squares=False)[0]
+    shadow = lines._shadow(lines.numbers.streams[1].words(1), *above, None, squares=False)
     for both, below, rest in (
         (lines.cosine(done, many, read)[0], lines.cosine(done, few, read)[0], cosine),
         (lines.shadow(done, many), lines.shadow(done, few), shadow),
