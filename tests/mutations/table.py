@@ -1258,6 +1258,27 @@ MISTAKES = (
         "turned cubes are skew",
     ),
     Mistake(
+        "algorithms/hierarchical/values.py",
+        "STREAM, reach)",
+        "STREAM, None)",
+        ("test_clusters.py",),
+        "values of clusters are those of their sides by area, not as they shine",
+    ),
+    Mistake(
+        "algorithms/hierarchical/answers.py",
+        "error**2 / sides",
+        "error**2",
+        ("test_clusters.py",),
+        "large clusters are answered for first, whatever that takes",
+    ),
+    Mistake(
+        "patches/clusters.py",
+        "        if depth == 0:  # lamps",
+        "        if depth < 0:  # lamps",
+        ("test_clusters.py",),
+        "lamps share clusters with dark sides",
+    ),
+    Mistake(
         "algorithms/hierarchical/oracle.py",
         "np.maximum(high - mean, mean - low)",
         "high - mean",

@@ -2,6 +2,7 @@
 
 Clusters have numbers after those of all elements (`Hierarchy`), parents before their children. Each holds a contiguous range of
 `order`. Groups are halved at the median of their longest extent; a few sides that are large for their group hang on it directly.
+Below the first cluster none holds both sides that emit and sides that do not: lamps are small and bright, and few of many sides.
 """
 
 from dataclasses import dataclass
@@ -108,11 +109,16 @@ class Clusters:
         """Areas of sides summed along ``order``, (n_sides + 1,) float64, m²."""
         return np.concatenate([[0], np.cumsum(self.side_area[self.order])])
 
-    def drawn(self, cluster: np.ndarray, number: np.ndarray) -> np.ndarray:
-        """Return sides of clusters, drawn in proportion to area by numbers in [0, 1), both of one shape."""
+    def drawn(self, cluster: np.ndarray, number: np.ndarray, reach: np.ndarray | None = None) -> np.ndarray:
+        """Return sides of clusters, drawn by numbers in [0, 1), both of one shape.
+
+        Args:
+            reach: sums along ``order`` of what sides are drawn in proportion to, (n_sides + 1,); None: their areas.
+        """
         begin, end = self.begin[cluster], self.end[cluster]
-        place = self.reach[begin] + number * (self.reach[end] - self.reach[begin])
-        return self.order[np.clip(np.searchsorted(self.reach, place, side="right") - 1, begin, end - 1)]
+        reach = self.reach if reach is None else reach
+        place = reach[begin] + number * (reach[end] - reach[begin])
+        return self.order[np.clip(np.searchsorted(reach, place, side="right") - 1, begin, end - 1)]
 
     def _sums(self, values: np.ndarray) -> np.ndarray:
         """Return sums over the sides of clusters, (n_clusters, k), of values (n_sides, k)."""
@@ -129,6 +135,7 @@ def grow(hierarchy: Hierarchy) -> Clusters:
     middle = corners.mean(axis=1)
     radius = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
     n = len(middle)
+    emits = _emitting(hierarchy)
     order, side_parent = np.arange(n), np.zeros(n, np.int64)
     place, segment, parent = np.arange(n), np.zeros(n, np.int64), np.array([-1])
     begin, end, parents, depths = [], [], [], []
@@ -141,6 +148,10 @@ def grow(hierarchy: Hierarchy) -> Clusters:
         parents.append(parent)
         depths.append(np.full(len(starts), depth))
         group, rows = _grouped(middle[order[place]], radius[order[place]], segment, starts, sizes)
+        if depth == 0:  # lamps are apart from what they outshine
+            lamp = emits[order[place]][rows]
+            again = np.lexsort((group, np.where(group < 0, -1, lamp)))
+            group, rows = np.where(group < 0, -1, lamp)[again], rows[again]
         order[place] = order[place][rows]
         hangs = group < 0
         side_parent[order[place[hangs]]] = count + segment[hangs]
@@ -150,6 +161,12 @@ def grow(hierarchy: Hierarchy) -> Clusters:
         count, depth = count + len(starts), depth + 1
     first, last, above, deep = (np.concatenate(part) for part in (begin, end, parents, depths))
     return Clusters(hierarchy, order, first, last, above, deep, side_parent)
+
+
+def _emitting(hierarchy: Hierarchy) -> np.ndarray:
+    """Return which sides emit, (n_sides,) bool: some patch of them does."""
+    emits = (hierarchy.patches.emission > 0).any(axis=1)
+    return np.logical_or.reduceat(emits, hierarchy.side_patch)
 
 
 def _grouped(middle, radius, segment, starts, sizes) -> tuple[np.ndarray, np.ndarray]:

@@ -12,6 +12,7 @@ from ...tracing.visibility import Polygons, visible_share
 from .kernel import Shapes, facing, samples, unoccluded
 from .links import Links
 from .parameters import Hierarchical
+from .values import valued
 from .volumes import volumetric
 
 BATCH = 1 << 13  # pairs: their points fit into the processor's cache
@@ -47,6 +48,19 @@ class Maker:
             Links.none()
         ]
         return Links.appended(parts)
+
+    def valued(self, links: Links, power: np.ndarray) -> Links:
+        """Return sorted links with new factors where an end is a cluster; ``power`` (n_sides,) leaves each side."""
+        if self.clusters is None or self.geometry is None:
+            return links
+        volume = np.flatnonzero(np.maximum(links.receiver, links.source) >= len(self.hierarchy))
+        factor = links.factor.copy()
+        for rows in (volume[at : at + BATCH] for at in range(0, len(volume), BATCH)):
+            new, rays = valued(self.clusters, self.geometry, self.parameters, links.take(rows), power)
+            factor[rows] = new.factor
+            self.rays += rays
+            self.told(rays)
+        return Links(links.receiver, links.source, factor, links.spread)
 
     def _batch(self, receiver: np.ndarray, source: np.ndarray) -> Links:
         if self.clusters is None:

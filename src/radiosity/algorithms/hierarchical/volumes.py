@@ -135,30 +135,53 @@ def _sampled(
 
     The third is the mean of 1 / r² over middles of what was drawn: nearby pairs count for more than the middles of both ends.
     """
-    rays, m = parameters.rays, len(one.number)
+    (whole, seen), ends = sampled(clusters, geometry, (parameters.rays, parameters.seed), one, other)
+    between = ends[0].corners.mean(axis=1) - ends[1].corners.mean(axis=1)
+    least = (0.25 * (one.radius + other.radius)) ** 2
+    closer = (1 / np.maximum((between**2).sum(axis=1).reshape(len(least), -1), least[:, None])).mean(axis=1)
+    return whole, seen, closer
+
+
+def sampled(
+    clusters: Clusters,
+    geometry: Geometry,
+    lines: tuple[int, int],
+    one: Ends,
+    other: Ends,
+    stream: int = 0,
+    reach: np.ndarray | None = None,
+) -> tuple[np.ndarray, list[Polygons]]:
+    """Return means of cos cos' / r² over points of m pairs of ends, (2, m) 1/m²: of all points and of those that see each other.
+
+    The polygons that were drawn come with them, (m * rays) of each end.
+
+    Args:
+        lines: rays of a pair, and the seed.
+        stream: other lines of the same pairs.
+        reach: what sides of ``other`` are drawn in proportion to, as in `Clusters.drawn`.
+    """
+    (rays, seed), m = lines, len(one.number)
     key = mixed(one.number.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15) + other.number.astype(np.uint64))
+    if stream:
+        key = mixed(key + np.uint64(stream))
     lane = np.arange(rays)
     starts = [(mixed(key + np.uint64(i)) >> np.uint64(11)).astype(float) / 2**53 for i in (1, 2)]
     numbers = (lane + starts[0][:, None]) / rays, (lane * GOLDEN + starts[1][:, None]) % 1
-    ends = [_drawn(clusters, end, number) for end, number in zip((one, other), numbers, strict=True)]
+    ends = [_drawn(clusters, one, numbers[0], None), _drawn(clusters, other, numbers[1], reach)]
     salts = mixed(key)[:, None] + lane.astype(np.uint64)
-    means = kernel_means(geometry, ends[1], ends[0], 1, (parameters.seed,), salts.ravel())[0]
+    means = kernel_means(geometry, ends[1], ends[0], 1, (seed,), salts.ravel())[0]
     transmittance = geometry.scene.transmittance
     if transmittance is not None:  # receivers are solid parts alone, and sides of clusters are drawn by them already
         receiver, source = (1 - transmittance[end.face] for end in ends)
         means[1] /= receiver * np.where(np.repeat(other.cluster >= 0, rays), source, 1)
-    whole, seen = means.reshape(2, m, rays).mean(axis=2)
-    between = ends[0].corners.mean(axis=1) - ends[1].corners.mean(axis=1)
-    least = (0.25 * (one.radius + other.radius)) ** 2
-    closer = (1 / np.maximum((between**2).sum(axis=1).reshape(m, rays), least[:, None])).mean(axis=1)
-    return whole, seen, closer
+    return means.reshape(2, m, rays).mean(axis=2), ends
 
 
-def _drawn(clusters: Clusters, end: Ends, number: np.ndarray) -> Polygons:
+def _drawn(clusters: Clusters, end: Ends, number: np.ndarray, reach: np.ndarray | None) -> Polygons:
     """Return polygons of ends, (m * rays): sides drawn from clusters, and elements themselves."""
     tree, whole = clusters.hierarchy, end.cluster >= 0
     corners, face = np.empty((*number.shape, 4, 3)), np.empty(number.shape, np.int64)
-    side = clusters.drawn(np.broadcast_to(end.cluster[whole, None], number[whole].shape), number[whole])
+    side = clusters.drawn(np.broadcast_to(end.cluster[whole, None], number[whole].shape), number[whole], reach)
     corners[whole], face[whole] = clusters.corners[side], tree.side_face[side]
     corners[~whole] = elements.corners(tree, end.number[~whole])[:, None]
     face[~whole] = tree.face(end.number[~whole])[:, None]
