@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.lab import cases, pictures, slopes
+from radiosity.lab import cases, kept, pictures, slopes
 from radiosity.lab.bits import bits
 from radiosity.lab.calibration import LEVELS, coverage
 from radiosity.lab.discretisation import discretisation
@@ -297,3 +297,19 @@ def test_figures_tables_and_stores(tmp_path, drawn, monkeypatch):
         assert float(store["error_area_weighted"].sel(arm="sobol", scene="room")[0, -1]) > 0
     room = [row for row in rows if row["scene"] == "room" and row["arm"] == "halton"]
     assert all(0 < float(row["error_picture"]) < 1 for row in room)
+
+
+def test_parts_that_are_done_are_kept_while_their_figures_are_there(tmp_path):
+    made = []
+
+    def make(protocol, folder):
+        made.append(protocol)
+        (folder / "experiment-5.svg").write_text("<svg/>", "utf-8")
+        return [f"<p>{len(made)}</p>"]
+
+    short, long = Protocol(last=11), Protocol(last=12)
+    assert kept.parts(5, make, short, tmp_path) == kept.parts(5, make, short, tmp_path) == ["<p>1</p>"]
+    assert kept.parts(5, make, long, tmp_path) == ["<p>2</p>"]  # another study
+    assert kept.parts(5, make, short, tmp_path) == ["<p>1</p>"]
+    (tmp_path / "experiment-5.svg").unlink()
+    assert kept.parts(5, make, short, tmp_path) == ["<p>3</p>"]

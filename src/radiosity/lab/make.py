@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ..errors import OutputError
 from ..image.output import require
-from . import figures, pictures, report, store
+from . import figures, kept, pictures, report, store
 from .experiments import EXPERIMENTS, module
 from .results import Results
 from .run import Told, run
@@ -31,15 +31,16 @@ def make(numbers: list[int], protocol: Protocol, folder: Path, command: str, tol
     for number in numbers:
         experiment, parts = module(number), []
         if hasattr(experiment, "SCENES"):
-            kept = folder / "series"
-            results = run(number, protocol, kept, lambda what, done, total, n=number: told(f"{n}: {what}", done, total))
+            series = folder / "series"
+            results = run(number, protocol, series, lambda what, done, total, n=number: told(f"{n}: {what}", done, total))
             found[number] = results, {arm.name: str(arm.method) for arm in experiment.ARMS}
             parts += _drawn(experiment, number, results, folder, image)
             parts.append(report.findings(results, experiment.claims(results)))
             store.write_netcdf(folder / f"experiment-{number}.nc", results, {"command": command, "versions": report.versions()})
         if hasattr(experiment, "extras"):
             told(f"{number}: more", 0, 1)
-            parts += experiment.extras(protocol, folder)
+            own = experiment.extras
+            parts += own(protocol, folder) if number in found else kept.parts(number, own, protocol, folder)
         sections.append(report.section(number, experiment.TITLE, experiment.QUESTION, parts))
     store.write_csv(folder / f"results{tag}.csv", found)
     path = folder / f"report{tag}.html"

@@ -1,10 +1,7 @@
 """Running an experiment: every arm on every scene, each series kept in a file, so that an interrupted study goes on."""
 
-import hashlib
-import json
 import os
 from collections.abc import Callable
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +9,7 @@ import numpy as np
 
 from . import cases
 from .experiments import module
+from .kept import digest
 from .measure import Series, measure
 from .results import Results
 from .study import Arm, Case, Protocol
@@ -66,15 +64,8 @@ def _truth(case: Case, equation: str, protocol: Protocol, folder: Path) -> tuple
 
 def _kept(folder: Path, kind: str, case: Case, what: str, protocol: Protocol) -> Path:
     """Return the path of a file whose name has all that its content depends on."""
-    facts = [
-        case.patches.scene.hash,
-        case.patches.hash,
-        what,
-        vars(protocol),
-        {p: version(p) for p in ("radiosity", "drjit", "mitsuba")},
-    ]
-    digest = hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:16]
-    return folder / f"{kind}-{case.name}-{digest}.npz"
+    name = digest([case.patches.scene.hash, case.patches.hash, what], protocol)
+    return folder / f"{kind}-{case.name}-{name}.npz"
 
 
 def _write(path: Path, arrays: dict[str, Any]) -> None:
