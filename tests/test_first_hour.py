@@ -16,7 +16,7 @@ from PIL import Image
 
 import radiosity as rd
 from radiosity.cli.app import run
-from radiosity.image import check_writable, false_color
+from radiosity.image import check_writable, legend
 from radiosity.run.error_target import Target
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -260,8 +260,8 @@ LEGENDS = {"irradiance": "[lx]", "radiosity": "[lm/m²]", "luminance": "[cd/m²]
 @pytest.mark.parametrize(("quantity", "unit"), LEGENDS.items())
 def test_legends_of_light_have_its_units(photometric, monkeypatch, quantity, unit):
     labels = []
-    legend = false_color._legend
-    monkeypatch.setattr(false_color, "_legend", lambda *given: labels.append(given[2]) or legend(*given))
+    drawn = legend.drawn
+    monkeypatch.setattr(legend, "drawn", lambda *given: labels.append(given[2]) or drawn(*given))
     rd.image.render(photometric, false_color=True, quantity=quantity, width=30, camera=rd.Camera((0.5, -2, 0.5), (0.5, 0.5, 0.5)))
     label, *arrow = labels[0].replace("\n", " ").split("; ")
     assert label.endswith(unit)
