@@ -16,7 +16,7 @@ from radiosity.image import curves, render, tone
 SAMPLES = 128  # a pixel, of the path tracer
 LINES = 256  # a pixel, of the final gather
 RAYS = 2_000_000  # of the solution
-SCENES = ("cornell-box", "room", "studio", "labyrinth-0.5")
+SCENES = ("cornell-box", "room", "studio")
 GAP = 6  # pixels between both pictures
 
 
