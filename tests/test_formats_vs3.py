@@ -21,6 +21,7 @@ def load(tmp_path, text=VS3, **options) -> rd.Scene:
 def test_names_areas_fronts_and_emissivities(tmp_path):
     scene = load(tmp_path)
     assert scene.names == ("floor", "top!", "walls")  # east, north and west belong to walls
+    assert len(scene.vertices) == 4 + 4 + 8  # those of each surface, once
     np.testing.assert_allclose(np.bincount(scene.surface, scene.area), [12, 12, 35], rtol=1e-6)
     assert scene.heat is not None
     assert scene.heat.emissivity == ((0.9,), (0.8,), (0.05,))

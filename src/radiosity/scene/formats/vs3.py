@@ -60,15 +60,23 @@ def read(path: Path, options: ReadOptions) -> Scene:
         )
     owners = [_owner(path, number, rows) for number in range(len(rows))]
     names = _names(path, rows, owners)
-    index = [tuple(row.corners) + (-1,) * (4 - len(row.corners)) for row in rows]
-    parts = [
-        Part(name, vertices, np.array([corners]), _material(rows[owner], path))
-        for name, owner, corners in zip(names, owners, index, strict=True)
-    ]
+    corners: dict[int, list[tuple[int, ...]]] = {}
+    for owner, row in zip(owners, rows, strict=True):
+        corners.setdefault(owner, []).append(tuple(row.corners) + (-1,) * (4 - len(row.corners)))
+    called = dict(zip(owners, names, strict=True))
+    parts = [_part(called[owner], vertices, np.array(found), _material(rows[owner], path)) for owner, found in corners.items()]
     scene = assemble(parts, str(path), options)
     emissivity = {names[owner]: (rows[owner].emissivity,) for owner in owners if rows[owner].kind == "S"}
     heat = replace(Heat.none(len(scene.names)), emissivity=tuple(emissivity.get(name) for name in scene.names))
     return replace(scene, heat=heat)
+
+
+def _part(name: str, vertices: np.ndarray, corners: np.ndarray, material: Material) -> Part:
+    """Return a surface with the vertices that it has: one list of all of them for each surface would not fit into memory."""
+    own, index = np.unique(corners[corners >= 0], return_inverse=True)
+    faces = np.full(corners.shape, -1)
+    faces[corners >= 0] = index.reshape(-1)
+    return Part(name, vertices[own], faces, material)
 
 
 def _lines(path: Path, options: ReadOptions) -> tuple[np.ndarray, list[Row]]:
