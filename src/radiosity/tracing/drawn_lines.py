@@ -61,7 +61,8 @@ def kernels(
     """
     types, (m, rays) = geometry.device.types, source.shape
     if m * rays < 2:  # arrays of one entry would compile kernels of their own
-        found = kernels(geometry, table, *(np.repeat(ends, 2, axis=0) for ends in (source, receiver)), np.repeat(keys, 2), seed)
+        source, receiver, keys = (np.repeat(values, 2, axis=0) for values in (source, receiver, keys))
+        found = kernels(geometry, table, source, receiver, keys, seed)
         return found[0][:m], found[1][:m]
     UInt32 = types.UInt32
     words = [upload(UInt32, (keys >> np.uint64(part)).astype(np.uint32)) for part in (0, 32)]
