@@ -190,15 +190,16 @@ def test_sides_answer_for_the_clusters_that_receive_most(patches):
     "refinement", [REFINEMENTS[0], *(pytest.param(other, marks=pytest.mark.slow) for other in REFINEMENTS[1:])]
 )
 def test_random_walks_agree_the_better_the_smaller_epsilon(patches, refinement, geometry_of):
-    """Measured are 4 to 8 %, and 1.6 to 3 % (1.2 % of which the walk has), on 100 sides of squares that turn any way."""
+    """On 100 sides of squares that turn any way: 2.4 to 3.6 %, and 1.0 to 1.3 %, with the walk's variance taken off."""
     walk = rd.solve(patches, "random-walk", rays=2_000_000, replicates=4, seed=5)
     area, errors, geometry = patches.area, [], geometry_of(patches)
     for epsilon in (3e-3, 3e-4):
         result = solve_hierarchical(patches, geometry, Hierarchical(epsilon, refinement, clusters=True))
         off, light = result.radiosity - walk.radiosity, walk.radiosity - patches.emission
-        errors.append(math.sqrt(area @ off[:, 0] ** 2 / (area @ light[:, 0] ** 2)))
-    assert errors[0] < 0.1
-    assert errors[1] < 0.04
+        square = off[:, 0] ** 2 - walk.standard_error[:, 0] ** 2
+        errors.append(math.sqrt(max(area @ square, 0) / (area @ light[:, 0] ** 2)))
+    assert errors[0] < 0.05
+    assert errors[1] < 0.02
     assert errors[1] < 0.6 * errors[0]
 
 

@@ -8,6 +8,7 @@ import radiosity as rd
 from radiosity.device.backend import choose
 from radiosity.errors import MethodError
 from radiosity.scene.shapes import quad
+from radiosity.tracing.drawn_lines import Table, kernels
 from radiosity.tracing.faces import OFFSET
 from radiosity.tracing.geometry import INSET, Geometry
 from radiosity.tracing.visibility import Polygons, records_of, visible_share
@@ -67,6 +68,28 @@ def test_triangles_of_a_sphere_see_each_other_whole():
     assert (share[apart] < 1).sum() <= 1
     assert share[apart].min() > 0.9
     assert (share[~apart] == 0).all()
+
+
+def test_lines_of_a_table_find_the_form_factors_of_squares_that_alternate():
+    """Each line of a pair has ends of its own: a square a side apart, where F is known, and one beside it behind a wall.
+
+    Means of 2^14 points of the Sobol' sequence.
+    """
+    floors, ceilings = ([quad((x, 0, z), *edges) for x in (0, 3)] for z, edges in ((0, np.eye(3)[:2]), (1, np.eye(3)[1::-1])))
+    geometry = geometry_of(black([*floors, *ceilings, quad((2, -5, -5), (0, 10, 0), (0, 0, 10))]))
+    first, second = (Table.of(geometry, Polygons.of(geometry.patches, some)) for some in (slice(0, 2), slice(2, 5)))
+    table = first.joined(second)
+    source, receiver = np.zeros((2, 1 << 14), int), np.full((2, 1 << 14), 2)
+    receiver[1, ::2] = 3
+    kernel, met = kernels(geometry, table, source, receiver, np.array([5, 6], np.uint64), 1)
+    exact = np.pi * parallel(1, 1)
+    assert met[0].mean() == pytest.approx(exact, rel=1e-3)
+    assert met[1, 1::2].mean() == pytest.approx(exact, rel=1e-3)
+    assert (met[1, ::2] == 0).all()
+    assert (kernel[1, ::2] > 0).all()
+    one, _ = kernels(geometry, table, source[:1, :1], receiver[:1, :1], np.array([5], np.uint64), 1)
+    assert one.shape == (1, 1)
+    assert one[0, 0] == kernel[0, 0]
 
 
 def divided(back=rd.Back.ABSORBS) -> rd.Scene:

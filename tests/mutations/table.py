@@ -1258,6 +1258,13 @@ MISTAKES = (
         "turned cubes are skew",
     ),
     Mistake(
+        "tracing/drawn_lines.py",
+        "start, end, faces[1] >> 1)",
+        "start, end, faces[1])",
+        ("test_visibility.py",),
+        "lines to drawn polygons are for other faces",
+    ),
+    Mistake(
         "algorithms/hierarchical/values.py",
         "STREAM, reach)",
         "STREAM, None)",

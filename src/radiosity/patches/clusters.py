@@ -49,6 +49,11 @@ class Clusters:
         return elements.corners(self.hierarchy, self.hierarchy.first[:-1])
 
     @cached_property
+    def middle(self) -> np.ndarray:
+        """Means of the corners of whole sides, (n_sides, 3) float64, metres."""
+        return self.corners.mean(axis=1)
+
+    @cached_property
     def normal(self) -> np.ndarray:
         """Unit normals of whole sides, (n_sides, 3) float64."""
         return elements.normal(self.hierarchy, self.hierarchy.first[:-1])

@@ -159,20 +159,24 @@ class _Chunk:
         )
         numbers = ready("sobol", types).points(index, pair, [*shift, UInt32(0)], 16)
         kinds = dr.gather(UInt32, self.triangles, pair)
-        start, normal, above = _point(types, self.records[0], pair, (kinds & 1) != 0, *numbers[:2])
-        end, facing, beyond = _point(types, self.records[1], pair, (kinds & 2) != 0, *numbers[2:4])
-        way = end - start
-        up, down, square = dr.dot(way, normal), -dr.dot(way, facing), dr.squared_norm(way)
-        faces = (up > above) & (down > beyond)  # nearer to a plane than lines begin there is in the plane
-        kernel = dr.select(faces, up * down / (square * square), 0)
-        origin = start + normal * above
-        hit = first_hit(geometry, origin, dr.normalize(end - origin), active=faces)
-        seen = hit.valid & (
-            dr.gather(UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid) == dr.gather(UInt32, self.target, pair)
-        )
-        met = dr.select(seen, kernel, 0)
+        start = point_of(types, self.records[0], pair, (kinds & 1) != 0, *numbers[:2])
+        end = point_of(types, self.records[1], pair, (kinds & 2) != 0, *numbers[2:4])
+        kernel, met = between(geometry, start, end, dr.gather(UInt32, self.target, pair))
         dr.eval(kernel, met)
         return np.array([_row_sums(np.array(x).reshape(-1, rays)[: self.count]) / rays for x in (kernel, met)])
+
+
+def between(geometry: Geometry, start, end, target):
+    """Return cos cos' / r² of points of pairs, from `point_of`, and the same where the line hits the target face, 0 elsewhere."""
+    (begin, normal, above), (there, facing, beyond) = start, end
+    way = there - begin
+    up, down, square = dr.dot(way, normal), -dr.dot(way, facing), dr.squared_norm(way)
+    faces = (up > above) & (down > beyond)  # nearer to a plane than lines begin there is in the plane
+    kernel = dr.select(faces, up * down / (square * square), 0)
+    origin = begin + normal * above
+    hit = first_hit(geometry, origin, dr.normalize(there - origin), active=faces)
+    face = dr.gather(geometry.device.types.UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid)
+    return kernel, dr.select(hit.valid & (face == target), kernel, 0)
 
 
 def _row_sums(values: np.ndarray) -> np.ndarray:
@@ -185,7 +189,7 @@ def _row_sums(values: np.ndarray) -> np.ndarray:
     return total
 
 
-def _point(types, records, pair, is_triangle, x, y):
+def point_of(types, records, pair, is_triangle, x, y):
     """Return a point of a polygon, its unit normal, and how far in front of it lines begin."""
     words = [dr.gather(types.Float, records, pair * WORDS + i) for i in range(WORDS)]
     origin, first, second = (types.Array3f(*words[at : at + 3]) for at in (0, 3, 6))

@@ -10,9 +10,10 @@ import numpy as np
 
 from ...patches.clusters import Clusters
 from ...tracing.geometry import Geometry
+from .ends import Ends
 from .links import Links
 from .parameters import Hierarchical
-from .volumes import Ends, sampled
+from .sampled import sampled
 
 STREAM = 1  # lines of these numbers judge no link
 
