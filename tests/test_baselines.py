@@ -384,3 +384,13 @@ def test_rays_and_seconds_stop_shots_early(room):
     assert 15_000 < some.rays < 90_000
     assert some.history[-1, 1] > 0.01
     assert short.quanta == 64  # the first stage is completed whatever it takes
+
+
+@pytest.mark.parametrize("method", ["progressive-refinement", "hierarchical"])
+def test_runs_that_end_too_early_say_what_is_missing(method):
+    patches = rd.subdivide(rd.load_scene("room"), size=1, powers_of_two=True)
+    with pytest.warns(rd.RadiosityWarning, match=rf"ended before {method.split('-')[0]} radiosity was done: \d"):
+        solution = rd.solve(patches, method, seconds=1e-6)
+    book = solution.books[0]
+    assert abs(book["rounding"]) > 0.01 * book["emitted"] or method == "hierarchical"
+    assert any("ended before" in text for text in solution.warnings)

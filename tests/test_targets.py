@@ -358,6 +358,7 @@ LARGE = {
 
 @pytest.mark.filterwarnings("ignore:.*quanta for.*patches")
 @pytest.mark.filterwarnings("ignore:.*was measured by no line")
+@pytest.mark.filterwarnings("ignore:.*ended before progressive")
 @pytest.mark.parametrize("name", LARGE)
 def test_a_smallest_stage_of_more_lines_is_told(name):
     patches, options = rd.subdivide(rd.load_scene("room"), cells=2), dict(LARGE[name])

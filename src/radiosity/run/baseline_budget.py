@@ -36,11 +36,25 @@ def cut_for(method: "Method | Baseline | Auto") -> dict:
     return {"about": PATCHES, "powers_of_two": method.needs_powers_of_two}
 
 
-def warn_of_missing(method: Baseline, books: tuple[dict, ...], state: AbstractSolvedState) -> None:
-    """Tell of power that form factors lose or make, or that had to be cut (`algorithms.progressive`)."""
+def warn_of_missing(method: Baseline, books: tuple[dict, ...], state: AbstractSolvedState, *, cut_short: bool) -> None:
+    """Tell of power that a run which ended before its method was done did not carry, and of that which form factors lose or make,
+    or that had to be cut (`algorithms.progressive`).
+
+    Args:
+        cut_short: the run ended by time or lines, and nobody asked for so many steps.
+    """
     off = max((abs(book["rounding"]) / book["emitted"] for book in books if book["emitted"] > 0), default=0.0)
     off = max(off, state.cut if isinstance(state, ProgressiveState) else 0.0)
-    if off > MISSING and state.solved is not None and state.solved.done:
+    done = state.solved is not None and state.solved.done
+    if cut_short and not done and (off > MISSING or method.scheme == "hierarchical"):
+        coarse = ", and links are coarser than epsilon asks for" if method.scheme == "hierarchical" else ""
+        warnings.warn(
+            f"the run ended before {method.scheme} radiosity was done: {off:.1%} of the emitted power is out of balance{coarse}; "
+            "give it more time, or go on from the solution (resume)",
+            RadiosityWarning,
+            stacklevel=6,
+        )
+    if off > MISSING and done:
         way_out = "factors polygons (a hemicube is one point)" if method.factors == "hemicube" else "more samples"
         warnings.warn(
             f"{off:.1%} of the emitted power is out of balance: form factors are inaccurate by this much; "

@@ -319,5 +319,6 @@ class Run(Generic[R]):
                 unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
             warn_of_few_ends(self.method, snapshot.lines / self.replicates / len(self.patches))
             if isinstance(self.method, Baseline):
-                warn_of_missing(self.method, snapshot.books, snapshot.state)
+                cut_short = status != "interrupted" and self.budget.quanta is None
+                warn_of_missing(self.method, snapshot.books, snapshot.state, cut_short=cut_short)
         return self.record.told(solution)
