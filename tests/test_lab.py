@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.lab import cases, kept, pictures, slopes
+from radiosity.lab import cases, kept, pictures, report, slopes
 from radiosity.lab.bits import bits
 from radiosity.lab.calibration import LEVELS, coverage
 from radiosity.lab.discretisation import discretisation
@@ -21,7 +21,7 @@ from radiosity.lab.measure import Series
 from radiosity.lab.results import Results
 from radiosity.lab.run import run
 from radiosity.lab.start import starts
-from radiosity.lab.study import Arm, Protocol
+from radiosity.lab.study import Arm, Claim, Protocol
 
 SHORT = Protocol(last=16, reference=20)
 WIDER = 8.61 / 2.776
@@ -313,3 +313,10 @@ def test_parts_that_are_done_are_kept_while_their_figures_are_there(tmp_path):
     assert kept.parts(5, make, short, tmp_path) == ["<p>1</p>"]
     (tmp_path / "experiment-5.svg").unlink()
     assert kept.parts(5, make, short, tmp_path) == ["<p>3</p>"]
+
+
+def test_only_the_papers_claims_are_called_so():
+    page = report.verdicts([Claim("Halton behaves well.", True, "a"), Claim("Not in the paper: ours is faster.", None, "b")])
+    assert page.count("The paper:") == 1
+    assert "<b>The paper:</b> Halton" in page
+    assert "<b>Not in the paper:</b> ours" in page

@@ -17,7 +17,7 @@ def experiment(*which: str, quick: Flag = False, image: Flag = False, output: Fo
         paper: bits and error bars), 6 (against the methods that form the matrix), 7 (linear and quadratic light), 8 (quadratures
         of global lines), 9 (continuous walks with sorted particles), several of them such as 1 3, or all.
     quick
-        Up to 2^17 lines instead of 2^23: 1 to 6 take two to three minutes on 2 cores, in place of twenty.
+        Up to 2^17 lines instead of 2^23: 1 to 6 take two to three minutes on 2 cores, in place of fifty.
     image
         Show the error of tone-mapped pictures too, as the paper does for its box.
     output
