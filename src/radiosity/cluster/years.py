@@ -1,9 +1,8 @@
 """Lines of a year of daylight on workers: ranges of the lines of replicates, and suns, between two barriers."""
 
-import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from ..sensors.annual.elsewhere import AbstractYearLines, Shares, SkyUnit, SunUn
 from ..sensors.annual.gathering import lines_of
 from .barrier import Barrier
 from .crew import DaskCrew
+from .job import AbstractJob
 from .scenes import scene_on
 from .worker import Brought, bring, job_of, keep, taken
 
@@ -22,18 +22,16 @@ AT_A_TIME = 2  # units of each worker between two barriers, where they need not 
 
 
 @dataclass(frozen=True, eq=False)
-class YearJob:
+class YearJob(AbstractJob):
     """What workers need of a year, besides the scene.
 
     Attributes:
         scene: the key of the `SceneJob`.
         setup: sensors, sky and seed.
-        key: the name of the job on workers.
     """
 
     scene: str
     setup: Setup
-    key: str = field(default_factory=lambda: uuid.uuid4().hex)
 
     def traced(self, unit: SkyUnit | SunUnit) -> Any:
         """Return what a unit brings; replicates stay for later units."""
