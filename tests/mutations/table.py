@@ -2941,9 +2941,9 @@ MISTAKES = (
         "coloured panes of honeybee models let the share of their red through",
     ),
     Mistake(
-        "conversion/honeybee.py",
-        "one.vertices[:, [0, 2, 1]] * [1, -1, 1]",
-        "one.vertices[:, [0, 2, 1]]",
+        "conversion/upright.py",
+        "points[:, [0, 2, 1]] * [1, -1, 1]",
+        "points[:, [0, 2, 1]]",
         ("test_convert_honeybee.py",),
         "scenes whose y is up become mirrored honeybee models",
     ),

@@ -11,7 +11,6 @@ import numpy as np
 
 from ..scene.formats.honeybee import NAME_KEY
 from ..scene.model import Scene
-from ..scene.up import up_axis
 from ..solution.whole import whole_file
 from .honeybee_layers import Layer, layers
 from .honeybee_modifiers import modifier
@@ -21,6 +20,7 @@ from .plain import plain
 from .radiance import LUMENS
 from .sheets import Sheet, gap_of, sheet
 from .told import Told
+from .upright import upright
 
 HOLDS = frozenset({"names", "reflectance", "emission", "units", "backs", "panes", "diffusing panes", "glass"})
 TOLERANCE = 1e-6  # of the largest coordinate: nearer corners are one to honeybee
@@ -36,17 +36,14 @@ def write(scene: Scene, path: Path, told: Told) -> None:
     tell_of_rest(scene, told, HOLDS)
     if scene.photometric:
         told.add(f"light in lm becomes light in W, divided by {LUMENS:g} lm/W", glowing(scene))
-    turned = up_axis(scene) == "y"
-    if turned:
-        told.add("honeybee's models are z-up: the scene, whose y is up, is turned", [scene.source])
+    turned = upright(scene, told, "honeybee's models")
     identifiers, gap = Identifiers(), gap_of(scene)
     found: dict[str, list[dict]] = {"orphaned_shades": [], "orphaned_apertures": [], "shade_meshes": []}
     modifiers = []
     for layer in layers(plain(scene, of_surfaces=True), gap, told):
         modifiers.append(modifier(layer, identifiers, 1 / LUMENS if scene.photometric else 1.0, told))
         one = sheet(scene, layer.piece, gap if layer.is_back else 0.0)
-        points = one.vertices[:, [0, 2, 1]] * [1, -1, 1] if turned else one.vertices
-        _add(found, layer, one, points, modifiers[-1]["identifier"], identifiers)
+        _add(found, layer, one, turned(one.vertices), modifiers[-1]["identifier"], identifiers)
     size = float(np.abs(scene.vertices).max())
     model = {
         "type": "Model",

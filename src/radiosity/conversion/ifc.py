@@ -14,12 +14,12 @@ from ..errors import OutputError, installing, printable
 from ..image.tone import srgb
 from ..scene.formats.ifc import ONE_SIDED, OWN
 from ..scene.model import Back, Scene
-from ..scene.up import up_axis
 from ..solution.whole import whole_file
 from .names import unique_names
 from .pieces import Piece, called, pieces, tell_of_rest, triangles
 from .plain import plain
 from .told import Told
+from .upright import upright
 
 HOLDS = frozenset({"names", "reflectance", "backs", "panes"})
 LONGEST = 255  # characters of a name
@@ -39,10 +39,7 @@ def write(scene: Scene, path: Path, told: Told) -> None:
         raise OutputError(f"{path}: writing .ifc files needs 'ifcopenshell'; {installing('ifc')}") from None
     tell_of_rest(scene, told, HOLDS)
     told.add("backs that let lines pass become backs that absorb", called(scene, scene.back == Back.PASSES))
-    turned = up_axis(scene) == "y"
-    if turned:
-        told.add("IFC models are z-up: the scene, whose y is up, is turned", [scene.source])
-    points = scene.vertices[:, [0, 2, 1]] * [1, -1, 1] if turned else scene.vertices
+    points = upright(scene, told, "IFC models")(scene.vertices)
     surfaces: dict[str, list[Piece]] = {}
     for piece in pieces(plain(scene, of_surfaces=True), told):
         surfaces.setdefault(piece.name, []).append(piece)
