@@ -150,7 +150,7 @@ def test_pages_agree_on_how_long_the_study_takes():
     pages = (ROOT / "README.md").read_text(), (ROOT / "docs" / "experiments.md").read_text(), experiment.__doc__ or ""
     for page in pages:
         assert "two to three minutes" in page
-        assert "twenty" in page
+        assert "fifty" in page
 
 
 # ---- solutions at a prompt -----------------------------------------------------------------------------------------------
