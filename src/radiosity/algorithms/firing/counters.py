@@ -26,6 +26,7 @@ from ...tally.far_sides import FarSides
 from ...tally.hit_counts import HitCounts
 from ...tally.hit_tally import AbstractHitTally, hit_tally
 from ...tally.wraps import PERIOD, Wraps
+from ...tracing.coherent_costs import fewest_lines
 from ...tracing.geometry import Geometry
 from ...tracing.lanes import PIECE, Batch, Launch, Wavefront, boxes_for, sums
 from ...tracing.line_tracer import LineTracer
@@ -59,7 +60,8 @@ class FiringCounters:
     """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
-        self.problem, self.source, self.coherent = problem, problem.source, method.coherent
+        self.problem, self.source = problem, problem.source
+        self.packets_from = fewest_lines(method, geometry.device.name)  # lines of a patch; None: no packets
         self.tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates, problem.lights)
         self.types, self.total = self.tracer.types, self.tracer.total
         u32 = self.types.UInt32
@@ -296,7 +298,9 @@ class FiringCounters:
         everywhere = wavefront.blocks is not None or self.parted or (not few and MANY * wavefront.total >= self.total)
         tally, landed = hit_tally(self.hits, wavefront.total, flags=not few and not everywhere), []
         for batch in self.batches(wavefront, () if few else self._shifts(wavefront)):
-            boxes = boxes_for(types, batch.counts) if self.coherent else None
+            boxes = None if self.packets_from is None else boxes_for(types, batch.counts, self.packets_from)
+            if boxes is not None and batch.several:
+                batch = batch.one_by_one(types, self.tracer.record)
             for launch in batch.launches(types):
                 places = self._fire(launch, 32 if few else bits, boxes, few, tally)
                 if few:
@@ -334,7 +338,7 @@ class FiringCounters:
         compile, so short runs do not use it. It leaves fewer lanes, so many threads, and a GPU even more, do not use it.
         """
         cpu = self.tracer.geometry.device.name == "cpu"
-        many = cpu and not self.coherent and min(wavefront.total, self.swept) >= MUCH * dr.thread_count()
+        many = cpu and min(wavefront.total, self.swept) >= MUCH * dr.thread_count()
         return SHIFTS if many else ()
 
     def _fire(self, launch: Launch, bits: int, boxes, few: bool, tally: AbstractHitTally):
