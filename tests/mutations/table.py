@@ -23,10 +23,31 @@ MISTAKES = (
     ),
     Mistake(
         "tracing/lanes.py",
-        "dr.select(counts >= strata.lines(*size), counts, 0)",
-        "dr.select(counts >= strata.boxes(*size), counts, 0)",
+        "counts >= max(strata.lines(*size), fewest)",
+        "counts >= max(strata.boxes(*size), fewest)",
         ("test_strata.py",),
         "boxes are taken with a line each",
+    ),
+    Mistake(
+        "tracing/coherent_costs.py",
+        'FIRING: dict[str, int | None] = {"avx512": 50_000, "avx2": NEVER}',
+        'FIRING: dict[str, int | None] = {"avx512": 50_000, "avx2": 50_000}',
+        ("test_coherent_costs.py",),
+        "packets are fired with AVX2, where they lose",
+    ),
+    Mistake(
+        "run/same.py",
+        '    "packets",\n',
+        "",
+        ("test_coherent_costs.py",),
+        "a run goes on with packets on another processor, though it began without them",
+    ),
+    Mistake(
+        "device/instructions.py",
+        'f"+{feature}" in there',
+        'feature in features',
+        ("test_coherent_costs.py",),
+        "instructions that LLVM says are not there are taken for there",
     ),
     Mistake(
         "tracing/global_lines/crossing.py",
