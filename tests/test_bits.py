@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.algorithms.firing import counters as firing
+from radiosity.algorithms.firing import fire as firing
 from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.device.backend import choose, upload
 from radiosity.problem.quanta import Source, phases, target_counts

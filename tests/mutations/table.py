@@ -281,7 +281,7 @@ MISTAKES = (
         "sequences begin again after 2^32 lines",
     ),
     Mistake(
-        "algorithms/firing/counters.py",
+        "algorithms/firing/due.py",
         "left = wide(BLOCK) - ((fired + 1) & wide(BLOCK - 1))",
         "left = wide(BLOCK)",
         ("test_wide_counts.py",),
