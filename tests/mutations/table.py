@@ -43,6 +43,20 @@ MISTAKES = (
         "a run goes on with packets on another processor, though it began without them",
     ),
     Mistake(
+        "algorithms/gather/stored_lines.py",
+        "at if self.before is None else at - self.before",
+        "at",
+        ("test_annual.py",),
+        "hits of the lines of a later stage of a year are written beside their places",
+    ),
+    Mistake(
+        "cluster/years.py",
+        "            self._check(scene.problem.patches, unit)\n",
+        "",
+        ("test_cluster_year.py",),
+        "a worker begins a year that does not fit in its memory",
+    ),
+    Mistake(
         "device/instructions.py",
         'f"+{feature}" in there',
         'feature in features',
