@@ -28,7 +28,9 @@ class Rates:
     ratio: float
 
 
-def measure(patches: rd.Patches, *, coherent: bool = False, lines: int = LINES, turns: int = TURNS, device: str = "cpu") -> Rates:
+def measure(
+    patches: rd.Patches, *, coherent: bool | str = False, lines: int = LINES, turns: int = TURNS, device: str = "cpu"
+) -> Rates:
     """Time whole sweeps (what is owed, lanes, numbers, lines, hits, tally) of black patches against the bare caster."""
     geometry = Geometry(patches, choose(device))
     counters = FiringCounters(geometry, Problem.of(patches), rd.Method(coherent=coherent), 0, 1)

@@ -20,6 +20,7 @@ from ...sampling.streams import Seed
 from ...tally.bands import BandTally
 from ...tally.hit_counts import HitCounts
 from ...tally.wraps import Wraps
+from ...tracing.coherent_costs import fewest_lines
 from ...tracing.geometry import Geometry
 from ...tracing.lanes import sums
 from ...tracing.line_tracer import LineTracer
@@ -48,7 +49,8 @@ class FiringCounters:
     """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
-        self.problem, self.source, self.coherent = problem, problem.source, method.coherent
+        self.problem, self.source = problem, problem.source
+        self.packets_from = fewest_lines(method, geometry.device.name)  # lines of a patch; None: no packets
         self.tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates, problem.lights)
         self.types, self.total = self.tracer.types, self.tracer.total
         self.targets = TargetCounts(self.tracer, self.source, phases(seed, replicates, self.tracer.n))

@@ -42,7 +42,9 @@ def fire(counters: FiringCounters, wavefront: Wavefront, largest: int) -> None:
     everywhere = wavefront.blocks is not None or counters.parted or (not few and MANY * wavefront.total >= counters.total)
     tally, landed = hit_tally(counters.hits, wavefront.total, flags=not few and not everywhere), []
     for batch in batches(counters, wavefront, () if few else _shifts(counters, wavefront)):
-        boxes = boxes_for(types, batch.counts) if counters.coherent else None
+        boxes = None if counters.packets_from is None else boxes_for(types, batch.counts, counters.packets_from)
+        if boxes is not None and batch.several:
+            batch = batch.one_by_one(types, counters.tracer.record)
         for launch in batch.launches(types):
             places = _fire(counters, launch, 32 if few else bits, boxes, few, tally)
             if few:
@@ -74,7 +76,7 @@ def _shifts(counters: FiringCounters, wavefront: Wavefront) -> tuple[int, ...]:
     compile, so short runs do not use it. It leaves fewer lanes, so many threads, and a GPU even more, do not use it.
     """
     cpu = counters.tracer.geometry.device.name == "cpu"
-    many = cpu and not counters.coherent and min(wavefront.total, counters.swept) >= MUCH * dr.thread_count()
+    many = cpu and min(wavefront.total, counters.swept) >= MUCH * dr.thread_count()
     return SHIFTS if many else ()
 
 
