@@ -64,7 +64,7 @@ EXPLAINED = (
     Explained("obj", "trimesh", "concave polygon", ("area", "volume", "reflectance"), FAN),
     Explained("obj", "mitsuba", "line continuation", SPACE, "does not know it, drops corners and says nothing"),
     Explained("obj", "mitsuba", "relative indices", REFUSED, "does not know them"),
-    Explained("obj", "mitsuba", "more than four corners", SPACE, "reads the first four corners of a face and says nothing"),
+    Explained("obj", "mitsuba", "concave polygon", ("area", "volume"), FAN),
     Explained("obj", "blender", "Kd beside a texture", ("reflectance",), "takes the texture in place of Kd, not times Kd"),
     Explained("obj", "blender", "Ke beside a texture", ("power",), "takes the texture in place of Ke, not times Ke"),
     Explained("obj", "blender", "texture clamp", ("reflectance",), "repeats the image whatever -clamp says"),

@@ -23,6 +23,7 @@ from ..problem.model import Problem
 from ..sampling.streams import Seed
 from ..solution.status import NOT_REACHED
 from ..tally import unmet
+from ..tracing import coherent_costs
 from ..tracing.geometry import Geometry
 from . import memory_estimate
 from .aim import Aim
@@ -100,6 +101,7 @@ class Run(Generic[R]):
         self.record = record(patches, method, part, self.device.name, given, None if choice is None else choice.facts, **facts)
         if resume is not None:
             check_same(resume.provenance, self.record.provenance, self.record.kind)
+        coherent_costs.tell_of_none(method, self.device.name)
 
     def _share_out(self, importance: Any) -> tuple[Aim, int]:
         """Share lines out by importance, and return what for, and the lines that the pilot took.

@@ -20,13 +20,15 @@ class Exchange:
     def __init__(self, levels: Levels, links: Links):
         from scipy.sparse import csr_array
 
-        self.levels = levels
-        starts = np.searchsorted(links.receiver, np.arange(len(levels.area) + 1))
-        self.factors = csr_array((links.factor, links.source, starts), shape=(len(levels.area),) * 2)
+        self.levels, rank = levels, levels.ranks.rank
+        receiver = rank[links.receiver]
+        rows = np.argsort(receiver, kind="stable")  # sums over links keep their order
+        starts = np.searchsorted(receiver[rows], np.arange(len(rank) + 1))
+        self.factors = csr_array((links.factor[rows], rank[links.source[rows]], starts), shape=(len(rank),) * 2)
 
     def gather(self, radiosity: np.ndarray) -> np.ndarray:
         """Return the irradiance from the radiosity, (n_patches, n_bands) each."""
-        return self.levels.push(self.factors @ self.levels.pull(radiosity))
+        return self.levels.push_ranks(self.factors @ self.levels.pull_ranks(radiosity))
 
     def solve(
         self, emission: np.ndarray, reflectance: np.ndarray, begin: np.ndarray, tolerance: float, told: Callable[[int], None]

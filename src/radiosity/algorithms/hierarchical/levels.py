@@ -8,6 +8,7 @@ import numpy as np
 
 from ...patches import Hierarchy, elements
 from ...patches.clusters import Clusters
+from .ranks import Ranks, ranked
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,16 +71,36 @@ class Levels:
             return within
         return *(some + len(level) for some in self.clusters.below), self.hierarchy.first[:-1], *within
 
+    @cached_property
+    def ranks(self) -> Ranks:
+        """All elements by level."""
+        share: list[np.ndarray | None] = [None] * len(self.below)
+        if self.clusters is not None:  # of sides below clusters their solid part counts
+            share[len(self.clusters.below)] = self.clusters.side_area / self.area[self.hierarchy.first[:-1]]
+        return ranked(len(self.area), self.below, self.parent, share)
+
+    @cached_property
+    def leaf_rank(self) -> np.ndarray:
+        """The rank of the element that each patch is, (n_patches,) int64."""
+        return self.ranks.rank[self.leaf]
+
+    @cached_property
+    def rank_area(self) -> np.ndarray:
+        """The area of the element of each rank, (n_elements, 1) float64, m²."""
+        return self.area[self.ranks.order][:, None]
+
     def push(self, values: np.ndarray) -> np.ndarray:
         """Return what reaches each patch by its element and by all elements that hold it, (n_patches, n_bands).
 
         Args:
             values: (n_elements, n_bands) values per area, such as irradiance, of each element alone.
         """
-        total = values.copy()
-        for element in self.below:
-            total[element] += total[self.parent[element]]
-        return total[self.leaf]
+        return self.push_ranks(values[self.ranks.order])
+
+    def push_ranks(self, values: np.ndarray) -> np.ndarray:
+        """Do as `push` does with values by rank, which are overwritten."""
+        self.ranks.push(values)
+        return values.take(self.leaf_rank, axis=0)
 
     def pull(self, values: np.ndarray) -> np.ndarray:
         """Return means over elements of a value per area, (n_elements, n_bands).
@@ -87,29 +108,19 @@ class Levels:
         Args:
             values: (n_patches, n_bands).
         """
+        return self.pull_ranks(values)[self.ranks.rank]
+
+    def pull_ranks(self, values: np.ndarray) -> np.ndarray:
+        """Do as `pull` does, with means by rank."""
         power = np.zeros((len(self.area), values.shape[1]))
-        power[self.leaf] = values * self.area[self.leaf, None]
-        for element in reversed(self.below):
-            self._add(power, element)
-        return power / self.area[:, None]
-
-    def _add(self, power: np.ndarray, element: np.ndarray) -> None:
-        parent = self.parent[element]
-        for band in power.T:  # a view: sums of columns, in the order of elements
-            band += np.bincount(parent, weights=band[element] * self._solid(element), minlength=len(band))
-
-    def _solid(self, element: np.ndarray) -> np.ndarray | float:
-        """Return the share of elements that is solid where they are sides below clusters, and 1 elsewhere."""
-        if self.clusters is None or element is not self.below[len(self.clusters.below)]:
-            return 1.0
-        return self.clusters.side_area / self.area[element]
+        power[self.leaf_rank] = values * self.hierarchy.patches.area[:, None]
+        self.ranks.pull(power)
+        return power / self.rank_area
 
     def extremes(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the lowest and highest of patches' values within each element, (n_elements, n_bands) each."""
-        low, high = np.full((len(self.area), values.shape[1]), np.inf), np.full((len(self.area), values.shape[1]), -np.inf)
-        low[self.leaf] = high[self.leaf] = values
-        for element in reversed(self.below):
-            parent = self.parent[element]
-            np.minimum.at(low, parent, low[element])
-            np.maximum.at(high, parent, high[element])
-        return low, high
+        shape = values.shape[1], len(self.area)
+        low, high = np.full(shape, np.inf), np.full(shape, -np.inf)
+        low[:, self.leaf_rank] = high[:, self.leaf_rank] = values.T
+        self.ranks.extremes(low, high)
+        return tuple(np.ascontiguousarray(found[:, self.ranks.rank].T) for found in (low, high))  # type: ignore[return-value]
