@@ -2250,10 +2250,24 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/walks/particles.py",
-        "stream(tracer.seed, replicate, Purpose.LATER_SEGMENTS, segment, *key)",
-        "stream(tracer.seed, 0, Purpose.LATER_SEGMENTS, segment, *key)",
+        "stream(seed, replicate, Purpose.LATER_SEGMENTS, segment, *key)",
+        "stream(seed, 0, Purpose.LATER_SEGMENTS, segment, *key)",
         ("test_walks_bits.py", "test_walks_unbiased.py"),
         "later legs of all replicates share their randomisation",
+    ),
+    Mistake(
+        "algorithms/walks/particles.py",
+        "_drawn(tracer.numbers, seed.value, seed.first_replicate + r, key)",
+        "_drawn(tracer.numbers, seed.value, r, key)",
+        ("test_merge.py",),
+        "later legs of a part of a run are randomised as those of its first replicates",
+    ),
+    Mistake(
+        "algorithms/walks/particles.py",
+        "Purpose.LATER_SEGMENTS, segment, *key) for",
+        "Purpose.LATER_SEGMENTS, segment) for",
+        ("test_walks_bits.py",),
+        "later legs of walks beyond 2^32 are randomised as those of the first ones",
     ),
     Mistake(
         "algorithms/walks/tally.py",
