@@ -491,6 +491,13 @@ MISTAKES = (
         "a wide sun sends less than its irradiance across the light",
     ),
     Mistake(
+        "scene/lights/add.py",
+        "(values != values[..., :1]).any()",
+        "(values != values[:1]).any()",
+        ("test_sun_and_sky.py", "test_luminaires.py"),
+        "a lone light that has a colour leaves a grey scene grey",
+    ),
+    Mistake(
         "scene/lights/epw.py",
         "self.hour - 1 + (np.arange(60)",
         "self.hour + (np.arange(60)",
