@@ -260,8 +260,8 @@ MISTAKES = (
         "triangles with two halved edges leave gaps",
     ),
     Mistake(
-        "run/run.py",
-        "at_once = self.watch is None and self.ladder",
+        "run/first_stage.py",
+        "at_once = not watched and self.ladder",
         "at_once = self.ladder",
         ("test_viewer.py",),
         "who watches a run sees its end alone",
@@ -279,6 +279,27 @@ MISTAKES = (
         "key = self.child",
         ("test_wide_counts.py",),
         "sequences begin again after 2^32 lines",
+    ),
+    Mistake(
+        "tracing/hits.py",
+        "u, v = (dr.select(valid, one, 0) for one in (found.prim_uv.x, found.prim_uv.y))",
+        "u, v = found.prim_uv.x, found.prim_uv.y",
+        ("test_gather_bases.py",),
+        "lines that hit nothing bring polynomials what was in memory",
+    ),
+    Mistake(
+        "scene/csv_cells.py",
+        "text[1:] if text.startswith",
+        "text if text.startswith",
+        ("test_export_csv.py",),
+        "names that spreadsheets would take for formulas keep an apostrophe",
+    ),
+    Mistake(
+        "report_page/levels.py",
+        "on & (seen[:, 0] <= 0) & unmet[patch]",
+        "on & (seen[:, 0] < 0) & unmet[patch]",
+        ("test_report_page.py",),
+        "plans show 0 where no line came",
     ),
     Mistake(
         "algorithms/firing/due.py",
@@ -980,6 +1001,13 @@ MISTAKES = (
         "near |= False",
         ("test_sorted_keys.py",),
         "halves of parallelograms on either side of a cell's border are left out",
+    ),
+    Mistake(
+        "scene/twins.py",
+        "return 2 * sum(map(len, pairs)) /",
+        "return 0.0 * sum(map(len, pairs)) /",
+        ("test_sorted_keys.py",),
+        "meshes of which half are halves of parallelograms are taken for meshes without",
     ),
     Mistake(
         "scene/measures.py",
