@@ -514,8 +514,8 @@ MISTAKES = (
     Mistake(
         "scene/lights/add.py",
         "(values != values[..., :1]).any()",
-        "(values != values[:1]).any()",
-        ("test_sun_and_sky.py", "test_luminaires.py"),
+        "(values != values[..., :1]).all()",
+        ("test_luminaire_scenes.py", "test_toml_daylight.py"),
         "a lone light that has a colour leaves a grey scene grey",
     ),
     Mistake(
