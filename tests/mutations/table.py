@@ -512,6 +512,13 @@ MISTAKES = (
         "a wide sun sends less than its irradiance across the light",
     ),
     Mistake(
+        "scene/lights/add.py",
+        "(values != values[..., :1]).any()",
+        "(values != values[..., :1]).all()",
+        ("test_luminaire_scenes.py", "test_toml_daylight.py"),
+        "a lone light that has a colour leaves a grey scene grey",
+    ),
+    Mistake(
         "scene/lights/epw.py",
         "self.hour - 1 + (np.arange(60)",
         "self.hour + (np.arange(60)",
