@@ -57,6 +57,27 @@ MISTAKES = (
         "a worker begins a year that does not fit in its memory",
     ),
     Mistake(
+        "scene/formats/gltf/__init__.py",
+        "        color = color if rows is None else color[rows]\n",
+        "        color = color if rows is None else color[: len(rows)]\n",
+        ("test_formats_gltf.py",),
+        "a primitive has the colours of the first vertices that all share, and not its own",
+    ),
+    Mistake(
+        "scene/formats/gltf/__init__.py",
+        "rows if held == count else None",
+        "None",
+        ("test_formats_gltf.py",),
+        "vertices that many primitives share are copied for each of them",
+    ),
+    Mistake(
+        "scene/formats/mesh/ply_rows.py",
+        "begins[part] - dtype.itemsize * (ends[part] - size)",
+        "begins[part] - dtype.itemsize * (ends[part] - size[0])",
+        ("test_formats_mesh.py",),
+        "lists of a PLY file are read beside their places where their lengths differ",
+    ),
+    Mistake(
         "device/instructions.py",
         'f"+{feature}" in there',
         'feature in features',
