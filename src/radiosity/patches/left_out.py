@@ -47,7 +47,8 @@ def variation(halves: Halves, light: np.ndarray, basis: Basis) -> Variation:
             rest[faces] = whole
     pairs = ((along, constant.along), (across, constant.across), (rest, constant.rest), (noise, constant.noise))
     none = np.zeros(len(quad))
-    return Variation(*(one + CONSTANTS * other for one, other in pairs), none, none)
+    along, across, rest, noise = (one + CONSTANTS * other for one, other in pairs)
+    return Variation(along, across, rest, noise, none, none)
 
 
 @cache

@@ -38,7 +38,7 @@ class Variation:
                 [_best(now, old, times * self.noise) for now, old in zip(*pair, strict=True)]
                 for times, *pair in zip((1, 2), parts, expected, strict=True)
             )
-        return Variation(*halves, self.noise, *within)
+        return Variation(halves[0], halves[1], halves[2], self.noise, within[0], within[1])
 
     def after(self, scene: Scene, columns: np.ndarray, rows: np.ndarray, part: np.ndarray, is_quad: np.ndarray) -> "Variation":
         """Return what is expected of the parts of faces that are cut: where light is smooth, a half varies by a quarter.
