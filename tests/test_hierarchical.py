@@ -107,19 +107,18 @@ def test_rows_of_links_between_patches_sum_to_one():
 
 
 def without_push(levels, values):
-    return values[levels.leaf]
+    return values[levels.leaf_rank]
 
 
 def without_areas(levels, values):
     """Sums of children in place of means."""
     power = np.zeros((len(levels.area), values.shape[1]))
-    power[levels.leaf] = values
-    for element in reversed(levels.below):
-        np.add.at(power, levels.parent[element], power[element])
+    power[levels.leaf_rank] = values
+    levels.ranks.pull(power)
     return power
 
 
-@pytest.mark.parametrize(("name", "wrong"), [("push", without_push), ("pull", without_areas)])
+@pytest.mark.parametrize(("name", "wrong"), [("push_ranks", without_push), ("pull_ranks", without_areas)])
 def test_the_furnace_rejects_wrong_variants(monkeypatch, name, wrong):
     coarse = {"reflectance": 0.5, "cells": 4, "refinement": "error-radiance", "epsilon": 0.05}
     assert furnace(**coarse) < 0.1
