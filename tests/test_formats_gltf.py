@@ -390,3 +390,16 @@ def test_bytes_as_vertex_colours_are_told_by_all_of_them(tmp_path):
     with pytest.warns(RadiosityWarning, match="255"):
         scene = rd.load_scene(gltf.write(tmp_path / "bytes.glb"))
     np.testing.assert_allclose(rd.subdivide(scene, cells=1).reflectance, 0.5 / 255, rtol=1e-6)
+
+
+def test_copies_that_do_not_fit_in_memory_are_refused_as_they_are_read(tmp_path, monkeypatch):
+    """A small file may name one mesh in thousands of nodes; what it takes is told before it takes it."""
+    gltf = Gltf()
+    mesh = gltf.mesh(material=GREY)
+    for number in range(1000):
+        gltf.node(mesh=mesh, name=f"tile {number}", translation=[2 * number, 0, 0])
+    path = gltf.write(tmp_path / "tiles.glb")
+    monkeypatch.setenv("RADIOSITY_MEMORY", "100K")
+    fails(path, "'tile 290', one of 1000 nodes, there are 582 faces, which take about 0.0977 MiB", "RADIOSITY_MEMORY=16G")
+    monkeypatch.setenv("RADIOSITY_MEMORY", "none")
+    assert rd.load_scene(path).n_faces == 1000

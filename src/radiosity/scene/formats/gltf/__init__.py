@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ....device import memory
 from ....errors import shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...lights.add import with_lights
@@ -28,6 +29,7 @@ from .material import Finish, Materials, Texture
 from .nodes import Node, cameras, walk
 
 LINES, TRIANGLES, STRIP, FAN = (0, 1, 2, 3), 4, 5, 6
+FACE = 176  # bytes a face, at the peak of reading (docs/performance.md)
 FEW = 2  # times the corners of a primitive are fewer than the vertices that it may name: then those that it uses are taken
 
 
@@ -42,7 +44,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
     nodes = walk(file)
     materials, skins, lights = Materials(file), Skins(file), PunctualLights(file)
     left_out: dict[str, list[str]] = {}
-    parts = []
+    parts, faces, room = [], 0, memory.room()
     for node in nodes:
         if node.hidden and ({"mesh", "camera"} & set(node.info) or node.extension(file, PUNCTUAL) is not None):
             left_out.setdefault("hidden objects (KHR_node_visibility)", []).append(node.name)
@@ -60,6 +62,13 @@ def read(path: Path, options: ReadOptions) -> Scene:
             if mode not in (TRIANGLES, STRIP, FAN):
                 raise file.fail(f"mode of primitive {number} of '{node.name}' is {mode!r}; expected 0 to 6")
             parts.append(_part(file, node, mesh, primitive, materials, skins))
+            faces += len(parts[-1].faces)
+            if faces * FACE > room:
+                raise file.fail(
+                    f"with '{node.name}', one of {len(nodes)} nodes, there are {faces:,} faces, which take about "
+                    f"{memory.size(faces * FACE)} of memory, and {memory.size(room)} may be taken; take fewer copies of its "
+                    f"meshes ({memory.VARIABLE}=16G or none sets another limit)"
+                )
     for what, names in left_out.items():
         warn(f"{path}: {what} are left out: {shown(dict.fromkeys(names))}")
     materials.report()

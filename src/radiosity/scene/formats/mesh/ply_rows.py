@@ -100,7 +100,7 @@ def _places(body: memoryview, at: int, count: int, properties: list[Property]) -
             begin(at)
             many(size)
             at += size * width
-    return [(np.asarray(begin, np.int64), np.asarray(many, np.int64)) for begin, many in zip(begins, sizes, strict=True)], at
+    return [(np.asarray(one, np.int64), np.asarray(other, np.int64)) for one, other in zip(begins, sizes, strict=True)], at
 
 
 def _gathered(data: np.ndarray, begins: np.ndarray, sizes: np.ndarray, dtype: np.dtype) -> np.ndarray:
