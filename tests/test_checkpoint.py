@@ -299,6 +299,26 @@ def test_a_full_disk_is_told_once_and_the_old_checkpoint_stays(tmp_path):
     assert [entry.name for entry in tmp_path.iterdir()] == ["run.npz"]
 
 
+def test_what_a_full_disk_refused_is_tried_again_soon(grey, tmp_path, monkeypatch):
+    """A clock of our own: the disk is full from second 25 to 68, and a sweep takes a second."""
+    now, tried = [0.0], []
+
+    def refused(solution, path):
+        tried.append(now[0])
+        if 25 <= now[0] < 68:
+            raise rd.OutputError("x: cannot be written (No space left on device)")
+
+    monkeypatch.setattr(checkpoints.time, "monotonic", lambda: now[0])
+    keeper = Checkpoint(tmp_path / "a.npz", 30, refused)
+    solution = rd.solve(grey, "random-walk", quanta=10, replicates=1)
+    with pytest.warns(rd.RadiosityWarning, match="the run goes on"):
+        for _ in range(110):
+            now[0] += 1
+            if keeper.due:
+                keeper.write(lambda: solution)
+    assert tried == [30, 35, 40, 45, 50, 55, 60, 65, 70, 100]
+
+
 def test_leftovers_of_killed_processes_are_removed(grey, tmp_path):
     dead = child("import os; print(os.getpid())").stdout.strip()
     left, other, alive = (

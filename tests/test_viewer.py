@@ -245,6 +245,7 @@ def test_a_missing_library_is_named(monkeypatch):
     ("method", "order", "rays", "stages"),
     [
         ("gather", "gather", 3e5, 5),
+        ("gather", "gather", 1.5e6, 5),  # unwatched it is one stage, watched a first rung and another stage
         ("random-walk", "staged", 2e4, 9),
         ("stochastic-jacobi", "regular", 1e5, 5),
     ],

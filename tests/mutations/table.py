@@ -285,7 +285,7 @@ MISTAKES = (
         "at_once = not watched and self.ladder",
         "at_once = self.ladder",
         ("test_viewer.py",),
-        "who watches a run sees its end alone",
+        "who watches a run sees no stage before its end",
     ),
     Mistake(
         "tally/wraps.py",
@@ -1298,6 +1298,13 @@ MISTAKES = (
         "self._due += self.every - expected",
         ("test_checkpoint.py::test_a_large_state_waits_for_its_first_checkpoint",),
         "large states are written at once",
+    ),
+    Mistake(
+        "run/checkpoint.py",
+        "wait = self.every if self._save(what) else min(self.every, AGAIN)",
+        "wait = self.every if self._save(what) else self.every",
+        ("test_checkpoint.py::test_what_a_full_disk_refused_is_tried_again_soon",),
+        "half a minute more is lost after a full disk",
     ),
     Mistake(
         "algorithms/walks/scores.py",

@@ -15,6 +15,7 @@ from ..solution.whole import check_place
 from .result import Result
 
 EVERY = 30.0  # seconds
+AGAIN = 5.0  # seconds after which a writing that failed is tried again: the disk may have room by then
 TIMES = 30  # a run goes on for this many times the time of writing, at least: writing then takes 3 % of the time
 RATE = 60e6  # bytes a second that a disk is assumed to write, before it has been measured
 WHOLE = {
@@ -96,7 +97,7 @@ class Checkpoint:
     def write(self, solution: Callable[[], Result]) -> None:
         """Write the file, unless that would take too much of the time so far; called between two wavefronts.
 
-        A failure is told once, and the run goes on: what was written before stays.
+        A failure is told once, and the run goes on: what was written before stays. It is tried again soon.
         """
         begun = time.monotonic()
         what = solution()
@@ -106,16 +107,17 @@ class Checkpoint:
             if expected > self.every:
                 self._due += expected - self.every
                 return
-        self._save(what)
+        wait = self.every if self._save(what) else min(self.every, AGAIN)
         now = time.monotonic()
-        self._due = now + max(self.every, TIMES * (now - begun))
+        self._due = now + max(wait, TIMES * (now - begun))
 
     def end(self, solution: Result) -> None:
         """Write the file at the end of a run; that of a complete run only where the run has written one before."""
         if self.written or solution.status != "complete":
             self._save(solution)
 
-    def _save(self, solution: Result) -> None:
+    def _save(self, solution: Result) -> bool:
+        """Write the file; False where that failed."""
         try:
             self.save(solution, self.path)
         except OutputError as error:
@@ -124,5 +126,6 @@ class Checkpoint:
                     f"no checkpoint: {error}; the run goes on, and an earlier one stays", RadiosityWarning, stacklevel=2
                 )
             self._warned = True
-        else:
-            self.written = True
+            return False
+        self.written = True
+        return True
