@@ -244,9 +244,9 @@ def test_writing_takes_a_thirtieth_of_the_time(coloured, tmp_path, monkeypatch):
     keeper = Checkpoint(tmp_path / "a.npz", 10)
     for _ in range(1000):
         now[0] += 1
-        if keeper.due:
+        if keeper.due():
             keeper.write(lambda: solution)
-    assert at[0] == 13
+    assert at[0] == 12  # what the next sweep would end after is written before it
     assert set(np.diff(at)) == {3 + 3 * checkpoints.TIMES}
 
 
@@ -260,7 +260,7 @@ def test_a_large_state_waits_for_its_first_checkpoint(grey, tmp_path, monkeypatc
     keeper = Checkpoint(tmp_path / "a.npz", 10)
     for _ in range(1000):
         now[0] += 1
-        if keeper.due:
+        if keeper.due():
             keeper.write(lambda: large)
     assert written[0] == pytest.approx(checkpoints.TIMES * 1e9 / checkpoints.RATE, abs=1)
 
@@ -311,12 +311,34 @@ def test_what_a_full_disk_refused_is_tried_again_soon(grey, tmp_path, monkeypatc
     monkeypatch.setattr(checkpoints.time, "monotonic", lambda: now[0])
     keeper = Checkpoint(tmp_path / "a.npz", 30, refused)
     solution = rd.solve(grey, "random-walk", quanta=10, replicates=1)
-    with pytest.warns(rd.RadiosityWarning, match="the run goes on"):
+
+    def run():
         for _ in range(110):
             now[0] += 1
-            if keeper.due:
+            if keeper.due():
                 keeper.write(lambda: solution)
-    assert tried == [30, 35, 40, 45, 50, 55, 60, 65, 70, 100]
+
+    with pytest.warns(rd.RadiosityWarning, match="the run goes on"):
+        run()
+    assert tried == [29, 33, 37, 41, 45, 49, 53, 57, 61, 65, 69, 98]
+
+
+@pytest.mark.parametrize(
+    ("sweep", "moments"),
+    [(1, [29, 58, 87, 116]), (12, [24, 48, 72, 96, 120]), (40, [40, 80, 120])],
+    ids=["short", "long", "longer"],
+)
+def test_long_sweeps_do_not_make_it_late(grey, tmp_path, monkeypatch, sweep, moments):
+    """It is written before a sweep that would end after half a minute."""
+    now, written = [0.0], []
+    monkeypatch.setattr(checkpoints.time, "monotonic", lambda: now[0])
+    keeper = Checkpoint(tmp_path / "a.npz", 30, lambda *_: written.append(now[0]))
+    solution = rd.solve(grey, "random-walk", quanta=10, replicates=1)
+    for _ in range(120 // sweep):
+        now[0] += sweep
+        if keeper.due():
+            keeper.write(lambda: solution)
+    assert written == moments
 
 
 def test_leftovers_of_killed_processes_are_removed(grey, tmp_path):

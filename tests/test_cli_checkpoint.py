@@ -6,6 +6,7 @@ import select
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -254,6 +255,26 @@ def test_failing_outputs_leave_the_solution_in_the_checkpoint(capsys, monkeypatc
     status, out, err = run(capsys, *RUN, "-o", tmp_path / "a.csv", "--resume", kept)
     assert (status, err) == (0, "")
     assert not kept.exists()
+
+
+def test_what_had_no_room_beside_the_outputs_is_gone_on_from_elsewhere(capsys, monkeypatch, tmp_path):
+    save, output, folder = rd.Solution.save, tmp_path / "a.csv", tmp_path / "elsewhere"
+    folder.mkdir()
+
+    def refused(*_):
+        raise rd.OutputError("x: cannot be written (No space left on device)")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(tempfile, "tempdir", str(folder))
+        patch.setattr(tables, "write", refused)
+        patch.setattr(rd.Solution, "save", lambda self, path: (refused if path.parent == tmp_path else save)(self, path))
+        status, _, err = run(capsys, *RUN, "-o", output)
+    kept = re.search(r"the solution was kept in (\S+) \(make room, then --resume it\)", err)
+    assert status == 2
+    assert kept is not None
+    assert Path(kept[1]).is_relative_to(folder)
+    status, _, err = run(capsys, *RUN, "-o", output, "--resume", kept[1])
+    assert (status, err) == (0, "")
 
 
 @pytest.fixture

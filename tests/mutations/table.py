@@ -1300,6 +1300,20 @@ MISTAKES = (
         "large states are written at once",
     ),
     Mistake(
+        "cli/outputs.py",
+        "resume = \"\" if checkpoint is None else",
+        "resume = \"\" if checkpoint is not None else",
+        ("test_cli_checkpoint.py::test_what_had_no_room_beside_the_outputs_is_gone_on_from_elsewhere",),
+        "what was kept elsewhere is traced again",
+    ),
+    Mistake(
+        "run/checkpoint.py",
+        "now >= self._rest and now + self._longest >= self._due",
+        "now >= self._due",
+        ("test_checkpoint.py::test_long_sweeps_do_not_make_it_late",),
+        "a wavefront more is lost than half a minute",
+    ),
+    Mistake(
         "run/checkpoint.py",
         "wait = self.every if self._save(what) else min(self.every, AGAIN)",
         "wait = self.every if self._save(what) else self.every",

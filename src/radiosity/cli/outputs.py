@@ -87,7 +87,8 @@ def _rescue(solution, checkpoint: Path | None) -> str:
         except RadiosityError:
             folder.rmdir()
             raise
-        return f"the solution was kept in {folder / 'solution.npz'}"
+        resume = "" if checkpoint is None else " (make room, then --resume it)"
+        return f"the solution was kept in {folder / 'solution.npz'}{resume}"
     if checkpoint is not None and checkpoint.exists():
         return f"there was no place for the solution; make room, and go on with --resume {checkpoint}"
     return "there was no place for the solution either; make room, and solve the scene again"

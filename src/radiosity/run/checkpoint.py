@@ -48,7 +48,10 @@ class Checkpoint:
     every: float = EVERY
     save: Callable[[Any, Path], None] = save_solution
     written: bool = False
-    _due: float = field(init=False)
+    _due: float = field(init=False)  # by when it should be written
+    _rest: float = field(init=False, default=0.0)  # until when it is not
+    _swept: float | None = field(init=False, default=None)  # when the last wavefront ended
+    _longest: float = field(init=False, default=0.0)  # seconds of a wavefront since it was written
     _sized: bool = field(init=False, default=False)
     _warned: bool = field(init=False, default=False)
 
@@ -90,9 +93,16 @@ class Checkpoint:
             raise OutputError(f"{self.path}: a checkpoint is an .npz file; give it that suffix")
         check_place(self.path)
 
-    @property
     def due(self) -> bool:
-        return time.monotonic() >= self._due
+        """Return whether to write it now; asked after each wavefront.
+
+        It is written before another wavefront, as long as the longest since the last writing, would end too late.
+        """
+        now = time.monotonic()
+        if self._swept is not None:
+            self._longest = max(self._longest, now - self._swept)
+        self._swept = now
+        return now >= self._rest and now + self._longest >= self._due
 
     def write(self, solution: Callable[[], Result]) -> None:
         """Write the file, unless that would take too much of the time so far; called between two wavefronts.
@@ -106,10 +116,12 @@ class Checkpoint:
             expected = TIMES * sum(array.nbytes for array in what.state.values()) / RATE
             if expected > self.every:
                 self._due += expected - self.every
+                self._rest = self._due
                 return
         wait = self.every if self._save(what) else min(self.every, AGAIN)
-        now = time.monotonic()
-        self._due = now + max(wait, TIMES * (now - begun))
+        self._swept, self._longest = time.monotonic(), 0.0
+        self._rest = self._swept + TIMES * (self._swept - begun)
+        self._due = max(self._swept + wait, self._rest)
 
     def end(self, solution: Result) -> None:
         """Write the file at the end of a run; that of a complete run only where the run has written one before."""
