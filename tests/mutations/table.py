@@ -1272,6 +1272,27 @@ MISTAKES = (
         "values of clusters are those of their sides by area, not as they shine",
     ),
     Mistake(
+        "algorithms/hierarchical/values.py",
+        "np.where(near[row], kernel, 0)",
+        "0",
+        ("test_clusters.py",),
+        "lines between near sides count as if there were no lines by the cosine law",
+    ),
+    Mistake(
+        "algorithms/hierarchical/bounds.py",
+        "most = FADES / np",
+        "most = 2 * FADES / np",
+        ("test_clusters.py",),
+        "light between two bright sides grows without end",
+    ),
+    Mistake(
+        "tracing/drawn_lines.py",
+        "z * facing / dr",
+        "z / dr",
+        ("test_clusters.py",),
+        "lines by the cosine law are as dense on sides that turn away",
+    ),
+    Mistake(
         "algorithms/hierarchical/answers.py",
         "error**2 / sides",
         "error**2",
