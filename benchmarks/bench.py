@@ -73,7 +73,7 @@ def coherent() -> None:
         some[:: max(scene.n_faces // faces, 1)] = 1.0
         patches = rd.subdivide(replace(scene, emission=some), cells=1)
         wanted = "> 1.3" if MANY * faces <= LINES else ""
-        row(f"coherent, {min(faces, scene.n_faces)} patches fire", patches, wanted, coherent=True)
+        row(f"coherent, {min(faces, scene.n_faces)} patches fire", patches, wanted, coherent="always")
 
 
 def whole_run(name: str, scene, **cut) -> None:

@@ -9,6 +9,8 @@ import radiosity as rd  # first: it points Dr.Jit to a libLLVM
 import drjit as dr
 
 from radiosity.algorithms.firing.counters import FiringCounters
+from radiosity.algorithms.firing.due import due
+from radiosity.algorithms.firing.fire import batches, fire
 from radiosity.device.backend import choose, entered
 from radiosity.problem.model import Problem
 from radiosity.tracing.geometry import Geometry
@@ -26,7 +28,9 @@ class Rates:
     ratio: float
 
 
-def measure(patches: rd.Patches, *, coherent: bool = False, lines: int = LINES, turns: int = TURNS, device: str = "cpu") -> Rates:
+def measure(
+    patches: rd.Patches, *, coherent: bool | str = False, lines: int = LINES, turns: int = TURNS, device: str = "cpu"
+) -> Rates:
     """Time whole sweeps (what is owed, lanes, numbers, lines, hits, tally) of black patches against the bare caster."""
     geometry = Geometry(patches, choose(device))
     counters = FiringCounters(geometry, Problem.of(patches), rd.Method(coherent=coherent), 0, 1)
@@ -35,7 +39,7 @@ def measure(patches: rd.Patches, *, coherent: bool = False, lines: int = LINES, 
     for turn in range(turns + 1):
         quanta += lines
         counters.set_quanta(quanta)
-        one = _time(lambda: counters.fire(*counters.due()))
+        one = _time(lambda: fire(counters, *due(counters)))
         two = _time(lambda: _bare(geometry, rays))
         if turn:  # the first compiles
             ours.append(lines / one / 1e6)
@@ -48,10 +52,10 @@ def _rays(counters: FiringCounters, lines: int):
     """The rays of the first sweep, in memory, in the order in which they are fired."""
     types = counters.types
     counters.set_quanta(lines)
-    wavefront, largest = counters.due()
+    wavefront, largest = due(counters)
     bits = counters.tracer.numbers.bits_for(largest)
     parts, total = [], 0
-    for launch in (launch for batch in counters.batches(wavefront) for launch in batch.launches(types)):
+    for launch in (launch for batch in batches(counters, wavefront) for launch in batch.launches(types)):
         number, index, record = launch.read(types)
         points = counters.tracer.points(number, index, dr.zeros(types.UInt32, launch.width), record, bits)
         ray = counters.tracer.leave(record)(points)
@@ -59,7 +63,7 @@ def _rays(counters: FiringCounters, lines: int):
         parts.append(ray)
         total += launch.width
     dr.sync_thread()
-    counters.fire(wavefront, largest)
+    fire(counters, wavefront, largest)
     return parts, total
 
 

@@ -13,23 +13,17 @@ from pathlib import Path
 from scale_scene import box
 
 import radiosity as rd
+from radiosity.lab.footprint import peak, resident
 
 FACES = 10_000
 ROW = "{:<6} {:>8} {:>10} {:>12} {:>12} {:>8}"
 
 
-def now(name: str) -> int:
-    """Return a size of this process, in bytes, by its name in /proc/self/status."""
-    line = next(line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith(name))
-    return 1024 * int(line.split()[1])
-
-
 def written(solution, path: Path, options: dict) -> None:
     """Write one file, and print its row."""
-    Path("/proc/self/clear_refs").write_text("5")  # the most that was there is what is there
-    before, begun = now("VmRSS"), time.process_time()
+    before, begun = resident(), time.process_time()
     solution.save(path) if path.suffix == ".npz" else solution.export(path, **options)
-    seconds, most, size = time.process_time() - begun, now("VmHWM") - before, path.stat().st_size
+    seconds, most, size = time.process_time() - begun, peak() - before, path.stat().st_size
     n = len(solution.patches)
     kind = "smooth" if options.get("smooth", True) else "flat"
     print(ROW.format(path.suffix, kind, n, f"{most / n:.0f}", f"{size / n:.0f}", f"{seconds:.1f}"), flush=True)

@@ -13,6 +13,8 @@ import radiosity as rd
 import drjit as dr
 
 from radiosity.algorithms.firing.counters import FiringCounters
+from radiosity.algorithms.firing.due import due
+from radiosity.algorithms.firing.fire import fire
 from radiosity.device.backend import choose
 from radiosity.problem.model import Problem
 from radiosity.tracing.geometry import Geometry
@@ -64,9 +66,9 @@ def measure(patches: rd.Patches, turns: int = TURNS, lines: int = LINES) -> tupl
     local, rates, each = [], {kind: [] for kind in KINDS}, {}
     for turn in range(turns + 1):
         counters.set_quanta((turn + 1) * lines)
-        wavefront, largest = counters.due()
+        wavefront, largest = due(counters)
         assert wavefront is not None
-        seconds, _ = _time(lambda wavefront=wavefront, largest=largest: counters.fire(wavefront, largest))
+        seconds, _ = _time(lambda wavefront=wavefront, largest=largest: fire(counters, wavefront, largest))
         found = {}
         for kind, source in kinds.items():
             took, pairs = _time(lambda source=source, turn=turn: source.draw(0, turn * lines, lines))

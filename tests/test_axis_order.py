@@ -13,6 +13,8 @@ from members import accepted, each, plainest, varied
 from states import MOST, ODD, STAGES, SUMS, begun, interrupted, same, scene_of, whole
 
 import radiosity as rd
+from radiosity.algorithms.firing.due import due
+from radiosity.algorithms.firing.fire import fire
 from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.algorithms.global_lines import mixing, multipath, pooling
 from radiosity.algorithms.matrix import algorithm as matrix
@@ -115,11 +117,11 @@ def test_an_order_with_a_memory_of_its_own_is_rejected(monkeypatch, short):
     drawn = np.random.default_rng(0)
 
     def run(self, counters, swept):
-        wavefront, largest = counters.due()
+        wavefront, largest = due(counters)
         while wavefront is not None and drawn.random() < 0.8:
-            counters.fire(wavefront, largest)
+            fire(counters, wavefront, largest)
             swept(wavefront.total)
-            wavefront, largest = counters.due()
+            wavefront, largest = due(counters)
 
     monkeypatch.setattr(breadth_first.BreadthFirst, "run", run)
     method = rd.Method(order="breadth-first")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.algorithms.firing import counters as firing
+from radiosity.algorithms.firing import fire as firing
 from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.device.backend import choose, upload
 from radiosity.problem.quanta import Source, phases, target_counts
@@ -96,11 +96,11 @@ def test_coherent_firing_traces_the_same_lines(monkeypatch):
     monkeypatch.setattr(firing, "boxes_for", boxes_for)
     patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
     plain = rd.solve(patches, "random-walk", quanta=2_000_000, replicates=1)
-    coherent = rd.solve(patches, quanta=2_000_000, replicates=1, coherent=True)
+    coherent = rd.solve(patches, quanta=2_000_000, replicates=1, coherent="always")
     difference = np.abs(plain.state["arrivals"].astype(np.int64) - coherent.state["arrivals"].astype(np.int64)).sum()
     assert difference < 1e-5 * plain.rays  # ties alone
     assert any(boxes is not None for boxes in taken)
-    assert coherent.provenance["choices"]["coherent"]
+    assert coherent.provenance["choices"]["coherent"] == "always"
 
 
 @pytest.mark.parametrize("colored", [False, True])

@@ -17,7 +17,7 @@ from radiosity.sensors.annual.elsewhere import SkyUnit, SunUnit
 from radiosity.tracing.geometry import Geometry
 
 pytest.importorskip("distributed", reason="distributed is not installed")
-from radiosity.cluster import years
+from radiosity.cluster import room, years
 
 LIGHT = {(month, 21, hour): (400 + 10 * hour, 100 + 7 * month) for month in (3, 6, 9, 12) for hour in (10, 11, 13, 15)}
 pytestmark = [
@@ -48,6 +48,16 @@ def test_a_year_is_that_of_one_machine(client, year, monkeypatch):
     assert found.hourly.tobytes() == alone.hourly.tobytes()
     assert all(found.values[name].tobytes() == alone.values[name].tobytes() for name in alone.values)
     assert (found.rays, found.status) == (alone.rays, alone.status)
+
+
+def test_a_worker_with_too_little_memory_for_a_year_is_told(client, year, monkeypatch):
+    """Each replicate is checked before its lines begin; a worker with enough goes on."""
+    monkeypatch.setattr(years, "FEWEST", 1)
+    patches, sensors = rd.subdivide(office(), cells=1), rd.Sensors.of(POINTS)
+    monkeypatch.setattr(room, "left", lambda there: 2**20)
+    message = r"worker inproc://\S+ has too little memory: the daylight of a year at \d+ sensors and on .* patches.* 1 MiB there"
+    with pytest.raises(rd.MethodError, match=message):
+        rd.annual(patches, year, sensors, rays=2_000, replicates=2, cluster=client)
 
 
 def test_parts_of_units_are_the_units(monkeypatch):

@@ -8,6 +8,7 @@ from image_samples import quad_scene, solution
 
 import radiosity as rd
 from radiosity.image import export, tables
+from radiosity.scene.csv_cells import guarded, unguarded
 
 
 def rows(path):
@@ -60,3 +61,17 @@ def test_names_are_quoted(tmp_path, name):
 def test_backs_are_named(tmp_path):
     export(solution(rd.subdivide(quad_scene(two_sided=True), cells=1)), tmp_path / "a.csv")
     assert [row["side"] for row in rows(tmp_path / "a.csv")] == ["front", "back"]
+
+
+def test_no_name_is_a_formula_in_a_spreadsheet(tmp_path):
+    """OWASP, CSV Injection; our readers get each name back."""
+    names = ("=1+1", "@sum", "+x", "-x", "\t=1", "'=1", "''-x", "'quoted'", "wall=1", "-2.5", "")
+    result = solution(rd.subdivide(quad_scene(names[:1]), cells=1))
+    export(result, tmp_path / "a.csv")
+    assert rows(tmp_path / "a.csv")[0]["surface"] == rows(tmp_path / "a.surfaces.csv")[0]["surface"] == "'=1+1"
+    cells = [guarded(name) for name in names]
+    assert [cell[:1] in "=+-@\t" for cell in cells if cell] == [False] * 9 + [True]  # a number is none
+    assert tuple(map(unguarded, cells)) == names
+    table = "x,y,z,name\n" + "".join(f'0,0,{i},"{cell}"\n' for i, cell in enumerate(cells[:4]))
+    (tmp_path / "points.csv").write_text(table)
+    assert rd.Sensors.from_csv(tmp_path / "points.csv").names == names[:4]

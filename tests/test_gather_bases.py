@@ -177,3 +177,28 @@ def test_bits_do_not_depend_on_stages_or_parts(quanta, monkeypatch):
 def test_a_basis_does_not_go_with_smoothing():
     with pytest.raises(rd.MethodError, match="without smoothing"):
         rd.Method(order="gather", basis="linear", reconstruction="smooth")
+
+
+class Misses:
+    """A scene of Mitsuba that leaves NaN where lines hit nothing; Embree leaves what was in memory there."""
+
+    def __init__(self, scene):
+        self.scene = scene
+
+    def ray_intersect_preliminary(self, ray, **options):
+        found = self.scene.ray_intersect_preliminary(ray, **options)
+        found.prim_uv = dr.select(found.is_valid(), found.prim_uv, np.nan)
+        return found
+
+
+def test_lines_that_hit_nothing_bring_nothing(monkeypatch):
+    """Report 14 of trimesh/embreex: places of hits that there are not. NaN times nothing made whole numbers of -2^63."""
+    scene = cube(0.5, 1.0)
+    patches = rd.subdivide(scene.take(np.arange(6) != 5), cells=1)
+    options = {"basis": "linear", "rays": 20_000, "replicates": 2}
+    plain = rd.solve(patches, "gather", **options)
+    built = Geometry(patches, choose("cpu")).bvh
+    monkeypatch.setattr(Geometry, "bvh", replace(built, scene=Misses(built.scene)))
+    other = rd.solve(patches, "gather", **options)
+    assert np.array_equal(plain.irradiance, other.irradiance)
+    assert np.array_equal(plain.irradiance_coefficients, other.irradiance_coefficients)

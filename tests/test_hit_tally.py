@@ -69,7 +69,7 @@ def test_copies_end_in_equal_integers(name, monkeypatch):
             return of(*arguments, **more)
 
         with monkeypatch.context() as patched:
-            patched.setattr("radiosity.algorithms.firing.counters.hit_tally", remembered)
+            patched.setattr("radiosity.algorithms.firing.fire.hit_tally", remembered)
             took.append((kinds, rd.solve(patches, "random-walk", quanta=40_000, replicates=2).state))
     (all_copied, one), (none, two), (full, three), (some, four) = took
     assert set(all_copied) == {hit_tally.Copied}

@@ -9,6 +9,7 @@ import pytest
 import radiosity as rd
 from radiosity.cli import main
 from radiosity.device import memory
+from radiosity.lab import footprint
 from radiosity.lab.footprint import Footprint, footprints, scene_of
 from radiosity.problem.model import Problem
 from radiosity.run import memory_estimate
@@ -120,6 +121,18 @@ def test_a_run_that_was_told_keeps_to_it(capsys, method):
         rd.solve(rd.load_scene("room"), method, memory="lots", **({"rays": 10**6} if method == "random-walk" else {}))
     assert main(["solve", "room", "--method", method, "--memory", "1M"]) == 2
     assert "1 MiB are allowed (memory)" in capsys.readouterr().err
+
+
+@needs_proc
+def test_what_an_earlier_run_freed_does_not_hide_what_the_next_one_takes():
+    def take():
+        return [np.ones(8_000) for _ in range(2_000)]  # 128 MB in small pieces, which the C library keeps when they are freed
+
+    kept = [take(), np.ones(8_000)][1]  # what is at the end of the heap holds it
+    before = footprint.resident()
+    taken = take()
+    assert footprint.peak() - before > 0.9 * 8 * 8_000 * len(taken)
+    assert len(kept) == 8_000
 
 
 @pytest.mark.parametrize("method", [rd.Method(), rd.Method(equation="continuous"), rd.Method(order="regular")], ids=str)

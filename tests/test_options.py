@@ -119,7 +119,8 @@ def test_the_command_has_few_parameters():
 def entry(option: Option, default) -> str:
     """The item of a list of options in docs/methods.md."""
     taken = {"switch": "True or False", "flag": "True or False", "whole": f"1 to {option.most}", "share": "a number below 1"}
-    values = ", ".join(f"`{value}`" for value in option.values) or taken[option.kind]
+    first = [taken["flag"]] if option.kind == "flag" else []
+    values = ", ".join(first + [f"`{value}`" for value in option.values]) or taken[option.kind]
     of = f" (of {', '.join(option.schemes)})" if option.schemes else ""
     text = f"`{option.name}`{of}: {values}; default `{default}`. {option.about} {option.details}".strip()
     return textwrap.fill(text, 118, initial_indent="- ", subsequent_indent="  ", break_on_hyphens=False)

@@ -13,7 +13,7 @@ from radiosity.report_page.drawing import new_figure
 from radiosity.report_page.levels import plans
 from radiosity.report_page.markup import element, text
 from radiosity.report_page.page import _sensors, _summary
-from radiosity.report_page.plans import highest, isolines
+from radiosity.report_page.plans import highest, isolines, plan_views
 from radiosity.report_page.quality import certainty, spot_error, to_know
 from radiosity.report_page.sensor_sets import of_table
 from radiosity.report_page.sensors import sensor_tables
@@ -179,6 +179,27 @@ def test_plans_of_scenes_with_y_up_are_seen_from_above():
     assert plan.extent == pytest.approx((0, 1, -2, 0))
     assert np.nanmean(plan.values[-5:]) > 1.9
     assert np.nanmean(plan.values[:5]) < 1.1
+    assert not plan.unknown.any()
+
+
+def test_plans_are_grey_where_no_line_came():
+    """A value of 0 that no line brought is unknown; the mean counts it, as that of the surface does."""
+    corners = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0]]
+    scene = rd.Scene.from_arrays(corners, [[0, 1, 2, 3]], 0.5, 1.0, names=["floor"])
+    solution = rd.solve(rd.subdivide(scene, cells=6), rays=1_000)
+    lit = solution.patches.centroid[:, 0] < 1
+    few = replace(solution, irradiance=3.0 * lit[:, None], arrivals=100 * lit)
+    (plan,) = plans(few, ())
+    page = str(plan_views(few, ()))
+    assert plan.unknown.mean() == pytest.approx(1 / 3, abs=0.02)  # smoothed values reach a patch beyond the lit ones
+    assert not plan.unknown[:, : plan.values.shape[1] // 2].any()
+    assert plan.mean == pytest.approx(1.5, rel=0.05)
+    assert f"{percent(plan.unknown.mean())} of it, grey, is unknown: no line came there" in page
+    (known,) = plans(replace(few, arrivals=np.full(36, 100)), ())
+    assert not known.unknown.any()
+    assert np.nanmin(known.values) == 0
+    nothing = replace(few, irradiance=np.zeros((36, 1)), arrivals=np.zeros(36, int))
+    assert "no line came there, so its irradiance is unknown" in str(plan_views(nothing, ("floor",)))
 
 
 TABLE = (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from radiosity.pieces import PIECE
-from radiosity.scene import edges_together
+from radiosity.scene import edges_together, twins
 from radiosity.scene.matching import matched
 from radiosity.scene.measures import measured
 from radiosity.scene.precision import FEW, TIE, weighted_median
@@ -159,3 +159,25 @@ def test_triangles_without_a_twin_are_left_out(random):
     is_half = np.tile(np.arange(n) < n // 2, 2)
     assert np.isin(np.flatnonzero(is_half), kept).all()
     assert np.isin(np.flatnonzero(~is_half), kept).mean() < 0.15
+
+
+@pytest.mark.parametrize(("shape", "taken"), [("flat", False), ("half flat", False), ("slivers", True), ("round", True)])
+def test_where_few_alike_triangles_have_a_twin_only_those_are_looked_at(shape, taken, monkeypatch):
+    """Slivers are alike, but halves of nothing; their edges alone are looked at. A grid's halves are most of all its edges."""
+    monkeypatch.setattr(twins, "SIZE", 128)
+    monkeypatch.setattr(twins, "SAMPLE", 8)
+    rows, columns = 32, 64
+    u, v = (x.ravel() for x in np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij"))
+    slivers = (u < 0.5) if shape == "slivers" else np.zeros(len(u), bool)  # half of the rows are far longer than wide
+    wide = np.where(slivers, 1e-5, 1.0)
+    bent = 0.5 * {"flat": u < 0, "half flat": u > 0.5}.get(shape, u >= 0)
+    points = np.stack([u + bent * u**2 * v, wide * (v + bent * v**2 * (1 + u)), bent * np.sin(2 * u + wide * v) * v], axis=1)
+    at = np.arange(rows * columns).reshape(rows, columns)
+    a, b, c, d = at[:-1, :-1], at[:-1, 1:], at[1:, :-1], at[1:, 1:]
+    faces = np.stack([np.stack([a, c, b], axis=-1), np.stack([b, c, d], axis=-1)], axis=2).reshape(-1, 3)
+    axes = [np.ascontiguousarray(axis) for axis in points.T]
+    kept = perhaps_twins(Triangles(faces, None, np.zeros(len(faces), np.int32), axes, 2e-6))
+    assert (kept is not None) == taken
+    if shape == "slivers":
+        assert kept is not None
+        assert twins.MOSTLY < len(kept) / len(faces) < twins.ALIKE

@@ -7,6 +7,10 @@ import numpy as np
 import pytest
 
 import radiosity as rd
+from radiosity.algorithms.walks.particles import SEGMENTS, PathSegments
+from radiosity.device.backend import choose
+from radiosity.tracing.geometry import Geometry
+from radiosity.tracing.line_tracer import LineTracer
 
 QUANTA = 30_000
 KINDS = {
@@ -71,3 +75,10 @@ def test_a_continuous_walk_leaves_from_where_it_landed():
     mean = np.bincount(parents, exact * fine.area) / patches.area
     assert np.average(np.abs(one.irradiance[:, 0] / mean - 1), weights=patches.area) < 0.02
     assert np.average(np.abs(two.irradiance[:, 0] / mean - 1), weights=patches.area) > 0.03
+
+
+def test_later_segments_are_drawn_anew_in_each_replicate_and_block(colours):
+    geometry = Geometry(colours, choose("cpu"))
+    segments = PathSegments(LineTracer.of(geometry, "halton", "by-patch", 1, 3), KINDS["continuous"])
+    words = np.concatenate([np.array(of_block.randomisations).reshape(-1, 8) for of_block in (segments, segments.in_block(1))])
+    assert len(np.unique(words, axis=0)) == 2 * 3 * SEGMENTS

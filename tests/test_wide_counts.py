@@ -58,7 +58,7 @@ def near_the_border(problem, run):
     """A state of the firing engine: the lamp comes to a border after 300 lines, and three rows have been hit very often."""
     lamp, n = int(problem.source.share.argmax()), len(problem.patches)
     quanta = round((3 * 2**32 + 500) / problem.source.share[lamp])
-    phase = frozen(run.counters.phase).reshape(2, n)
+    phase = frozen(run.counters.targets.phase).reshape(2, n)
     hits = np.zeros((2, n), np.uint64)
     hits[:, 1], hits[:, 2], hits[1, 3] = 2**32 - 40, 2**33 - 1, 2**31 - 5
     fired = target_counts(problem.source, quanta, hits, phase)
@@ -107,7 +107,7 @@ def test_lines_beyond_the_border_are_those_of_the_next_block(geometry, problem, 
     black = replace(problem, source=replace(problem.source, rho=np.zeros_like(problem.source.rho)))
     run, lamp = algorithm(geometry, black, {"numbers": numbers}, replicates=1), int(problem.source.share.argmax())
     n, quanta = len(problem.patches), round((2**32 + 40) / problem.source.share[lamp])
-    fired = target_counts(black.source, quanta, np.zeros((1, n), np.uint64), frozen(run.counters.phase).reshape(1, n))
+    fired = target_counts(black.source, quanta, np.zeros((1, n), np.uint64), frozen(run.counters.targets.phase).reshape(1, n))
     more = int(fired[0, lamp]) - (2**32 - 60)
     fired[0, lamp] -= np.uint64(more)
     run.restore(FiringState(sizes=run.sizes, quanta=quanta, arrivals=0 * fired, fired=fired, missed=np.zeros((2, 1), np.uint64)))
@@ -161,7 +161,8 @@ def test_upper_words_follow_counters_that_wrap_around(bits):
 
 def test_wide_counters_give_the_integers_of_narrow_ones(monkeypatch):
     """Also with bands, whose wavefronts are part of the result, and where counters are looked at every 1000 lines."""
-    from radiosity.algorithms.firing import counters
+    from radiosity.algorithms.firing import due, fire
+    from radiosity.algorithms.firing.counters import FiringCounters
 
     def widened(self):
         self.wide = True
@@ -171,10 +172,9 @@ def test_wide_counters_give_the_integers_of_narrow_ones(monkeypatch):
         patches = rd.subdivide(rd.load_scene(scene), cells=2)
         narrow = rd.solve(patches, rd.Method(order=order), quanta=20_000, replicates=2)
         with monkeypatch.context() as patched:
-            patched.setattr(counters, "PERIOD", 50_000)
-            patched.setattr(
-                counters.FiringCounters, "_widen", lambda self: (self.tracer.blocks.prepare(1), vars(self).update(wide=True))
-            )
+            for module in (due, fire):
+                patched.setattr(module, "PERIOD", 50_000)
+            patched.setattr(FiringCounters, "_widen", widened)
             wide = rd.solve(patches, rd.Method(order=order), quanta=20_000, replicates=2)
         assert all(np.array_equal(narrow.state[name], wide.state[name]) for name in narrow.state)
         assert np.array_equal(narrow.irradiance, wide.irradiance)
@@ -182,15 +182,20 @@ def test_wide_counters_give_the_integers_of_narrow_ones(monkeypatch):
 
 def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
     """A wavefront of very many lines is fired in parts, so that runs can be stopped in between."""
-    from radiosity.algorithms.firing import counters
+    from radiosity.algorithms.firing import due
     from radiosity.algorithms.firing.orders import breadth_first
 
     patches, told = rd.subdivide(rd.load_scene("room"), cells=2), []
     monkeypatch.setitem(breadth_first.TAILS, "cpu", 0)
     whole = rd.solve(patches, rd.Method(), quanta=20_000, replicates=2)
-    monkeypatch.setitem(counters.MOST, "cpu", 3_000)
-    fire = counters.FiringCounters.fire
-    monkeypatch.setattr(counters.FiringCounters, "fire", lambda self, *of: (told.append(of[0].total), fire(self, *of))[1])
+    monkeypatch.setitem(due.MOST, "cpu", 3_000)
+    fire = breadth_first.fire
+
+    def remembered(counters, wavefront, largest):
+        told.append(wavefront.total)
+        fire(counters, wavefront, largest)
+
+    monkeypatch.setattr(breadth_first, "fire", remembered)
     parts_of_it = rd.solve(patches, rd.Method(), quanta=20_000, replicates=2)
     assert all(np.array_equal(whole.state[name], parts_of_it.state[name]) for name in whole.state)
     assert max(told) < 3_400

@@ -146,9 +146,9 @@ def convex() -> list[Configuration]:
 
 
 def _area(facets: Facets) -> float:
-    return float(
-        sum(np.linalg.norm(sum(np.cross(a, b) for a, b in zip(f, np.roll(f, -1, axis=0), strict=True))) / 2 for f in facets)
-    )
+    """All have the same number of corners."""
+    corners = np.array(facets)
+    return float(np.linalg.norm(np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1), axis=1).sum() / 2)
 
 
 def long() -> list[Configuration]:

@@ -18,7 +18,7 @@ from ..algorithms.in_parts import AbstractCrew, InParts, Share
 from ..algorithms.splitting import split
 from ..device.turn import aside
 from ..errors import DeviceError, RadiosityWarning
-from .job import facts
+from .job import INSTRUCTIONS, facts
 from .worker import Missing, Outcome, Unit, advance, owned
 
 SECONDS = 4.0  # of a unit at least: what a killed worker can lose
@@ -238,6 +238,9 @@ class DaskCrew(AbstractCrew):
             DeviceError: it has other versions of packages, or another kind of processor.
         """
         here = facts()
+        # by coherent=True a table of processors says what is fired; else any of them will do
+        if getattr(getattr(self.job, "method", None), "coherent", False) is not True:
+            here[INSTRUCTIONS] = there.get(INSTRUCTIONS, "")
         differs = [f"{name} {value} there, {here[name]} here" for name, value in there.items() if value != here[name]]
         if differs:
             raise DeviceError(f"worker {address} would give other bits: {'; '.join(differs)}. Install the same on all machines")

@@ -8,11 +8,14 @@ from typing import Any
 
 from ..algorithms.table import make
 from ..device.backend import choose
+from ..device.instructions import instructions
 from ..method import Baseline, Method
 from ..problem.model import Problem
 from ..run.record import versions
 from ..sampling.streams import Seed
 from ..tracing.geometry import Geometry
+
+INSTRUCTIONS = "instructions"  # a fact of processors, see `facts`
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,5 +63,5 @@ class Job(AbstractJob):
 
 
 def facts() -> dict[str, str]:
-    """Return what must be equal on all machines, so that bits are."""
-    return {**versions(), "machine": platform.machine()}
+    """Return what must be equal on all machines, so that bits are; `INSTRUCTIONS` only where packets of lines hang on them."""
+    return {**versions(), "machine": platform.machine(), INSTRUCTIONS: instructions()}

@@ -15,23 +15,32 @@ def check(job: Job, replicates: int) -> None:
     Raises:
         MethodError: the estimate is larger than what is left here.
     """
+    if isinstance(job.method, Baseline):
+        return
+    problem = job.problem
+    lines = None if job.lines is None else job.lines * replicates
+    wanted = memory_needed(job.method, problem.patches, problem.groups.n_groups, replicates, lines)
+    what = f"{job.method} on {len(problem.patches):,} patches in {replicates} replicates"
+    refuse(wanted, what, "take larger patches, more workers")
+
+
+def refuse(wanted: float, what: str, way_out: str) -> None:
+    """Refuse what will not fit in the memory of the worker whose task this is; elsewhere nothing is checked.
+
+    Raises:
+        MethodError: more bytes are wanted than are left here.
+    """
     from distributed import get_worker
 
     try:
         worker = get_worker()
     except ValueError:  # this is the driver, which was checked when the run began
         return
-    if isinstance(job.method, Baseline):
-        return
-    problem = job.problem
-    lines = None if job.lines is None else job.lines * replicates
-    wanted = memory_needed(job.method, problem.patches, problem.groups.n_groups, replicates, lines)
     there = left(worker)
     if wanted > there:
-        what = f"{job.method} on {len(problem.patches):,} patches in {replicates} replicates"
         raise MethodError(
             f"worker {worker.address} has too little memory: {what} would take about {memory.size(wanted)}, and a run may take "
-            f"{memory.size(there)} there; take larger patches, more workers, or a machine with more memory (there, "
+            f"{memory.size(there)} there; {way_out}, or a machine with more memory (there, "
             f"{memory.VARIABLE} sets the limit, and --memory-limit that of Dask)"
         )
 

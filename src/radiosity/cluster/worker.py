@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..algorithms.base import Interrupted
-from ..algorithms.firing.elsewhere import Hits, Lines, fire_here
+from ..algorithms.firing.elsewhere import Hits, Lines
+from ..algorithms.firing.for_others import fire_here
 from ..algorithms.firing.own_rows import OwnRows, fire_own
 from ..device.backend import frozen, threads
 from ..device.turn import turn
@@ -140,7 +141,7 @@ def fire_own_rows(key: str, unit: tuple[OwnRows, str, list[str]]) -> Brought:
     (address, count), seconds, (task, work, addresses) = _here(), 0.0, unit
     with turn(), threads(count):
         counters = _counters(job, task.replicate)
-        phase = frozen(counters.phase).copy()
+        phase = frozen(counters.targets.phase).copy()
 
     def fire_some(lines: Lines) -> Hits:
         nonlocal seconds

@@ -7,13 +7,17 @@ from typing import Any
 
 import numpy as np
 
+from ..patches import Patches
 from ..problem.model import Problem
-from ..sensors.annual.coefficients import Replicate, Setup, counts_of
+from ..sensors.annual.coefficients import OF_PATCHES, Replicate, Setup, counts_of
 from ..sensors.annual.elsewhere import AbstractYearLines, Shares, SkyUnit, SunUnit
 from ..sensors.annual.gathering import lines_of
+from ..sensors.annual.memory import YearSizes
+from ..sensors.receivers import planes_of
 from .barrier import Barrier
 from .crew import DaskCrew
 from .job import AbstractJob
+from .room import refuse
 from .scenes import scene_on
 from .worker import Brought, bring, job_of, keep, taken
 
@@ -34,12 +38,31 @@ class YearJob(AbstractJob):
     setup: Setup
 
     def traced(self, unit: SkyUnit | SunUnit) -> Any:
-        """Return what a unit brings; replicates stay for later units."""
+        """Return what a unit brings; replicates stay for later units.
+
+        Raises:
+            MethodError: the worker has too little memory for another replicate.
+        """
         scene, place = job_of(self.scene), (self.key, unit.replicate, 0)
-        run = taken(place) or self.setup.replicate(scene.geometry, scene.problem, unit.replicate)
+        run = taken(place)
+        if run is None:
+            self._check(scene.problem.patches, unit)
+            run = self.setup.replicate(scene.geometry, scene.problem, unit.replicate)
         found = unit.traced(run)
         keep(place, "", run)
         return found
+
+
+    def _check(self, patches: Patches, unit: SkyUnit | SunUnit) -> None:
+        sensors, cosine = self.setup.sensors, None if isinstance(unit, SunUnit) else unit.ranges[0][1]
+        each = None if cosine is None else cosine / OF_PATCHES if unit.patches else cosine
+        planes, faces = planes_of(sensors), patches.scene.n_faces
+        sizes = YearSizes(len(sensors), planes, len(patches), faces, len(self.setup.sky), 1, each)
+        refuse(
+            sizes.on_worker(unit.lines),
+            f"the daylight of a year at {len(sensors):,} sensors and on {len(patches):,} patches, in one replicate,",
+            "take fewer sensors, larger patches, 145 sky patches",
+        )
 
 
 def trace_unit(key: str, unit: tuple[int, SkyUnit | SunUnit]) -> Brought:

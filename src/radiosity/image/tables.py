@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..scene.csv_cells import guarded
 from ..solution.columns import column_pieces
 from ..solution.csv_rows import open_text, write_rows
 from ..solution.replacing import replacing
@@ -61,5 +62,5 @@ def _titled(key: str, units: dict[str, str]) -> str:
 def _cells(values) -> str:
     """Return values as the text of a row, quoted where CSV needs it."""
     text = io.StringIO()
-    csv.writer(text, lineterminator="\r\n").writerow(values)  # so that either of them within a name is quoted
+    csv.writer(text, lineterminator="\r\n").writerow(map(guarded, values))  # so that either of them within a name is quoted
     return text.getvalue()[:-2]

@@ -1,5 +1,6 @@
 """Footprints of runs, each method in a process of its own: seconds, lines, and the memory of the process beyond the scene."""
 
+import ctypes
 import gc
 import json
 import subprocess
@@ -82,24 +83,30 @@ def _measure(task: dict) -> None:
     _ = patches.corners, patches.emission, patches.reflectance
     facts, arrays = [], {}
     for at, (label, options) in enumerate(task["runs"]):
-        before = _resident()
+        before = resident()
         solution = solve(patches, task["method"], **options)
-        facts.append((label, solution.seconds, solution.rays, max(_peak() - before, 0.0)))
+        facts.append((label, solution.seconds, solution.rays, max(peak() - before, 0.0)))
         arrays[f"irradiance_{at}"] = solution.irradiance
     np.savez(task["path"], facts=np.array(json.dumps(facts)), **arrays)
 
 
-def _resident() -> float:
-    """Return the bytes that the process has now, less what Dr.Jit keeps for reuse; its peak is counted from here on."""
+def resident() -> float:
+    """Return the bytes that the process has now; its peak is counted from here on.
+
+    What Dr.Jit and the C library keep for reuse is given back first: the next run would take it unseen.
+    """
     gc.collect()
     give_back_memory()
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # of glibc
+    if trim is not None:
+        trim(0)
     with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
         file.write("5")
     return _status("VmRSS")
 
 
-def _peak() -> float:
-    """Return the most bytes that the process had since `_resident` was called."""
+def peak() -> float:
+    """Return the most bytes that the process had since `resident` was called."""
     return _status("VmHWM")
 
 

@@ -21,7 +21,7 @@ img { max-width: 100%; } code { background: #f3f3f3; padding: 0 3px; } .scroll {
 @media print { h2 { break-before: page; } }
 """
 VERDICTS = {True: ("yes", "agrees"), False: ("no", "differs"), None: ("open", "reported")}
-OURS = ("Not in the paper", "Asked for")  # how claims begin that are not the paper's
+OURS = "Not in the paper"  # how claims begin that are not the paper's
 
 
 def versions() -> str:
@@ -95,7 +95,7 @@ def verdicts(claims: list[Claim]) -> str:
     for claim in claims:
         kind, word = VERDICTS[claim.agrees]
         whose, _, says = claim.says.partition(": ")
-        whose, says = (whose, says) if whose in OURS else ("The paper", claim.says)
+        whose, says = (whose, says) if whose == OURS else ("The paper", claim.says)
         rows.append(
             f"<p><b>{whose}:</b> {html.escape(says)} <b class='{kind}'>This run: {word}.</b><br>"
             f"{html.escape(claim.found)}</p>"

@@ -41,7 +41,7 @@ class Method:
     reconstruction: str = "patches"
     basis: str = "constant"
     refine_lines: float = 0.0
-    coherent: bool = False
+    coherent: bool | str = False
 
     def __post_init__(self):
         for name, option in METHOD.items():
@@ -86,5 +86,6 @@ class Method:
         extras += [self.reconstruction] if self.reconstruction != "patches" else []
         extras += [self.basis] if self.basis != "constant" else []
         extras += [f"refine-lines={self.refine_lines:g}"] if self.refine_lines else []
-        extras += [name.replace("_", "-") for name in ("control_variate", "warm_up", "coherent") if getattr(self, name)]
+        extras += [name.replace("_", "-") for name in ("control_variate", "warm_up") if getattr(self, name)]
+        extras += ["coherent" if self.coherent is True else f"coherent={self.coherent}"] if self.coherent else []
         return "/".join([self.equation, self.lines, self.order, self.points, *extras])

@@ -22,7 +22,7 @@ class Option:
         about: what it means, as ``radiosity solve --help`` says it.
         kind: what it takes. A "choice" takes a named value, a "switch" True or False, a "flag" too, but no option of the
             command line turns it off; "whole" is a whole number, a "share" a number between 0 and 1.
-        values: the values of a choice, each with its meaning.
+        values: the values of a choice, each with its meaning; of a flag, what it takes in Python besides True and False.
         most: the largest whole number; the smallest is 1.
         zero: whether the share may be 0.
         share_of: what it is a share of, where it may be 0.
@@ -54,8 +54,9 @@ class Option:
             return
         if self.kind == "choice" and value not in tuple(self.values):
             raise MethodError(f"{self.name} '{value}' does not exist; known are {', '.join(self.values)}")
-        if self.kind in ("switch", "flag") and not isinstance(value, bool):
-            raise MethodError(f"{self.name} is {value!r}; it must be True or False")
+        if self.kind in ("switch", "flag") and not isinstance(value, bool) and value not in tuple(self.values):
+            others = "".join(f", or '{other}'" for other in self.values)
+            raise MethodError(f"{self.name} is {value!r}; it must be True or False{others}")
         if self.kind == "whole" and not (_is(int, value) and 1 <= value <= self.most):
             raise MethodError(f"{self.name} is {value!r}; it must be a whole number from 1 to {self.most}")
         if self.kind == "share" and not (_is(int | float, value) and (0 < value < 1 or (self.zero and value == 0))):

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import MethodError
 from ..image.lookup import Lookup
+from ..image.quantity import choose
 from ..patches.polynomials import Polynomials
 from ..scene import Back, Scene
 from ..scene.named import surfaces_called
@@ -27,8 +28,9 @@ class Plan:
     Attributes:
         name: of the surface.
         height: m.
-        values: (rows, columns), one number for all bands; NaN beside the surface, and under what stands on it. Row 0 is the
-            lowest of the second axis.
+        values: (rows, columns), one number for all bands; NaN beside the surface, under what stands on it, and where it is
+            unknown. Row 0 is the lowest of the second axis.
+        unknown: (rows, columns) bool, where the value would be the 0 of a patch that no line met.
         extent: left, right, bottom and top, m.
         axes: names of the axes to the right and up.
         area: m², of the surface at this height.
@@ -37,9 +39,20 @@ class Plan:
     name: str
     height: float
     values: np.ndarray
+    unknown: np.ndarray
     extent: tuple[float, float, float, float]
     axes: tuple[str, str]
     area: float
+
+    @property
+    def seen(self) -> np.ndarray:
+        """Return which places are of the surface, (rows, columns) bool."""
+        return np.isfinite(self.values) | self.unknown
+
+    @property
+    def mean(self) -> float:
+        """Return the mean over the surface, in which what no line met counts as 0: without it the mean would be too large."""
+        return float(np.nan_to_num(self.values).mean(where=self.seen))
 
 
 def plans(solution: Solution, wanted: tuple[str, ...]) -> list[Plan]:
@@ -92,8 +105,11 @@ def _plan(solution: Solution, surface: int, level: float, own: np.ndarray, area:
     seen, patch = Lookup(patches, values, light=light)(hits)
     on = (patch >= 0) & (patches.surface[patch] == surface) & (np.asarray(hits.distance) < 3 * NEAR * scene.reach + 2e-3)
     on &= ~((seen[:, 0] <= 0) & _covered(scene, points, up))
-    shown = np.where(on, np.maximum(seen[:, 0], 0), np.nan).reshape(rows, columns)
-    return Plan(scene.names[surface], level, shown, (left, end, bottom, top), ("x", "y" if kind == "z" else "-z"), area)
+    unmet = choose(solution, "irradiance", single=True).unmet
+    unknown = np.zeros(len(on), bool) if unmet is None else on & (seen[:, 0] <= 0) & unmet[patch]
+    shown = np.where(on & ~unknown, np.maximum(seen[:, 0], 0), np.nan).reshape(rows, columns)
+    axes, extent = ("x", "y" if kind == "z" else "-z"), (left, end, bottom, top)
+    return Plan(scene.names[surface], level, shown, unknown.reshape(rows, columns), extent, axes, area)
 
 
 def _covered(scene: Scene, points: np.ndarray, up: np.ndarray) -> np.ndarray:

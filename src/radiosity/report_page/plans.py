@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from ..image.false_color import UNKNOWN
 from ..sensors.isolines import draw
 from ..solution.model import Solution
 from .drawing import drawn, new_figure
 from .levels import Plan, plans
 from .markup import Markup, element, figure, section
-from .words import Words, number
+from .words import Words, number, percent
 
 WIDTH, HIGHEST = 7.0, 8.5  # inches
 DARK = 1e-6  # share of the highest value below which a value is shown as 0
@@ -21,7 +22,7 @@ def plan_views(solution: Solution, wanted: tuple[str, ...]) -> Markup | None:
         MethodError: a surface is not there, or not level.
     """
     words = Words.of(solution.patches.scene)
-    found = [plan for plan in plans(solution, wanted) if np.isfinite(plan.values).any()]
+    found = [plan for plan in plans(solution, wanted) if plan.seen.any()]
     if not found:
         return None
     parts = [_drawn(plan, words) for plan in found]
@@ -30,18 +31,27 @@ def plan_views(solution: Solution, wanted: tuple[str, ...]) -> Markup | None:
 
 
 def _drawn(plan: Plan, words: Words) -> Markup:
+    place = f"{plan.name}, at a height of {plan.height:g} m, {number(plan.area)} m²"
+    if not np.isfinite(plan.values).any():
+        return element("p", f"{place}: no line came there, so its {words.falling} is unknown.")
     left, right, bottom, top = plan.extent
     tall = min(max((top - bottom) / (right - left) * (WIDTH - 1.4), 1.6) + 0.7, HIGHEST)
     drawing = new_figure(WIDTH, tall)
     axes = drawing.subplots()
     isolines(axes, drawing, plan.values, plan.extent, f"{words.falling} [{words.falling_unit}]")
+    if plan.unknown.any():
+        grey = np.full((*plan.unknown.shape, 4), [UNKNOWN, UNKNOWN, UNKNOWN, 1.0])
+        grey[~plan.unknown, 3] = 0
+        axes.imshow(grey, origin="lower", extent=plan.extent, interpolation="nearest", aspect="equal")
     axes.set_xlabel(f"{plan.axes[0]} [m]")
     axes.set_ylabel(f"{plan.axes[1]} [m]")
-    low, mean, high = (float(f(plan.values)) for f in (np.nanmin, np.nanmean, np.nanmax))
+    low, high = float(np.nanmin(plan.values)), float(np.nanmax(plan.values))
     low = low if low > DARK * high else 0.0
-    told = f"mean {number(mean)} {words.falling_unit}, from {number(low)} to {number(high)}"
+    told = f"mean {number(plan.mean)} {words.falling_unit}, from {number(low)} to {number(high)}"
+    if plan.unknown.any():
+        told += f"; {percent(plan.unknown.mean(where=plan.seen))} of it, grey, is unknown: no line came there"
     alt = f"Plan of {plan.name} in false colours with isolines of {words.falling}: {told}"
-    return figure(drawn(drawing, alt), f"{plan.name}, at a height of {plan.height:g} m, {number(plan.area)} m²: {told}")
+    return figure(drawn(drawing, alt), f"{place}: {told}")
 
 
 def isolines(axes, drawing, values: np.ndarray, extent, label: str) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import SceneError
+from ..scene.csv_cells import unguarded
 from ..sensors.result import Measurement
 from ..sensors.target import half_width
 
@@ -65,7 +66,7 @@ def of_table(path: Path, *, photometric: bool) -> list[SensorSet]:
         values = np.array([float(row[wanted]) for row in rows])
         halves = np.array([float(row.get(wide) or "nan") for row in rows])
         inside = np.array([(row.get("inside") or "0") == "1" for row in rows])
-        names = np.array([row["set"] for row in rows], object)
+        names = np.array([unguarded(row["set"]) for row in rows], object)
     except (KeyError, TypeError, ValueError) as error:
         raise SceneError(f"{path}: a row is not understood ({error}); give a .csv that `radiosity measure` wrote") from None
     if not (np.isfinite(points).all() and np.isfinite(values).all()):

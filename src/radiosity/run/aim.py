@@ -1,6 +1,6 @@
 """What a run is for: a surface, or what a camera or sensors see. Lines are shared out by what they add to it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from typing import Any
 
@@ -62,6 +62,13 @@ class Aim:
         """Find the importance of patches for it, by a pilot."""
         area, albedo = problem.patches.area, problem.groups.scatter.albedo.max(axis=1)
         return Importance.of(geometry, problem, self.share / area * (albedo if self.radiosity else 1.0), method, seed)
+
+
+def shared_before(problem: Problem, resume: Any) -> tuple[Problem, int]:
+    """Return a problem with the importance of the result that a run goes on from, and the lines of the pilot then."""
+    values = resume.state.get("importance")
+    lines = int(resume.provenance.get("importance_lines", 0))
+    return replace(problem, importance=None if values is None else np.asarray(values)), lines
 
 
 def method_of(chosen: Method | Baseline | Auto) -> Method:

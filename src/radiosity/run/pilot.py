@@ -29,6 +29,6 @@ def few_quanta(rays: float, replicates: int, algorithm: AbstractAlgorithm, told:
             f"{rays:g} lines give each of {replicates} replicates {found} quanta for {patches} patches; with fewer than "
             f"{enough:.0f} their number is met only roughly, and errors are large",
             RadiosityWarning,
-            stacklevel=6,
+            stacklevel=7,
         )
     return found

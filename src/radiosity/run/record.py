@@ -13,6 +13,7 @@ from ..patches import Patches
 from ..solution.model import Solution
 from ..solution.npz import SOLUTION
 from ..solution.without_results import without_results
+from ..tracing import coherent_costs
 from ..tracing.geometry import TRACING
 from .part import Part
 from .result import R
@@ -79,6 +80,7 @@ class AbstractRecord(ABC, Generic[R]):
             "patches": len(self.patches),
             "cut": self.patches.hash,
             "tracing": TRACING,
+            **coherent_costs.facts(self.method, self.device),
             "budget": self.budget,
             **({} if self.choice is None else {"auto": self.choice}),
             **({} if self.importance is None else dict(zip(("importance", "importance_lines"), self.importance, strict=True))),

@@ -3,11 +3,8 @@
 import math
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Generic
-
-import numpy as np
 
 from ..algorithms.base import AbstractAlgorithm, AbstractMeanTally, Interrupted
 from ..algorithms.in_parts import InParts, InTurn, in_parts
@@ -15,7 +12,7 @@ from ..algorithms.merging import merge as merge_states
 from ..algorithms.state import AbstractState
 from ..algorithms.table import make
 from ..device.backend import choose, give_back_memory
-from ..device.turn import aside, turn
+from ..device.turn import turn
 from ..errors import MethodError, keeping, result_kept
 from ..method import Baseline, Method
 from ..patches import Patches
@@ -23,29 +20,29 @@ from ..problem.model import Problem
 from ..sampling.streams import Seed
 from ..solution.status import NOT_REACHED
 from ..tally import unmet
+from ..tracing import coherent_costs
 from ..tracing.geometry import Geometry
 from . import memory_estimate
-from .aim import Aim
+from .aim import Aim, shared_before
 from .baseline_budget import warn_of_missing
 from .budget import Budget, Progressed, climb, missed, next_quanta
 from .checkpoint import Checkpoint
 from .choice import Choice
 from .error_target import Target
+from .first_stage import FirstStage, known_ladder
 from .goal import Goal
 from .looks import looks
 from .part import Part, check_stages
-from .pilot import few_quanta
 from .progress import Listener, Stop, Teller
 from .record import AbstractRecord
 from .refusals import refuse_depth_first
 from .result import R
 from .same import check_on_ladder, check_same
-from .shortfall import warn_of_few_ends, warn_of_importance, warn_of_more, warn_of_target
+from .shortfall import warn_of_few_ends, warn_of_importance, warn_of_more, warn_of_target, warn_of_unmet_aim
 from .snapshot import Snapshot
+from .watching import Watching
 
-MANY = 64  # more lines than a quantum takes in most scenes: then the first rung is within the budget
 LARGE = 1 << 19  # counters: before results are read, memory of wavefronts is given back, which takes some milliseconds
-AT_ONCE = 1 << 24  # lines: a run of fewer, whose N is known beforehand, is one stage
 PATIENCE = 1.2  # times the seconds asked for: after that a stage is left unfinished
 
 
@@ -77,6 +74,7 @@ class Run(Generic[R]):
         self.snapshot: Snapshot | None = None  # of the last complete stage
         self.also: Callable[[Snapshot], Any] | None = None  # what else is read of a stage
         self.watch: Callable[[R], None] | None = None  # is given the result of each complete stage
+        self.watching: Watching[R] | None = None
         self.spread: Callable[[AbstractAlgorithm], AbstractAlgorithm] | None = None  # makes an algorithm run on other machines
         self.seconds_before = 0.0 if resume is None else resume.seconds
         self.problem = Problem.of(patches, through=method.machine in ("firing", "iteration")) if problem is None else problem
@@ -100,22 +98,18 @@ class Run(Generic[R]):
         self.record = record(patches, method, part, self.device.name, given, None if choice is None else choice.facts, **facts)
         if resume is not None:
             check_same(resume.provenance, self.record.provenance, self.record.kind)
+        coherent_costs.tell_of_none(method, self.device.name)
 
     def _share_out(self, importance: Any) -> tuple[Aim, int]:
-        """Share lines out by importance, and return what for, and the lines that the pilot took.
-
-        A run that goes on has the importance of its state.
-        """
+        """Share lines out by importance, and return what for, and the lines that the pilot took."""
         aim = Aim.of(importance, self.geometry, self.problem.patches)
-        if self.resume is not None:
-            values = self.resume.state.get("importance")
-            self.problem = replace(self.problem, importance=None if values is None else np.asarray(values))
-            lines = int(self.resume.provenance.get("importance_lines", 0))
-        else:
-            assert isinstance(self.method, Method)  # `aim.method_of`
+        if self.resume is None:
             self.teller.tell("importance")
+            assert isinstance(self.method, Method)  # `aim.method_of`
             found = aim.shared(self.problem, self.geometry, self.method, self.part.seed)
             self.problem, lines = replace(self.problem, importance=found.values), found.lines
+        else:
+            self.problem, lines = shared_before(self.problem, self.resume)
         if self.budget.rays is not None:
             warn_of_importance(lines, self.budget)
             self.budget = replace(self.budget, rays=max(self.budget.rays - lines, lines))
@@ -129,10 +123,9 @@ class Run(Generic[R]):
     def _stages(self) -> R:
         algorithm, target = self._spread_out(), 0
         self.algorithm = algorithm
-        self.ladder = self.budget
-        if self.budget.rays is not None and self.budget.error is None:
-            known = algorithm.quanta_for(self.budget.rays)
-            self.ladder = self.budget if known is None else Budget(quanta=known)
+        self.ladder = known_ladder(self.budget, algorithm)
+        if self.watch is not None:
+            self.watching = Watching(self.watch, self.record, self.teller, self.stop, self.seconds_before)
         if self.resume is None:
             target = self._first_quanta()
         else:
@@ -149,8 +142,8 @@ class Run(Generic[R]):
             try:
                 for step in steps:
                     algorithm.advance(step, self._swept)
-                    if step != target and self.watch is not None and self.teller.stage == 0:
-                        self._watched(self.watch, self._results(algorithm))
+                    if step != target and self.watching is not None and self.teller.stage == 0:
+                        self.watching.show(self._results(algorithm))
             except Interrupted as reason:
                 status, pending = str(reason), algorithm.capture()
                 break
@@ -164,8 +157,8 @@ class Run(Generic[R]):
             counted = large or (known and self.budget.error is not None)  # whoever listens: the next stage depends on this number
             lines = snapshot.lines if counted else round(snapshot.about_lines)
             self.teller.complete(lines, target, error, margin, algorithm.tally.swept_lines(self.problem, snapshot.state))
-            if self.watch is not None:
-                self._watched(self.watch, snapshot)
+            if self.watching is not None:
+                self.watching.show(snapshot)
             if self.stop.asked and not snapshot.done:
                 status = "interrupted"
                 break
@@ -229,30 +222,15 @@ class Run(Generic[R]):
 
         Where results depend on their stages, looks are traced beside the run before it begins, and none are left.
         """
-        if self.watch is None or self.resume is not None:
+        if self.watching is None or self.resume is not None:
             return []
         beside = not algorithm.stage_independent
         found = looks(first, self.ladder, self.rung, beside=beside)
         if not beside:
             return found
         if self.replicates * len(self.patches) <= LARGE:
-            own = self._algorithm(self.problem, self.part)
-            with suppress(Interrupted):  # the run itself sees that it is to stop
-                for quanta in found:
-                    own.advance(quanta, self._looked)
-                    self._watched(self.watch, self._results(own))
+            self.watching.show_beside(found, self._algorithm(self.problem, self.part), self._results)
         return []
-
-    def _looked(self, count: int) -> None:
-        self.teller.tell("first looks")
-        if self.stop.asked:
-            raise Interrupted("interrupted")
-
-    def _watched(self, watch: Callable[[R], None], snapshot: Snapshot) -> None:
-        """Give the result of a stage to who watches the run; nothing of it comes back."""
-        solution = self.record.result(snapshot, "running", snapshot.state, self.teller.elapsed + self.seconds_before)
-        with aside():
-            watch(solution)
 
     def _so_far(self, status: str, state: AbstractState) -> R:
         """Results of the last complete stage, if any, and a state to go on from."""
@@ -288,20 +266,13 @@ class Run(Generic[R]):
             self.checkpoint.write(lambda: self._so_far("interrupted", self.algorithm.capture()))
 
     def _first_quanta(self) -> int:
-        """Return N of the first stage: the ladder's first rung, or less where the budget asks for less."""
-        if self.ladder.quanta is not None:
-            known = int(self.ladder.quanta)
-            at_once = self.watch is None and self.ladder is not self.budget and known * self.replicates <= AT_ONCE
-            return known if at_once else min(self.rung, known)
-        if isinstance(self.method, Baseline):
-            return self.rung
-        if self.budget.rays is None or self.budget.rays >= MANY * self.rung * self.replicates:
-            return self.rung
+        """Return N of the first stage."""
+        first = FirstStage(self.ladder, self.budget, self.rung, self.replicates)
+        known = first.known(self.method, watched=self.watch is not None)
+        if known is not None:
+            return known
         counted = self.problem.scalar if self.method.machine == "firing" else self.problem
-        found = few_quanta(
-            self.budget.rays, self.replicates, self._algorithm(counted, Part(Seed(self.part.seed.value), 1)), self._pilot_told
-        )
-        return min(self.rung, found)
+        return first.tried(self._algorithm(counted, Part(Seed(self.part.seed.value), 1)), self._pilot_told)
 
     def _pilot_told(self, count: int) -> None:
         self.teller.tell("trying")
@@ -315,6 +286,8 @@ class Run(Generic[R]):
                 warn_of_more(snapshot.lines, self.budget, self.replicates, self.patches)
             if status == NOT_REACHED:
                 warn_of_target(snapshot, self.budget, self.goal.target, self.teller.bound, self.error_of)
+            else:
+                warn_of_unmet_aim(snapshot, self.goal.target)
             if isinstance(snapshot.tally, AbstractMeanTally):
                 unmet.warn(self.patches, snapshot.tally.measured(self.problem, snapshot.state))
             warn_of_few_ends(self.method, snapshot.lines / self.replicates / len(self.patches))

@@ -18,6 +18,7 @@ SAME = (
     "all_replicates",
     "device",
     "tracing",
+    "packets",
     "importance",
 )
 WHOLE = {"first_replicate": 0}  # where nothing is said

@@ -37,6 +37,17 @@ def warn_of_importance(lines: int, budget: Budget) -> None:
         )
 
 
+def warn_of_unmet_aim(snapshot: Snapshot, target: Target) -> None:
+    """Warn of a run for one result to which no line came: nothing is known of it, neither that it is dark."""
+    if target.aim is not None and not snapshot.arrivals[target.rows].any():
+        warnings.warn(
+            f"no line came to {target.aim.name} in {snapshot.lines:,} lines, and importance was to lead them there: its light is "
+            "unknown; is it shut off from all lamps? Else give more lines",
+            RadiosityWarning,
+            stacklevel=6,
+        )
+
+
 def warn_of_target(snapshot: Snapshot, budget: Budget, target: Target, bound: float, error_of: str | None) -> None:
     """Warn of an error that was not reached: say what is known of it, and what ended the run.
 
@@ -49,10 +60,11 @@ def warn_of_target(snapshot: Snapshot, budget: Budget, target: Target, bound: fl
         known = f"after {snapshot.lines:,} lines it cannot be told yet ({landed:,} lines hit it)"
     else:
         known = f"after {snapshot.lines:,} lines it is {bound:.2%} or less in 95 % of runs"
+    whole = "the scene" if target.aim is None else target.aim.name
     limits = [f"{name}={value:g}" for name, value in (("rays", budget.rays), ("seconds", budget.seconds)) if value is not None]
     why = f"the limit was {', '.join(limits)}" if limits else "to go on all the same, give more lines as its limit (rays)"
     warnings.warn(
-        f"the error {100 * (budget.error or 0):.3g}% of {error_of or 'the scene'} was not reached: {known}; {why}",
+        f"the error {100 * (budget.error or 0):.3g}% of {error_of or whole} was not reached: {known}; {why}",
         RadiosityWarning,
         stacklevel=6,
     )

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import SceneError, shown
+from .csv_cells import is_number, unguarded
 from .habits import warn
 
 POINT, NORMAL = ("x", "y", "z"), ("nx", "ny", "nz")
@@ -26,7 +27,7 @@ def read(path, name: str | None = None, normal=UP) -> list[tuple[str, np.ndarray
     mark = next((mark for mark in (";", "\t", ",") if mark in lines[0][1]), " ")
     rows = [(number, _cells(line, mark)) for number, line in lines]
     head = [cell.lower() for cell in rows[0][1]]
-    if _is_number(head[0]):
+    if is_number(head[0]):
         head = list(COLUMNS[: len(head)]) if len(head) in (3, 6, 7) else []
         if not head:
             raise SceneError(f"{path}, line {rows[0][0]}: has {len(rows[0][1])} values; points have 3, or 6 with a normal")
@@ -50,7 +51,7 @@ def read(path, name: str | None = None, normal=UP) -> list[tuple[str, np.ndarray
         row = dict(zip(head, cells, strict=True))
         points.append([_number(row, key, path, number) for key in POINT])
         normals.append([_number(row, key, path, number) for key in NORMAL] if has_normals else list(normal))
-        names.append(row.get("name") or name or path.stem)
+        names.append(unguarded(row.get("name") or "") or name or path.stem)
     if not points:
         raise SceneError(f"{path}: has a head and no sensors")
     rows_of = {one: [i for i, other in enumerate(names) if other == one] for one in dict.fromkeys(names)}
@@ -61,14 +62,6 @@ def _cells(line: str, mark: str) -> list[str]:
     if mark == " ":
         return line.split()
     return [cell.strip() for cell in next(csv.reader([line], delimiter=mark))]
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def _number(row: dict[str, str], key: str, path: Path, number: int) -> float:

@@ -8,16 +8,18 @@ time than to look for those that share their edges.
 import numpy as np
 
 from ..pieces import of_pieces
+from .edges_together import pairs_together
 from .equal_keys import follows, mixed, sort
 from .measures import cross, largest_squared, minus
-from .triangle_edges import Triangles
+from .triangle_edges import Triangles, edges_of
 
 SIZE = 1 << 13  # triangles of a piece
-BITS = 11  # a cell is 2^-11 of the square of the longest edge, taken down to a power of two
+BITS = 12  # a cell is 2^-12 of the square of the longest edge, taken down to a power of two
 WITHIN = 3.0  # tolerances of parallelograms, by which twins may differ, and some more
 MANTISSA = 23  # bits of single precision, which edges have here: it is finer than the tolerance
 SAMPLE = 16  # pieces, which tell whether it is worthwhile
-MOSTLY = 0.3  # of the triangles may have a twin: then the edges of all are looked at
+MOSTLY = 0.3  # of the triangles may have a twin: then the edges of all are looked at,
+ALIKE, FEW = 0.6, 0.05  # unless no more than these are alike, and have one: slivers are alike, which have none
 
 
 def perhaps_twins(triangles: Triangles) -> np.ndarray | None:
@@ -25,8 +27,10 @@ def perhaps_twins(triangles: Triangles) -> np.ndarray | None:
     n = len(triangles.corners)
     if n > SAMPLE * SIZE:
         step = n // SAMPLE
-        some = [_alike(*_cells(triangles, slice(begin, begin + SIZE))).mean() for begin in range(0, step * SAMPLE, step)]
-        if np.mean(some) > MOSTLY:
+        parts = [slice(begin, begin + SIZE) for begin in range(0, step * SAMPLE, step)]
+        some = [part.start + np.flatnonzero(_alike(*_cells(triangles, part))) for part in parts]
+        alike = sum(map(len, some)) / (SAMPLE * SIZE)
+        if alike > ALIKE or (alike > MOSTLY and _halves(triangles, some) > FEW):
             return None
     keys, near = np.empty(n, np.uint64), np.empty(n, bool)
 
@@ -35,6 +39,12 @@ def perhaps_twins(triangles: Triangles) -> np.ndarray | None:
 
     of_pieces(make, n, SIZE)
     return np.flatnonzero(_alike(keys, near))
+
+
+def _halves(triangles: Triangles, some: list[np.ndarray]) -> float:
+    """Return the share of triangles that are halves of a parallelogram, of pieces whose rows that are alike are given."""
+    pairs = [pairs_together(triangles, edges_of(rows))[0] for rows in some]
+    return 2 * sum(map(len, pairs)) / (len(some) * SIZE)
 
 
 def _cells(triangles: Triangles, part: slice) -> tuple[np.ndarray, np.ndarray]:

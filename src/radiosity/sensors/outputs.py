@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import OutputError, printable
 from ..image.output import each_writable, require
+from ..scene.csv_cells import guarded
 from ..solution.replacing import replacing
 from ..solution.whole import whole_file
 from .isolines import draw
@@ -59,7 +60,7 @@ def _table(found, path: Path) -> None:
     for i in range(len(sensors)):
         place = [f"{value:.{DIGITS}g}" for value in (*sensors.points[i], *sensors.normals[i])]
         values = [f"{column[i]:.{DIGITS}g}" for column in columns.values()]
-        rows.writerow([sensors.names[sensors.set[i]], *place, kinds[i], int(found.inside[i]), *values])
+        rows.writerow([guarded(sensors.names[sensors.set[i]]), *place, kinds[i], int(found.inside[i]), *values])
     with whole_file(path) as file:
         file.write(text.getvalue().encode())
 

@@ -40,7 +40,7 @@ class Receivers(Packets):
     @cached_property
     def sensor(self) -> np.ndarray:
         """The sensor of each plane, (receivers,) int64."""
-        return np.repeat(np.arange(len(self.sensors)), np.where(self.sensors.cylindrical, PLANES, 1))
+        return np.repeat(np.arange(len(self.sensors)), _planes(self.sensors))
 
     @cached_property
     def receivers(self) -> int:
@@ -143,3 +143,12 @@ class Receivers(Packets):
         _ = self.place_on_device, self._records
         lane, replicate, place, plane = super().read()
         return lane, replicate, place, plane + replicate * dr.opaque(self.types.UInt32, self.receivers)
+
+
+def planes_of(sensors: Sensors) -> int:
+    """Return the number of planes on which the light of sensors falls, in a replicate."""
+    return int(_planes(sensors).sum())
+
+
+def _planes(sensors: Sensors) -> np.ndarray:
+    return np.where(sensors.cylindrical, PLANES, 1)

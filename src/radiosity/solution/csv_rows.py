@@ -1,10 +1,14 @@
-"""CSV files of rows with the same keys: UTF-8, comma separated, a header row; unknown values are ``nan``."""
+"""CSV files of rows with the same keys: UTF-8, comma separated, a header row; unknown values are ``nan``.
+
+No name is a formula in spreadsheets (`scene.csv_cells`).
+"""
 
 import csv
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TextIO
 
+from ..scene.csv_cells import guarded
 from .replacing import replacing
 
 
@@ -21,8 +25,8 @@ def write_rows(rows: list[dict], path, titles: Iterable[str] | None = None) -> N
     """
     with replacing(path) as temporary, open_text(temporary) as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(rows[0] if titles is None else titles)
-        writer.writerows(row.values() for row in rows)
+        writer.writerow(map(guarded, rows[0] if titles is None else titles))
+        writer.writerows(map(guarded, row.values()) for row in rows)
 
 
 def open_text(path: Path) -> TextIO:

@@ -115,12 +115,12 @@ class BandTally:
         hits_of = counters.hits.upper.about
         emitted = [dr.gather(wide, share, patch) for share in self.shares]
         first = functools.reduce(dr.maximum, emitted) if self.lines is None else dr.gather(wide, self.lines, patch)
-        target_counts = dr.fma(first, quanta, fraction(counters.rho) * hits_of(arrivals, numbers)) - fired
-        beyond = None
-        if counters.panes is not None:
-            beyond = counters.panes.beyond(numbers)
+        target_counts = dr.fma(first, quanta, fraction(counters.targets.rho) * hits_of(arrivals, numbers)) - fired
+        beyond, panes = None, counters.targets.panes
+        if panes is not None:
+            beyond = panes.beyond(numbers)
             hits = dr.gather(types.UInt32, counters.hits.arrivals, beyond)
-            target_counts += fraction(counters.panes.tau) * hits_of(hits, beyond)
+            target_counts += fraction(panes.tau) * hits_of(hits, beyond)
         for g, (share, rho) in enumerate(zip(emitted, self.rhos, strict=True)):
             at = numbers * self.n + g
             received, sent = self._about("received", self.received, at), self._about("sent", self.sent, at)

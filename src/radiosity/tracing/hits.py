@@ -120,7 +120,8 @@ def _found(geometry: Geometry, origin, direction, coherent: bool, active):
     parts = (low, y, high >> 2 * NORMAL_BITS - 32)
     normal = types.Array3f(*(Float(Int32(part & NORMAL_MASK) - (NORMAL_ONE + 1)) for part in parts))
     half = ((found.prim_index & 1) if geometry.all_quads else (packed & SECOND_HALF)) != 0
-    u, v = found.prim_uv.x, found.prim_uv.y
+    # Embree leaves what is in memory there where a line hits nothing, which may be NaN, and NaN times 0 is no 0
+    u, v = (dr.select(valid, one, 0) for one in (found.prim_uv.x, found.prim_uv.y))
     u, v = dr.select(half, 1 - u, u), dr.select(half, 1 - v, v)
     hit = Hit(valid, found.prim_index, u, v, dr.dot(direction, normal) < 0, found.t, first, packed)
     return hit, normal, valid & ((high & TIED) != 0)

@@ -129,6 +129,10 @@ class Batch:
         """True where a lane has more than one line."""
         return not isinstance(self.each, int)
 
+    def one_by_one(self, types, records) -> "Batch":
+        """Return a batch of the same lines with one line a lane, as boxes need them."""
+        return Batch.of(types, self.numbers, self.counts, self.fired, records, self.start, blocks=self.blocks)
+
     def launches(self, types, begin: int = 0, end: int | None = None, limit: int | None = None) -> "Iterator[Launch]":
         """Yield launches of a bounded number of lanes: a multiple of `chunk`, whatever the number of threads.
 
@@ -283,13 +287,14 @@ def sums(types, *columns) -> tuple[int, ...]:
     return tuple(int(total[i]) for i in range(len(columns)))
 
 
-def boxes_for(types, counts) -> Boxes | None:
+def boxes_for(types, counts, fewest: int = 0) -> Boxes | None:
     """Return the finest boxes of coherent firing that the patches of most lines fill; None where boxes would not pay.
 
     Args:
         counts: UInt32, lines of each patch.
+        fewest: lines that a patch must fire at least, see `coherent_costs`.
     """
-    filling = [dr.select(counts >= strata.lines(*size), counts, 0) for size in strata.SIZES]
+    filling = [dr.select(counts >= max(strata.lines(*size), fewest), counts, 0) for size in strata.SIZES]
     total, *filled = sums(types, counts, *filling)
     fitting = [size for size, lines in zip(strata.SIZES, filled, strict=True) if total and lines >= MOST_LINES * total]
     return Boxes(strata.boxes(*fitting[-1]), upload(types.UInt32, strata.walk(*fitting[-1]))) if fitting else None

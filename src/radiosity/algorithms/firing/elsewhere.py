@@ -110,7 +110,7 @@ def fire_elsewhere(counters: Any, wavefront: Wavefront, largest: int, firer: Fir
             found.append(Lines(replicate, rows.astype(np.uint32), fired[numbers[part]], counts[part], powers, largest, wide))
     fired[numbers] += counts
     sums, more = _Sums.of(counters), 0
-    alone = bands is not None or counters.panes is not None or wide or counters.parted
+    alone = bands is not None or counters.targets.panes is not None or wide or counters.parted
     begun = None if alone else Begun(counters.quanta, sums.arrivals, fired.reshape(sums.arrivals.shape))
     for hits in firer.trace(Due(found, begun)):
         sums = sums.after(counters, hits)
@@ -167,35 +167,6 @@ class _Sums:
         counters.hits.write(self.arrivals, self.missed)
         if counters.bands is not None and self.received is not None:
             counters.bands.received = upload(counters.types.UInt64, self.received)
-
-
-def fire_here(counters: Any, lines: Lines) -> Hits:
-    """Fire lines with the counters of their replicate alone, which are of use for nothing else."""
-    types, tracer, bands, n = counters.types, counters.tracer, counters.bands, counters.tracer.n
-    zero = np.zeros((1, n), np.uint32)
-    counters.hits.write(zero, np.zeros((2, 1), np.uint32))
-    fired = np.zeros(n, np.uint64)
-    fired[lines.rows] = lines.fired
-    counters.fired = upload(types.UInt32, counters.fired_upper.of(fired))
-    if bands is not None and lines.weights is not None:
-        bands.weights = upload(types.UInt32, lines.weights)
-        bands.received = upload(types.UInt64, np.zeros(tracer.slots * bands.n, np.uint64))
-        bands.upper["received"].halves = bands.upper["missed"].halves = None
-    blocks = None
-    if lines.wide:
-        tracer.blocks.prepare(counters.fired_upper.largest + 1)
-        blocks = counters.blocks
-    numbers, counts = upload(types.UInt32, lines.rows), upload(type(counters.fired), lines.counts)
-    counters.fire(Wavefront(numbers, 0, len(lines.rows), lines.total, counts, blocks), lines.largest)
-    arrivals, missed = counters.hits.read()
-    received = None if bands is None else frozen(bands.received).reshape(-1, bands.n).copy()
-    return Hits(
-        lines.replicate,
-        arrivals[0].copy(),
-        missed[:, 0].copy(),
-        None if received is None else received[:n],
-        None if received is None else received[n:],
-    )
 
 
 def cut(lines: list[Lines], shares: list[float]) -> list[list[Lines]]:

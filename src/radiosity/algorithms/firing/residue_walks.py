@@ -62,7 +62,7 @@ class Sent:
 def starts(counters: FiringCounters, problem: Problem, state: FiringState) -> Starts:
     """Return the lines of the residue after the state's stage."""
     tracer = counters.tracer
-    return Starts.of(problem, state, frozen(counters.phase).reshape(tracer.replicates, tracer.n), tracer.seed)
+    return Starts.of(problem, state, frozen(counters.targets.phase).reshape(tracer.replicates, tracer.n), tracer.seed)
 
 
 def send(counters: FiringCounters, problem: Problem, state: FiringState, begun: Starts) -> Sent:
@@ -116,7 +116,7 @@ def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], in
     streams = [stream(tracer.seed, replicate, Purpose.RESIDUE_LINES) for replicate in range(tracer.replicates)]
     words = upload(types.UInt32, np.array([stream.generate_state(WORDS, np.uint32) for stream in streams]))
 
-    panes = counters.panes
+    panes = counters.targets.panes
 
     def body(number, turn, going, weight, powers, fired):
         replicate = tracer.replicate(number)
@@ -127,7 +127,7 @@ def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], in
         fired = [before + power for before, power in zip(fired, powers, strict=True)]
         here = going & (slot < tracer.total)
         patch = slot - tracer.replicate(slot) * tracer.n_opaque
-        rho = dr.gather(types.UInt32, counters.rho, patch, here)
+        rho = dr.gather(types.UInt32, counters.targets.rho, patch, here)
         albedo, across, tau = rho, types.Bool(False), None
         if panes is not None:
             tau = dr.gather(types.UInt32, panes.tau, patch, here)

@@ -17,6 +17,7 @@ from ...patches.bases import BASES
 from ...sampling.blocks import BITS, BLOCK
 from ...sampling.streams import Purpose
 from ...tally.wraps import Wraps
+from ...tracing.coherent_costs import fewest_lines
 from ..base import AbstractAlgorithm, Interrupted, Swept
 from ..state import Arrays, Sizes
 from .chances import Chances
@@ -51,7 +52,8 @@ class Gather(AbstractAlgorithm[GatherState]):
                 f"{self.problem.patches.scene.source}: some backs let lines pass, so what a patch sees is not what sees the "
                 "patch; method gather needs both to be equal: take --method random-walk"
             )
-        self.packets = Packets(self.geometry, self.replicates, self.method.coherent)
+        coherent = fewest_lines(self.method, self.geometry.device.name) is not None
+        self.packets = Packets(self.geometry, self.replicates, coherent)
         self.chances = Chances.of(self.geometry, self.problem)
         self.types: Any = self.packets.types
         self.basis = BASES[self.method.basis]

@@ -14,7 +14,7 @@ IS_QUAD = 1 << (2 * HALF)  # the patch is a parallelogram
 
 
 class StoredLines:
-    """Line k of a lane is at k * lanes + lane.
+    """Line k of a lane is at (k - first) * lanes + lane.
 
     Attributes:
         packets: the lanes.
@@ -22,10 +22,12 @@ class StoredLines:
         hits: UInt32, the place of the patch that a line hits, or `packets.ESCAPED` or `LOST`.
         ends: UInt32 each, coordinates of where a line begins and ends on its patches; none where the basis is constant.
         count: for how many lines of a lane there is room.
+        before: UInt32, how many lines of all lanes come before the first that is kept; None where that is line 0.
     """
 
-    def __init__(self, packets: Packets, basis: Basis = CONSTANT, count: int = 0):
+    def __init__(self, packets: Packets, basis: Basis = CONSTANT, count: int = 0, first: int = 0):
         self.packets, self.basis, self.count = packets, basis, 0
+        self.before = dr.opaque(packets.types.UInt32, first * packets.lanes % (1 << 32)) if first else None
         self.hits: Any = dr.zeros(packets.types.UInt32, packets.lanes)
         self.ends: list = [dr.zeros(packets.types.UInt32, packets.lanes) for _ in range(2 if basis.size > 1 else 0)]
         self.make_room(count)
@@ -43,7 +45,8 @@ class StoredLines:
         return dr.concat([one, room]) if self.count else room
 
     def keep(self, at, where, begin: Spot | None, end: Spot | None) -> None:
-        """Take lines at some indices; called in a kernel."""
+        """Take lines whose number in all lanes is ``at``, modulo 2^32; called in a kernel."""
+        at = at if self.before is None else at - self.before
         dr.scatter(self.hits, where, at)
         if self.ends and begin is not None and end is not None:
             on = where < self.packets.read_width

@@ -7,6 +7,7 @@ So a walk is a function of seed, replicate, patch and index, whatever the order 
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import drjit as dr
@@ -14,9 +15,10 @@ import numpy as np
 
 from ...device.backend import upload
 from ...method import Method
+from ...sampling.numbers import AbstractNumbers
 from ...sampling.numbers.prime_bases import PrimeBases
 from ...sampling.numbers.shuffle import key, mix, shuffled
-from ...sampling.streams import Purpose, stream
+from ...sampling.streams import Purpose, Seed, stream
 from ...tally.far_sides import FarSides
 from ...tracing.hits import first_hit, place_of
 from ...tracing.line_tracer import LineTracer
@@ -73,6 +75,13 @@ class Step:
     place: tuple
 
 
+@lru_cache(maxsize=512)  # 1 MiB; a pilot run and the run that follows it have replicates in common
+def _drawn(numbers: AbstractNumbers, seed: int, replicate: int, key: tuple[int, ...]) -> np.ndarray:
+    """Return the randomisations of later segments, (SEGMENTS, 8) uint32; ``replicate`` is counted from the seed's first one."""
+    streams = (stream(seed, replicate, Purpose.LATER_SEGMENTS, segment, *key) for segment in range(SEGMENTS))
+    return np.array([numbers.randomisation(of_segment) for of_segment in streams], np.uint32)
+
+
 class PathSegments:
     """Traces segments of walks in kernels."""
 
@@ -83,12 +92,9 @@ class PathSegments:
         used = (0, 1) if self.continuous else (0, 1, 2, 3)
         used = used if fractional and panes is None else (*used, 4)
         self.primes = PrimeBases.of(tracer.types, used) if method.padding == "prime-bases" else None
-        drawn = [
-            tracer.numbers.randomisation(stream(tracer.seed, replicate, Purpose.LATER_SEGMENTS, segment, *key))
-            for replicate in range(tracer.replicates)
-            for segment in range(SEGMENTS)
-        ]
-        self.randomisations = upload(tracer.types.UInt32, np.array(drawn, np.uint32))
+        seed = Seed.of(tracer.seed)
+        own = [_drawn(tracer.numbers, seed.value, seed.first_replicate + r, key) for r in range(tracer.replicates)]
+        self.randomisations = upload(tracer.types.UInt32, np.concatenate(own))
 
     def in_block(self, block: int) -> "PathSegments":
         """Return the segments of walks whose indices lie in a block; these are of the first one."""

@@ -21,6 +21,7 @@ KINDS = {
     "spans": ("spans", "multipath"),
 }
 SEQUENCES = {"Halton": "halton", "Sobol": "sobol"}
+SLOW = "spans, Sobol"  # the arm whose error falls most slowly
 ARMS = tuple(
     Arm(f"{kind}, {name}", Method(lines=lines, order=order, numbers=numbers, randomisation="shared"), kind)
     for kind, (lines, order) in KINDS.items()
@@ -29,25 +30,25 @@ ARMS = tuple(
 
 
 def claims(results: Results) -> list[Claim]:
-    """Return what was found of quadratures."""
+    """Return what the full run found of quadratures, and whether this run finds it, too."""
     slopes = {arm.name: [results.slope(scene, arm.name) for scene in SCENES] for arm in ARMS}
-    globally = [slopes[arm.name] for arm in ARMS if arm.family != "local"]
-    best = [
-        min((arm.name for arm in ARMS if arm.family != "local"), key=lambda name, scene=scene: results.last(scene, name))
-        for scene in SCENES
-    ]
-    timed = [_at_equal_time(results, scene, "spans, Sobol", "local, Halton") for scene in SCENES]
+    globally = [arm.name for arm in ARMS if arm.family != "local"]
+    best = [min(globally, key=lambda name, scene=scene: results.last(scene, name)) for scene in SCENES]
+    others = list(zip(*(slopes[name] for name in globally if name != SLOW), strict=True))
+    timed = [_at_equal_time(results, scene, SLOW, "local, Halton") for scene in SCENES]
     return [
         Claim(
-            "Not in the paper: of global lines, spans that are drawn one by one from Sobol' points err least.",
-            all(name == "spans, Sobol" for name in best),
+            "Not in the paper: of global lines, spans that are drawn one by one err least.",
+            all(name.startswith("spans") for name in best),
             "Least error of global lines at the end: "
             + ", ".join(f"{s} {name} ({results.last(s, name):.2g})" for s, name in zip(SCENES, best, strict=True))
             + ".",
         ),
         Claim(
-            "Not in the paper: the quadrature changes no rate; the intervals of all slopes of global lines meet.",
-            all(max(s.low for s in found) <= min(s.high for s in found) for found in zip(*globally, strict=True)),
+            "Not in the paper: the error falls at one rate by all quadratures of global lines (intervals of their slopes meet), "
+            "but more slowly by spans with Sobol' points.",
+            all(max(s.low for s in found) <= min(s.high for s in found) for found in others)
+            and all(slow.value > max(s.value for s in found) for slow, found in zip(slopes[SLOW], others, strict=True)),
             "Slopes. "
             + "; ".join(
                 f"{name}: " + ", ".join(f"{scene} {s}" for scene, s in zip(SCENES, found, strict=True))
@@ -56,8 +57,9 @@ def claims(results: Results) -> list[Claim]:
             + ".",
         ),
         Claim(
-            "Asked for: at equal time, at most the error of local lines.",
-            all(ratio <= 1 for ratio in timed),
+            "Not in the paper: at equal time, spans with Sobol' points err more than local lines with Halton numbers (at most as "
+            "much was asked for).",
+            all(ratio > 1 for ratio in timed),
             "Error of spans with Sobol' numbers over that of local lines with Halton numbers, at the latter's last second: "
             + ", ".join(f"{scene} {ratio:.2f}" for scene, ratio in zip(SCENES, timed, strict=True))
             + ".",

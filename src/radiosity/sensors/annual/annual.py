@@ -34,11 +34,13 @@ from ...tracing.geometry import Geometry
 from ..groups import only
 from ..measure import scene_of
 from ..model import Sensors
+from ..receivers import planes_of
 from ..run import BEHIND
 from ..target import worst
 from .coefficients import Coefficients, Replicate, Setup
 from .elsewhere import AbstractYearLines, tracing_on
 from .figures import Figures
+from .memory import YearSizes
 from .result import AnnualDaylight
 from .schedule import read_schedule, usual
 
@@ -128,7 +130,7 @@ def annual(
     _tell_of_lights(given)
     with memory_of.limited(memory), turn(), on_cluster(cluster) as client:
         patches = _prepared(scene, axes)
-        _refuse_large(len(sensors), len(patches), len(sky), count, len(year) if hourly else 0)
+        _refuse_large(sensors, patches, sky, count, budget, len(year) if hourly else 0)
         given = patches, sensors, sky, axes, year, skies, there, budget, count, number, device, progress, client
         return _Run(*given).found(hourly)
 
@@ -182,8 +184,8 @@ class _Run:
         self, runs: list[Replicate], lines: AbstractYearLines, teller: Teller, stop: Stop
     ) -> tuple[Coefficients, str]:
         """Trace stage by stage; return the coefficients and a status."""
-        lanes = len(self.sensors) + len(self.patches) / 4
-        each = FIRST if self.budget.rays is None else max(int(self.budget.rays / (2 * lanes * self.count)), 2)
+        known = _lines_of_each(self.budget, len(self.sensors), len(self.patches), self.count)
+        each = FIRST if known is None else known
         light = self.skies.with_suns(self.sky)[self.occupied[self.skies.hours]].sum(axis=0)
         while True:
             for more in lines.advance(runs, each):
@@ -222,7 +224,7 @@ class _Run:
         mean, each = Figures.nothing(n), Figures.nothing(self.count, n)
         lux = np.zeros((n, len(self.year)), np.float32) if hourly else None
         occupied = self.occupied[skies.hours]
-        step = max(min((1 << 23) // max(len(self.patches), n), 1 << 9), 1)
+        step = _hours_together(n, len(self.patches))
         whole = coefficients.whole
         for at in range(0, len(skies.hours), step):
             rows = slice(at, at + step)
@@ -290,12 +292,30 @@ def _refuse_passing(geometry: Geometry) -> None:
         )
 
 
-def _refuse_large(sensors: int, patches: int, sky: int, replicates: int, hours: int) -> None:
-    tables = (
-        8 * replicates * sky * (2 * patches + 4 * sensors) + 4 * replicates * sensors * patches + 24 * min(sensors, 256) * patches
+def _lines_of_each(budget: Budget, sensors: int, patches: int, replicates: int) -> int | None:
+    """Return the lines of each kind of a sensor in a replicate; None where they follow from an error."""
+    return None if budget.rays is None else max(int(budget.rays / (2 * (sensors + patches / 4) * replicates)), 2)
+
+
+def _hours_together(sensors: int, patches: int) -> int:
+    """Return how many hours are summed up together."""
+    return max(min((1 << 23) // max(patches, sensors), 1 << 9), 1)
+
+
+def _refuse_large(sensors: Sensors, patches: Patches, sky: SkyPatches, replicates: int, budget: Budget, hours: int) -> None:
+    n, many = len(sensors), len(patches)
+    sizes = YearSizes(
+        n,
+        planes_of(sensors),
+        many,
+        patches.scene.n_faces,
+        len(sky),
+        replicates,
+        _lines_of_each(budget, n, many, replicates),
+        (hours, _hours_together(n, many)),
     )
     memory_of.refuse(
-        tables + 4 * sensors * hours,
-        f"the daylight coefficients of {sensors:,} sensors and {patches:,} patches",
+        sizes.whole(),
+        f"the daylight coefficients of {n:,} sensors and {many:,} patches",
         "take fewer sensors or replicates, larger patches, or 145 sky patches",
     )

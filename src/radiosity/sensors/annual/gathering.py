@@ -137,10 +137,10 @@ class Gathering:
 
         packets = self.lines.packets
         few = np.full(packets.count, begin), np.full(packets.count, end - begin)
-        keep = StoredLines(packets, count=end)
+        keep = StoredLines(packets, count=end - begin, first=begin)
         _, (_, lost) = self.lines.cosine(*few, keep=keep, bins=bins)
         dr.eval(bins.table, keep.hits)
-        hits = np.array(keep.hits).reshape(end, packets.lanes)[begin:, packets.place]  # (lines, receivers) numbers
+        hits = np.array(keep.hits).reshape(end - begin, packets.lanes)[:, packets.place]  # (lines, receivers) numbers
         line, receiver = np.nonzero(hits < packets.n)
         patches = self._patch_at[hits[line, receiver]]
         entries = coo_array((np.ones(len(patches)), (receiver, patches)), shape=self.seen.shape)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...errors import printable
 from ...image.output import each_writable
+from ...scene.csv_cells import guarded
 from ...solution.percent import margin
 from ...solution.whole import whole_file
 from ..outputs import DIGITS
@@ -89,7 +90,7 @@ def _table(found) -> str:
         for key in COLUMNS:
             factor = 100 if key in OF_HOURS else 1
             values += [f"{factor * column[key][i]:.{DIGITS}g}" for column in (found.values, widths)]
-        rows.writerow([sensors.names[sensors.set[i]], *place, kinds[i], int(found.inside[i]), *values])
+        rows.writerow([guarded(sensors.names[sensors.set[i]]), *place, kinds[i], int(found.inside[i]), *values])
     return text.getvalue()
 
 

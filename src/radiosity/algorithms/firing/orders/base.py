@@ -9,7 +9,7 @@ from ..counters import FiringCounters
 class AbstractOrder(ABC):
     """Fires lines until none is due. Orders differ in which line is fired when; the counters end as the same integers.
 
-    An order asks `FiringCounters` which lines are due (`due`, `due_between`), and fires them (`fire`), or follows single lines
+    An order asks which lines are due (`due`, `due_between`), and fires them (`fire`), or follows single lines
     itself and claims each by an atomic counter, as `depth_first.walk` does.
     """
 

@@ -2,6 +2,8 @@
 
 from ...base import Swept
 from ..counters import FiringCounters
+from ..due import due
+from ..fire import fire
 from .base import AbstractOrder
 from .depth_first import walk_all
 
@@ -21,15 +23,15 @@ class BreadthFirst(AbstractOrder):
 
     def run(self, counters: FiringCounters, swept: Swept) -> None:
         while True:
-            wavefront, largest = counters.due()
+            wavefront, largest = due(counters)
             if wavefront is None:
                 return
             if wavefront.blocks is None and wavefront.total < tail(counters):
                 walk_all(counters, wavefront, swept)
-                if counters.panes is None and not counters.wide:
+                if counters.targets.panes is None and not counters.wide:
                     return
                 continue  # walks end on diffusing panes
             before = counters.swept
-            counters.fire(wavefront, largest)
+            fire(counters, wavefront, largest)
             swept(counters.swept - before)  # of others, too, where they were fired elsewhere
             del wavefront  # frees its memory

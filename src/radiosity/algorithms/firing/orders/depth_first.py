@@ -14,6 +14,8 @@ from ....tracing.lanes import Launch, Wavefront
 from ....tracing.refill import follow
 from ...base import Swept
 from ..counters import FiringCounters
+from ..due import due
+from ..fire import batches, fire
 from .base import AbstractOrder
 
 
@@ -22,15 +24,15 @@ class DepthFirst(AbstractOrder):
 
     def run(self, counters: FiringCounters, swept: Swept) -> None:
         while True:
-            wavefront, largest = counters.due()
+            wavefront, largest = due(counters)
             if wavefront is None:
                 return
             if wavefront.blocks is not None:
-                counters.fire(wavefront, largest)
+                fire(counters, wavefront, largest)
                 swept(wavefront.total)
                 continue
             walk_all(counters, wavefront, swept)
-            if counters.panes is None and not counters.wide:  # walks end on diffusing panes, and other walks begin there
+            if counters.targets.panes is None and not counters.wide:  # walks end on diffusing panes, and other walks begin there
                 return
 
 
@@ -39,7 +41,7 @@ def walk_all(counters: FiringCounters, wavefront: Wavefront, swept: Swept) -> No
     counters.look_everywhere()  # where ``swept`` ends the work, lines of later launches are due
     before = counters.lines
     limit = max(int(PERIOD * counters.source.least_absorbed), 2)  # so that walks of a launch have `PERIOD` lines at most
-    for batch in list(counters.batches(wavefront)):  # made before walks fire lines of patches of later batches
+    for batch in list(batches(counters, wavefront)):  # made before walks fire lines of patches of later batches
         for launch in batch.launches(counters.types, limit=limit):
             walk(counters, launch)
             after = counters.lines
@@ -63,6 +65,6 @@ def walk(counters: FiringCounters, launch: Launch) -> None:
         landed = tracer.trace(number, taken + 1, tracer.record(number), 32)
         before = dr.scatter_inc(counters.hits.arrivals, landed, going)
         going = going & (landed < counters.total)
-        return [landed], sums, going & counters.is_due_after(landed, before, going)
+        return [landed], sums, going & counters.targets.is_raised(landed, before, going)
 
     follow(types, [number], launch.lanes, (), step, lambda: [counters.hits.arrivals, counters.fired])

@@ -6,6 +6,8 @@ leaves in the same pass, light that hits an earlier one in the next pass. The se
 
 from ...base import Swept
 from ..counters import FiringCounters
+from ..due import due_between
+from ..fire import fire
 from .base import AbstractOrder
 from .breadth_first import BreadthFirst, tail
 
@@ -26,13 +28,13 @@ class WellDistributed(AbstractOrder):
 
     def _due(self, counters: FiringCounters) -> int:
         """Return the number of lines that are due in all blocks."""
-        wavefront, _ = counters.due_between(0, counters.total)
+        wavefront, _ = due_between(counters, 0, counters.total)
         return 0 if wavefront is None else wavefront.total
 
     def _pass(self, counters: FiringCounters, swept: Swept) -> None:
         """Fire the lines of a pass."""
         for block in range(BLOCKS):
-            wavefront, largest = counters.due_between(counters.total * block // BLOCKS, counters.total * (block + 1) // BLOCKS)
+            wavefront, largest = due_between(counters, counters.total * block // BLOCKS, counters.total * (block + 1) // BLOCKS)
             if wavefront is not None:
-                counters.fire(wavefront, largest)
+                fire(counters, wavefront, largest)
                 swept(wavefront.total)
