@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 from functools import partial, wraps
 from pathlib import Path
 
@@ -48,6 +49,19 @@ def one_thread_in_each_test_process():
         import drjit as dr
 
         dr.set_thread_count(1)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def our_variant_comes_back():
+    """After each file: where Mitsuba stayed in another variant, each BVH of later tests would change it twice, in 0.1 s."""
+    yield
+    if "mitsuba" in sys.modules:
+        import mitsuba as mi
+
+        from radiosity.device.backend import choose
+
+        if mi.variant() not in (None, choose("cpu").variant):
+            mi.set_variant(choose("cpu").variant)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -61,19 +61,26 @@ def random_rays(bounds, count, seed):
 
 
 @contextmanager
-def scalar_mitsuba():
-    """Mitsuba in the variant scalar_rgb, which may read EXR files; the variant that was set before comes back."""
+def scalar_variant():
+    """Mitsuba in the variant scalar_rgb; the one that was set before comes back. Each change loads modules of Mitsuba again:
+    tests of a file that need it share one."""
     import mitsuba as mi
 
     before = mi.variant()
     if before != "scalar_rgb":
         mi.set_variant("scalar_rgb")
     try:
-        with device.bitmaps():
-            yield mi
+        yield mi
     finally:
         if before not in (None, "scalar_rgb"):
             mi.set_variant(before)
+
+
+@contextmanager
+def scalar_mitsuba():
+    """The same, where it may read EXR files."""
+    with scalar_variant() as mi, device.bitmaps():
+        yield mi
 
 
 def mitsuba_hits(path, origins, directions):
@@ -93,22 +100,19 @@ def mitsuba_hits(path, origins, directions):
 
 def our_hits(scene, origins, directions):
     """The same for ours, by trying every face."""
-    corner, one, two = scene.frames
-    distance, front, albedo = np.full(len(origins), np.inf), np.zeros(len(origins), bool), np.zeros((len(origins), 3))
-    for i, (origin, direction) in enumerate(zip(origins, directions, strict=True)):
-        across = np.cross(direction, two)
-        determinant = np.einsum("ij,ij->i", one, across)
-        offset = origin - corner
-        with np.errstate(divide="ignore", invalid="ignore"):
-            u = np.einsum("ij,ij->i", offset, across) / determinant
-            v = np.cross(offset, one) @ direction / determinant
-            t = np.einsum("ij,ij->i", np.cross(offset, one), two) / determinant
-            inside = (u >= 0) & (v >= 0) & np.where(scene.is_quad, (u <= 1) & (v <= 1), u + v <= 1) & (t > 0)
-        if inside.any():
-            t = np.where(inside, t, np.inf)
-            face = np.array([np.argmin(t)])
-            distance[i], front[i] = t[face[0]], scene.normal[face[0]] @ direction < 0
-            albedo[i] = scene.reflectance[face[0]]
-            if scene.reflectance_paint is not None:
-                albedo[i] *= scene.reflectance_paint.factor(face, u[face], v[face], scene.is_quad[face])[0]
+    (corner, one, two), direction = scene.frames, directions[:, None]
+    across, offset = np.cross(direction, two), origins[:, None] - corner
+    turned = np.cross(offset, one)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        determinant = (one * across).sum(axis=-1)
+        u, v, t = ((x * y).sum(axis=-1) / determinant for x, y in ((offset, across), (turned, direction), (turned, two)))
+        inside = (u >= 0) & (v >= 0) & np.where(scene.is_quad, (u <= 1) & (v <= 1), u + v <= 1) & (t > 0)
+    t = np.where(inside, t, np.inf)
+    ray, face = np.arange(len(t)), t.argmin(axis=1)
+    distance, hit = t[ray, face], inside.any(axis=1)
+    front = hit & ((scene.normal[face] * directions).sum(axis=1) < 0)
+    albedo = np.where(hit[:, None], scene.reflectance[face], np.zeros(3))
+    if scene.reflectance_paint is not None:
+        some = ray[hit], face[hit]
+        albedo[hit] *= scene.reflectance_paint.factor(face[hit], u[some], v[some], scene.is_quad[face[hit]])
     return distance, front, albedo

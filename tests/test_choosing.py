@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from enclosures import cube
 
 import radiosity as rd
 from radiosity.algorithms.gather.pilot import LINES
@@ -85,6 +86,19 @@ def test_choices_besides_a_basis_ask_for_a_method():
         rd.solve(ROOM, basis="linear", numbers="sobol", rays=1_000)
     with pytest.raises(rd.MethodError, match="basis 'cubic' does not exist; known are constant, linear, quadratic"):
         rd.solve(ROOM, basis="cubic", rays=1_000)
+
+
+def test_lamps_of_very_few_units_go_to_the_walk():
+    """A lamp of 0.1 mm in a cube of 1 m: a gather found half of its light, and stated so. A closed form: 1 W on 6 m²."""
+    walls, small = cube(0.5, 0.0), 1e-4
+    lamp = quad((0.5, 0.5, 0.9), (0, small, 0), (small, 0, 0))
+    corners, faces = np.concatenate([walls.vertices, lamp]), np.concatenate([walls.faces, [[24, 25, 26, 27]]])
+    emission = np.append(np.zeros(6), 1 / small**2)
+    patches = rd.subdivide(rd.Scene.from_arrays(corners, faces, np.append(np.full(6, 0.5), 0.0), emission), cells=1)
+    solution = rd.solve(patches, rays=20_000, seed=3)
+    assert solution.provenance["auto"]["chosen"] == "random-walk"
+    assert "would round the light by" in solution.provenance["auto"]["why"]
+    assert solution.irradiance[:6].mean() == pytest.approx(1 / 3, rel=0.01)
 
 
 def test_black_scenes_go_to_the_walk():

@@ -212,3 +212,27 @@ def test_without_the_extra(grey, monkeypatch):
     monkeypatch.setattr(connect, "find_spec", lambda name: None)
     with pytest.raises(rd.DeviceError, match=r"needs 'distributed'.*radiosity\[cluster\]"):
         solved(grey, "random-walk", cluster="local:2")
+
+
+def test_a_result_whose_worker_died_before_it_came_is_not_waited_for():
+    """Dask calls such a task finished, then lost, and would wait for a worker that never comes back."""
+    from radiosity.cluster import crew
+
+    class Lost:
+        status = "finished"
+
+        def result(self, timeout):
+            self.status = "lost"
+            raise TimeoutError
+
+    class Slow:
+        status, waited = "finished", 0.0
+
+        def result(self, timeout):
+            self.waited += timeout
+            if self.waited < 10:
+                raise TimeoutError
+            return "brought"
+
+    assert crew.fetched(Lost()) is None
+    assert crew.fetched(Slow()) == "brought"

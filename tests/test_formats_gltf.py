@@ -344,3 +344,62 @@ def test_faces_without_area_are_counted(tmp_path):
         scene = one(tmp_path, faces=[[0, 1, 2], [0, 2, 3], [0, 1, 1]])
     assert scene.n_faces == 1
     assert scene.area.tolist() == [1]
+
+
+@pytest.mark.parametrize("extra", [{}, {"translation": [0, 0, 1]}, {"scale": [-1, 1, 1]}])
+def test_vertices_that_many_primitives_share_are_not_copied_for_each(tmp_path, extra):
+    """Some programs write one accessor of all vertices (assimp 4998). A primitive takes those that it uses, and their values."""
+    k, n = 12, 5
+    x, y = (values.ravel() for values in np.meshgrid(np.arange(k), np.arange(k), indexing="ij"))
+    points = np.column_stack([x, y, 0.1 * x * y])
+    uv, color = np.column_stack([x, y]) / k, np.column_stack([x / k, y / k, 0 * x + 0.5])
+    pixels = np.random.default_rng(1).integers(0, 200, (8, 8, 3))
+    at = np.arange(n) * (k + 1) + 1
+    faces = [[[i, i + k, i + 1], [i + 1, i + k, i + k + 1]] for i in at]
+
+    def scene(shared: bool) -> rd.Scene:
+        gltf = Gltf()
+        material = {"name": "m", "pbrMetallicRoughness": {"baseColorTexture": {"index": gltf.image(pixels)}, "metallicFactor": 0}}
+        whole = {"TEXCOORD_0": gltf.accessor(uv), "COLOR_0": gltf.accessor(color)}
+        mesh = gltf.mesh(points, faces[0], material, whole)
+        first = gltf.tree["meshes"][mesh]["primitives"][0]
+        for some in faces[1:]:
+            one = {**first, "indices": gltf.accessor(np.ravel(some), "u2")}
+            if not shared:
+                used = np.unique(some)
+                values = {"POSITION": points[used], "TEXCOORD_0": uv[used], "COLOR_0": color[used]}
+                index = gltf.accessor(np.searchsorted(used, np.ravel(some)), "u2")
+                one |= {"attributes": {name: gltf.accessor(value) for name, value in values.items()}, "indices": index}
+            gltf.tree["meshes"][mesh]["primitives"].append(one)
+        gltf.node(mesh=mesh, name="all", **extra)
+        return rd.load_scene(gltf.write(tmp_path / "shared.glb"))
+
+    one, other = scene(True), scene(False)
+    assert len(one.vertices) == len(other.vertices) == 4 * n
+    assert one.hash == other.hash
+
+
+def test_bytes_as_vertex_colours_are_told_by_all_of_them(tmp_path):
+    """Some vertices may have small numbers alone, which would be taken for shares of 1."""
+    gltf = Gltf()
+    points = np.column_stack([np.arange(30) % 3, np.arange(30) // 3, np.zeros(30)])
+    color = np.full((30, 3), 255.0)
+    color[:4] = 1.0  # of the only face that is there: 1 of 255
+    mesh = gltf.mesh(points, [[0, 1, 3]], GREY, {"COLOR_0": gltf.accessor(color)})
+    gltf.node(mesh=mesh, name="dark")
+    with pytest.warns(RadiosityWarning, match="255"):
+        scene = rd.load_scene(gltf.write(tmp_path / "bytes.glb"))
+    np.testing.assert_allclose(rd.subdivide(scene, cells=1).reflectance, 0.5 / 255, rtol=1e-6)
+
+
+def test_copies_that_do_not_fit_in_memory_are_refused_as_they_are_read(tmp_path, monkeypatch):
+    """A small file may name one mesh in thousands of nodes; what it takes is told before it takes it."""
+    gltf = Gltf()
+    mesh = gltf.mesh(material=GREY)
+    for number in range(1000):
+        gltf.node(mesh=mesh, name=f"tile {number}", translation=[2 * number, 0, 0])
+    path = gltf.write(tmp_path / "tiles.glb")
+    monkeypatch.setenv("RADIOSITY_MEMORY", "100K")
+    fails(path, "'tile 290', one of 1000 nodes, there are 582 faces, which take about 0.0977 MiB", "RADIOSITY_MEMORY=16G")
+    monkeypatch.setenv("RADIOSITY_MEMORY", "none")
+    assert rd.load_scene(path).n_faces == 1000

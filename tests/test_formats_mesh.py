@@ -1,5 +1,7 @@
 """PLY and STL: polygons, colours, names, and one clear error for each fault."""
 
+import warnings
+
 import numpy as np
 import pytest
 from samples import SQUARE, ply_bytes, ply_text, png, stl_bytes, stl_text
@@ -7,6 +9,7 @@ from samples import SQUARE, ply_bytes, ply_text, png, stl_bytes, stl_text
 import radiosity as rd
 from radiosity.errors import RadiosityWarning, SceneError
 from radiosity.scene import Back
+from radiosity.scene.formats.mesh.ply import read_ply
 
 MIXED = ([0, 1, 2, 3], [0, 1, 4], [4, 3, 2, 1, 0])
 FIVE = [*SQUARE, [0, 0, 1]]
@@ -306,3 +309,57 @@ def test_ply_faults_of_strangers(tmp_path):
     mixed = ply_bytes(FIVE, MIXED[:2]).replace(b"list uchar", b"list char")
     assert mixed[-13] == 3
     fails(path, mixed[:-13] + b"\xff" + mixed[-12:], "truncated")
+
+
+def test_data_after_the_last_row_are_told(tmp_path):
+    """Mitsuba refuses such files (mitsuba2 57); a header that announces too few faces would lose some in silence."""
+    head = "ply\nformat {}\nelement vertex 4\n" + "".join(f"property float {axis}\n" for axis in "xyz")
+    head += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "<f4")
+    text, path = "\n".join(" ".join(map(str, row)) for row in points.tolist()) + "\n3 0 1 2\n", tmp_path / "more.ply"
+    face = b"\x03" + np.array([0, 1, 2], "<i4").tobytes()
+    ascii_head, binary_head = (head.format(kind).encode() for kind in ("ascii 1.0", "binary_little_endian 1.0"))
+    binary = binary_head + points.tobytes() + face
+    for data, told in (
+        (ascii_head + text.encode() + b"\n \n", None),
+        (ascii_head + text.encode() + b"3 0 2 3\n", "4 numbers after the last row"),
+        (binary + b"\n\0", None),
+        (binary + face, "13 bytes after the last row"),
+    ):
+        path.write_bytes(data)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            assert rd.load_scene(path).n_faces == 1
+        found = [str(one.message) for one in caught if "after the last row" in str(one.message)]
+        assert len(found) == (told is not None)
+        assert not found or told in found[0]
+
+
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("count", ["uchar", "short", "uint"])
+def test_lists_of_many_lengths_are_read_row_by_row(tmp_path, order, count, random):
+    """Beside other properties, and other lists, one of them empty; in either order of bytes."""
+    kinds = {"uchar": "u1", "short": "i2", "uint": "u4"}
+    points = np.column_stack([np.cos(np.arange(7)), np.sin(np.arange(7)), np.zeros(7)])
+    sizes = [3, 4, 3, 5, 3, 6]
+    faces = [np.sort(random.choice(7, size, replace=False)) for size in sizes]
+    head = f"ply\nformat binary_{'little' if order == '<' else 'big'}_endian 1.0\nelement vertex 7\n"
+    head += "".join(f"property double {axis}\n" for axis in "xyz") + f"element face {len(faces)}\nproperty uchar red\n"
+    head += f"property list {count} int vertex_indices\nproperty list uchar float more\nproperty double last\nend_header\n"
+    data = head.encode() + points.astype(order + "f8").tobytes()
+    for face in faces:
+        data += b"\x07" + np.array(len(face), order + kinds[count]).tobytes() + face.astype(order + "i4").tobytes()
+        data += bytes([len(face) % 3]) + np.ones(len(face) % 3, order + "f4").tobytes() + np.array(1.5, order + "f8").tobytes()
+    path = tmp_path / "many.ply"
+    path.write_bytes(data)
+    columns = read_ply(path).columns["face"]
+    lists = columns.lists["vertex_indices"]
+    assert lists.sizes.tolist() == sizes
+    assert lists.values.tolist() == np.concatenate(faces).tolist()
+    assert columns.lists["more"].sizes.tolist() == [size % 3 for size in sizes]
+    assert (columns.lists["more"].values == 1).all()
+    assert (columns.numbers["last"] == 1.5).all()
+    assert (columns.numbers["red"] == 7).all()
+    path.write_bytes(data[:-9])
+    with pytest.raises(rd.SceneError, match="ends within the 6 rows of element 'face'"):
+        read_ply(path)

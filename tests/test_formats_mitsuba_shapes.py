@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mitsuba_rays import files, mitsuba_hits, our_hits, random_rays
+from mitsuba_rays import files, mitsuba_hits, our_hits, random_rays, scalar_variant
 
 import radiosity as rd
 
@@ -10,6 +10,12 @@ HEAD, TAIL = '<scene version="3.0.0">', "</scene>"
 WHITE = '<bsdf type="diffuse"><rgb name="reflectance" value="0.7"/></bsdf>'
 MIRRORS = {"none": "1,1,1", "x": "-1,1,1", "z": "1,1,-1", "half turn": "-1,-1,1"}
 COUNT = 60
+
+
+@pytest.fixture(scope="module", autouse=True)
+def one_change_of_variant():
+    with scalar_variant():
+        yield
 
 
 def compare(path, *, rough=0.0, colors=False):

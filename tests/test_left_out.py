@@ -43,17 +43,13 @@ def test_light_that_is_alike_at_both_ends_is_seen():
 
 
 def test_meshes_for_a_basis_cut_where_halves_are_alike():
-    """A floor between two lamps: bright at both ends, dark between them. Halves of it see nothing, slopes on them do."""
+    """A floor between two lamps: bright at both ends, dark between them. Halves of it are alike; quarters and slopes tell."""
     floor = quad((0, 0, 0), (2, 0, 0), (0, 1, 0))
     lamps = [quad((x, 0.4, 0.4), (0, 0.2, 0), (0.2, 0, 0)) for x in (0.15, 1.65)]
     scene = rd.Scene.from_arrays(np.concatenate([floor, *lamps]), np.arange(12).reshape(3, 4), 0.5, [0.0, 1.0, 1.0])
-    longest = {}
     for basis in BASES:
         patches = rd.adapt(scene, 12, basis=basis, seed=1)
-        longest[basis] = np.ptp(patches.corners[patches.normal[:, 2] > 0][:, :, 0], axis=1).max()
-    assert longest["constant"] == pytest.approx(2.0)
-    assert longest["linear"] < 1.01
-    assert longest["quadratic"] < 1.01
+        assert np.ptp(patches.corners[patches.normal[:, 2] > 0][:, :, 0], axis=1).max() < 1.01
 
 
 def test_an_unknown_basis_is_refused():

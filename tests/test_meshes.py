@@ -7,10 +7,11 @@ import pytest
 
 import radiosity as rd
 from radiosity.cli.app import run as command
+from radiosity.patches.ahead import mean_over, quarters_of, within_halves
 from radiosity.patches.cells_as_faces import cells_as_faces, turned
 from radiosity.patches.contact import cut_at_contacts
 from radiosity.patches.contact.convex import cut, parts, width
-from radiosity.patches.halves import Halves
+from radiosity.patches.halves import BRIGHT, Halves
 from radiosity.patches.model import Patches
 from radiosity.patches.variation import Variation
 from radiosity.scene.paint import Paint
@@ -148,15 +149,43 @@ def test_a_strip_is_cut_along_its_length():
     assert (columns[0], rows[0]) == (1, 2)
 
 
+@pytest.mark.parametrize("edge", [0, 1])
+def test_a_strip_that_is_dark_at_both_ends_is_cut(edge):
+    """Halves along an edge are alike, and a cut between them gains nothing, but the next two gain as much as three others do."""
+    halves = halves_of()
+    quarters = quarters_of(halves)
+    assert len(quarters) == 4 * len(halves.fine)
+    place = quarters.centroid[:, edge] % 1
+    light = np.where((quarters.face == 1) & (abs(place - 0.5) < 0.25), 3.0, 1.0)
+    irradiance = np.stack([light[:, None]] * 4)
+    within = within_halves(halves, quarters, irradiance)
+    assert within[edge] == pytest.approx([0, 0.25, 0, 0, 0])  # (reflectance x half the step)²
+    assert within[1 - edge] == pytest.approx(0)
+    fine = mean_over(quarters, irradiance, halves.fine)
+    columns, rows = halves.chosen(halves.variation(fine), 1)
+    assert (columns * rows).tolist() == [1, 1, 1, 1, 1]
+    columns, rows = halves.chosen(halves.variation(fine, within), 1)
+    assert (columns.tolist(), rows.tolist())[edge] == [1, 2, 1, 1, 1]
+    assert (columns * rows).sum() == 6
+
+
+@pytest.mark.parametrize("two_sided", [False, True])
+def test_means_over_larger_cells_are_those_of_a_linear_field(two_sided):
+    halves = halves_of(two_sided)
+    quarters = quarters_of(halves)
+    field = [one.centroid @ np.array([[2.0], [3], [0]]) + 5.0 * one.is_back[:, None] for one in (quarters, halves.fine)]
+    assert mean_over(quarters, field[0][None], halves.fine)[0] == pytest.approx(field[1])
+
+
 def test_errors_of_bright_insides_count_less():
-    """One of four squares is twenty times as bright as the others, and has the largest step: one of the others is cut."""
+    """One of four squares is seventy times as bright as the others, and has the largest step: one of the others is cut."""
     halves = halves_of()
     x, face = halves.fine.centroid[:, 0] % 1, halves.fine.face
-    light = np.where(face == 0, 30 + 1.3 * x, 1 + x)
+    light = np.where(face == 0, 100 + 1.05 * x, 1 + x)
     irradiance = np.stack([light[:, None]] * 4)
     weights, found = halves.weights(irradiance), halves.variation(irradiance)
     mean = np.bincount(face, halves.fine.area * light) / halves.coarse.area
-    assert weights == pytest.approx(1 / (1 + (mean / np.average(mean, weights=halves.coarse.area) / 3) ** 2))
+    assert weights == pytest.approx(1 / (1 + (mean / np.average(mean, weights=halves.coarse.area) / BRIGHT) ** 2))
     assert halves.chosen(found, 1)[0].tolist() == [2, 1, 1, 1, 1]
     assert halves.chosen(found, 1, weights)[0].tolist() == [1, 2, 1, 1, 1]
 
@@ -175,13 +204,15 @@ def test_what_is_lost_in_noise_is_expected_from_before():
     one = np.ones(3)
     scene = halves_of().coarse.scene.take([0, 1, 4])  # two parallelograms and a triangle
     parts, quads = np.array([0, 0, 1, 2, 2, 2]), np.array([True, True, True, True, False, False])
-    before = Variation(4 * one, one, 8 * one, one).after(scene, np.array([2, 1, 2]), np.array([1, 1, 2]), parts, quads)
+    before = Variation(4 * one, one, 8 * one, one, 4 * one, one)
+    before = before.after(scene, np.array([2, 1, 2]), np.array([1, 1, 2]), parts, quads)
     assert before.along.tolist()[:4] == [1, 1, 4, 1]
     assert before.across.tolist()[:4] == [1, 1, 1, 1]
     assert before.rest.tolist() == [2, 2, 8, 0, 2, 2]
+    assert before.within_along.tolist()[:4] == [1, 1, 4, 1]
     noise = np.array([1e-6, 1e6, 1.0])
-    now = Variation(np.array([2.0, -5.0, 50.0]), np.zeros(3), np.zeros(3), noise)
-    best = now.given(Variation(one, 0 * one, 0 * one, one))
+    now = Variation(np.array([2.0, -5.0, 50.0]), np.zeros(3), np.zeros(3), noise, np.zeros(3), np.zeros(3))
+    best = now.given(Variation(one, 0 * one, 0 * one, one, 0 * one, 0 * one))
     assert best.along == pytest.approx([2, 1, 50], rel=1e-3)  # measured; expected; far above its noise
     assert best.across.tolist() == [0, 0, 0]
 

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from mitsuba_rays import mitsuba_hits, our_hits
+from mitsuba_rays import mitsuba_hits, our_hits, scalar_variant
 from samples import CORNERS, Gltf, png
 
 import radiosity as rd
@@ -16,6 +16,12 @@ from radiosity.scene.sampler import Sampler
 HEAD, TAIL = '<scene version="3.0.0">', "</scene>"
 BITMAP = '<texture type="bitmap" name="{0}"><string name="filename" value="{1}"/>{2}</texture>'
 QUAD = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 2 2\nvt 0 2\nmtllib m.mtl\nusemtl m\nf 1/1 2/2 3/3 4/4\n"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def one_change_of_variant():
+    with scalar_variant():
+        yield
 
 
 def srgb(value):

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..algorithms.base import Interrupted
 from ..device.turn import aside
-from .crew import AWAKE, FAILED_TO_COME, LONELY, DaskCrew
+from .crew import AWAKE, FAILED_TO_COME, LONELY, DaskCrew, fetched
 from .worker import Brought, Missing
 
 
@@ -123,9 +123,7 @@ class Barrier:
         from distributed import KilledWorker
 
         if future.status == "finished":
-            with suppress(*FAILED_TO_COME):
-                return future.result()
-            return None
+            return fetched(future)
         if future.status == "error":
             error = future.exception()
             if isinstance(error, Missing):

@@ -30,7 +30,24 @@ SMALL = 1 << 20  # bytes that are sent along with a task; more is sent to the wo
 DEATHS = 8  # workers that may die in a row without a part coming back, before the run ends
 LONELY = 30.0  # seconds without workers before that is told
 FAILED_TO_COME = (OSError, CancelledError)  # of what a task needs: the worker that had it has gone
+FETCH = 5.0  # seconds for a result to come, at first, before it is looked whether its worker still has it
 LOST = 10.0  # seconds without an answer from the scheduler before it counts as lost
+
+
+def fetched(future: Any) -> Any:
+    """Return what a task that has finished brought; None where the worker that has it died before it came.
+
+    Dask would then wait for the task to run again, which no worker that is left may do.
+    """
+    patience = FETCH
+    while future.status == "finished":
+        try:
+            return future.result(timeout=patience)
+        except TimeoutError:  # before `FAILED_TO_COME`: it is an OSError, too
+            patience *= 2
+        except FAILED_TO_COME:
+            break
+    return None
 
 
 @dataclass(eq=False)
@@ -206,10 +223,7 @@ class DaskCrew(AbstractCrew):
         from distributed import KilledWorker
 
         if future.status == "finished":
-            try:
-                return future.result()
-            except FAILED_TO_COME:
-                return None
+            return fetched(future)
         if future.status != "error":  # cancelled, or lost
             return None
         error = future.exception()

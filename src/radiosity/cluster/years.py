@@ -52,7 +52,6 @@ class YearJob(AbstractJob):
         keep(place, "", run)
         return found
 
-
     def _check(self, patches: Patches, unit: SkyUnit | SunUnit) -> None:
         sensors, cosine = self.setup.sensors, None if isinstance(unit, SunUnit) else unit.ranges[0][1]
         each = None if cosine is None else cosine / OF_PATCHES if unit.patches else cosine

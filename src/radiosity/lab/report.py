@@ -97,8 +97,7 @@ def verdicts(claims: list[Claim]) -> str:
         whose, _, says = claim.says.partition(": ")
         whose, says = (whose, says) if whose == OURS else ("The paper", claim.says)
         rows.append(
-            f"<p><b>{whose}:</b> {html.escape(says)} <b class='{kind}'>This run: {word}.</b><br>"
-            f"{html.escape(claim.found)}</p>"
+            f"<p><b>{whose}:</b> {html.escape(says)} <b class='{kind}'>This run: {word}.</b><br>{html.escape(claim.found)}</p>"
         )
     return "".join(rows)
 

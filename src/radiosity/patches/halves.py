@@ -8,8 +8,8 @@ from ..scene.model import Back, Scene
 from .model import Patches
 from .variation import Variation
 
-BRIGHT = 3.0  # times the mean light of the scene: where light is much brighter, errors count relative to it
-LONGEST = 128.0  # of a patch, over its width: along a lamp, light varies across a strip alone
+BRIGHT = 10.0  # times the mean light of the scene: where light is much brighter, errors count relative to it
+LONGEST = 2048.0  # of a patch, over its width: along a lamp, light varies across a strip alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,11 +39,12 @@ class Halves:
         rows = 1 + (cut & (~scene.is_quad | (2 * scene.area <= LONGEST * width**2)))
         return Halves(Patches(scene, one, one), Patches(scene, columns.astype(np.int32), rows.astype(np.int32)))
 
-    def variation(self, irradiance: np.ndarray) -> Variation:
+    def variation(self, irradiance: np.ndarray, within: tuple[np.ndarray, np.ndarray] | None = None) -> Variation:
         """Return how far light varies over the faces, less noise.
 
         Args:
             irradiance: (replicates, n_fine, n_bands) of the fine patches.
+            within: how far it varies within halves, from `within_halves` (ahead.py); default: not known.
         """
         columns, rows, quad = self.fine.columns, self.fine.rows, self.coarse.scene.is_quad
         along, across, rest, noise = (np.zeros(len(quad)) for _ in range(4))
@@ -60,7 +61,7 @@ class Halves:
         for into, some in ((along, (columns == 2) & (rows == 1)), (across, (columns == 1) & (rows == 2))):
             face = np.flatnonzero(some)
             into[face], noise[face] = square_of(0.5 * (self.cells(irradiance, face, 2) @ np.array((1, -1))))
-        return Variation(along, across, rest, noise)
+        return Variation(along, across, rest, noise, *(within or (np.zeros(len(quad)),) * 2))
 
     def weights(self, irradiance: np.ndarray) -> np.ndarray:
         """Return how much squares of errors count on each face, (n_faces,): 1 where it is dark, less where light is bright.
@@ -86,7 +87,8 @@ class Halves:
         """
         scene, columns, rows = self.coarse.scene, self.fine.columns, self.fine.rows
         sides = np.where(scene.back == Back.RADIATES, 2, 1)
-        along, across = light.along * (columns == 2), light.across * (rows == 2)
+        along = np.maximum(light.along, (light.along + light.within_along) / 3) * (columns == 2)
+        across = np.maximum(light.across, (light.across + light.within_across) / 3) * (rows == 2)
         better, first = np.maximum(along, across), along >= across
         second = np.where((columns == 2) & (rows == 2), (np.minimum(along, across) + light.rest) / 2, 0.0)
         second = np.minimum(second, better)  # halves come before quarters

@@ -46,7 +46,9 @@ def variation(halves: Halves, light: np.ndarray, basis: Basis) -> Variation:
         else:
             rest[faces] = whole
     pairs = ((along, constant.along), (across, constant.across), (rest, constant.rest), (noise, constant.noise))
-    return Variation(*(one + CONSTANTS * other for one, other in pairs))
+    none = np.zeros(len(quad))
+    along, across, rest, noise = (one + CONSTANTS * other for one, other in pairs)
+    return Variation(along, across, rest, noise, none, none)
 
 
 @cache

@@ -17,22 +17,28 @@ class Variation:
         along, across: between the halves of a parallelogram along its first and its second edge.
         rest: what its four quarters differ by beyond that; of a triangle what its three parts differ by.
         noise: variance that noise alone would give a half.
+        within_along, within_across: between quarters along an edge, within halves; 0 where it is not known.
     """
 
     along: np.ndarray
     across: np.ndarray
     rest: np.ndarray
     noise: np.ndarray
+    within_along: np.ndarray
+    within_across: np.ndarray
 
     def given(self, before: "Variation | None") -> "Variation":
         """Return the best estimate, in which what is lost in noise comes from an estimate before."""
+        parts = (self.along, self.across, self.rest), (self.within_along, self.within_across)
         if before is None:
-            along, across, rest = (np.maximum(now, 0.0) for now in (self.along, self.across, self.rest))
+            halves, within = ([np.maximum(now, 0.0) for now in some] for some in parts)
         else:
-            along = _best(self.along, before.along, self.noise)
-            across = _best(self.across, before.across, self.noise)
-            rest = _best(self.rest, before.rest, self.noise)
-        return Variation(along, across, rest, self.noise)
+            expected = (before.along, before.across, before.rest), (before.within_along, before.within_across)
+            halves, within = (
+                [_best(now, old, times * self.noise) for now, old in zip(*pair, strict=True)]
+                for times, *pair in zip((1, 2), parts, expected, strict=True)
+            )
+        return Variation(halves[0], halves[1], halves[2], self.noise, within[0], within[1])
 
     def after(self, scene: Scene, columns: np.ndarray, rows: np.ndarray, part: np.ndarray, is_quad: np.ndarray) -> "Variation":
         """Return what is expected of the parts of faces that are cut: where light is smooth, a half varies by a quarter.
@@ -46,11 +52,13 @@ class Variation:
         rest = np.where(long | wide, self.rest / 4, self.rest)
         new = is_quad & ~scene.is_quad[part]  # half of a triangle
         half = rest[part] / 2
+        within = [np.where(cut, one / 4, one) for cut, one in ((long, self.within_along), (wide, self.within_across))]
         return Variation(
             np.where(new, half, along[part]),
             np.where(new, half, across[part]),
             np.where(new, 0.0, rest[part]),
             self.noise[part],
+            *(one[part] for one in within),
         )
 
 

@@ -1,8 +1,9 @@
 """Meshes that follow the light: faces are cut where light varies over them, within a number of patches.
 
 First faces are cut along contact lines, and along edges of shadows. Then pilot runs see, with each patch cut into up to four,
-where the cells of a patch differ by more than noise. The patches are cut that gain most for each patch that is added, and so on,
-until there are as many as asked for. The run itself starts anew on that mesh, so that its bits are a function of seed and inputs.
+where the cells of a patch differ by more than noise, and what a second cut gains (`patches/ahead.py`). The patches are cut that
+gain most for each patch that is added, and so on, until there are as many as asked for. The run itself starts anew on that mesh,
+so that its bits are a function of seed and inputs.
 """
 
 from dataclasses import replace
@@ -14,6 +15,7 @@ from ..device.turn import turn
 from ..errors import MethodError, SceneError, untold
 from ..method import Method, resolve
 from ..patches import Patches, subdivide
+from ..patches.ahead import mean_over, quarters_of, within_halves
 from ..patches.bases import BASES
 from ..patches.cells_as_faces import cells_as_faces, turned
 from ..patches.contact import cut_at_contacts
@@ -33,6 +35,7 @@ CUTS = 8  # contact lines add at most the number of patches over this
 SHADOWS = 16  # likewise edges of shadows
 LEAST = 64  # patches are cut until they are so many times smaller than the mean
 LINES = 256  # of each cell of a pilot, replicates together
+AHEAD = 100_000  # up to so many cells, a pilot cuts each of them again, with as many lines in all
 REPLICATES = 4  # of pilots
 APART = 1 << 20  # difference of the seeds of pilots and of the run, so that their errors are independent
 
@@ -93,8 +96,12 @@ def adapt(
             more = min(int((here - least) * (GROWTH - 1)) + 1, count - here)
             if more <= 0:
                 break
-            light, method = _pilot(halves.fine, method, number + step * APART, device, progress)
-            seen = halves.variation(light[..., 0]) if polynomials.size == 1 else variation(halves, light, CELLS)
+            ahead = polynomials.size == 1 and len(halves.fine) <= AHEAD
+            pilot = quarters_of(halves) if ahead else halves.fine
+            light, method = _pilot(pilot, LINES * len(halves.fine), method, number + step * APART, device, progress)
+            within = within_halves(halves, pilot, light[..., 0]) if ahead else None
+            light = mean_over(pilot, light[..., 0], halves.fine)[..., None] if ahead else light
+            seen = halves.variation(light[..., 0], within) if polynomials.size == 1 else variation(halves, light, CELLS)
             found = seen.given(expected)
             columns, rows = halves.chosen(found, more, halves.weights(light[..., 0]))
             if (columns * rows == 1).all():
@@ -127,7 +134,7 @@ def _cut(scene: Scene, columns: np.ndarray, rows: np.ndarray) -> tuple[Scene, np
 
 
 def _pilot(
-    patches: Patches, method: Method | None, seed: int, device: str, progress: Listener | None
+    patches: Patches, lines: int, method: Method | None, seed: int, device: str, progress: Listener | None
 ) -> tuple[np.ndarray, Method]:
     """Return the irradiance of each replicate, (replicates, n_patches, n_bands, K), and the method that the first pilot chose.
 
@@ -138,7 +145,7 @@ def _pilot(
         run = prepared(
             patches,
             resolve("auto") if method is None else method,
-            rays=LINES * n,
+            rays=lines,
             replicates=REPLICATES,
             seed=seed,
             device=device,

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..algorithms.gather import pilot
 from ..algorithms.gather.chances import CLUSTER, Chances
+from ..algorithms.gather.lines import UNITS, most_read
 from ..device.backend import choose
 from ..diagnostics.lamps_at_faces import spots
 from ..errors import MethodError
@@ -54,6 +55,7 @@ ENOUGH = {"constant": 48, "linear": 112, "quadratic": 240}  # lines of a patch: 
 ENTRY = 4.0  # lines: the work of one entry of the table of clusters and lamps
 MOST = 0.3  # of the lines: the work of the pilot
 TINY = 1e-6  # of the light: smaller errors count as this
+ROUNDED = 1e-3  # of the reflected light: a gather that would round by more is not taken
 UNKNOWN = 3e7  # lines: the work of a pilot that is done where seconds or an error are asked for
 
 
@@ -107,9 +109,14 @@ def choice_for(auto: Auto, patches: Patches, budget: Budget, part: Part, device:
     geometry = Geometry(problem.patches, choose(device))
     geometry.prepare()
     method = replace(PRESETS["gather"].method, basis=basis)
-    errors = predicted(problem, pilot.Pilot.of(geometry, problem, Chances.of(geometry, problem), method, part.seed), basis)
+    found = pilot.Pilot.of(geometry, problem, Chances.of(geometry, problem), method, part.seed)
+    errors = predicted(problem, found, basis)
     if not errors:
         return _chosen(walk, basis, "the pilot met no light that is reflected", pilot.LINES * n, geometry)
+    rounded = rounding(problem, found)
+    if rounded > ROUNDED:
+        why = f"lamps are so small and bright that a gather would round the light by {rounded:.2g} of it"
+        return _chosen(walk, basis, why, pilot.LINES * n, geometry)
     order = sorted(errors, key=lambda name: errors[name])
     best, least = order[0], max(errors[order[0]], TINY)
     shown = ", ".join(f"{name} {max(errors[name], TINY) / least:.3g}" for name in order)
@@ -147,6 +154,16 @@ def predicted(problem: Problem, found: pilot.Pilot, basis: str = "constant") -> 
     squares = {"gather": gather, FALLBACK: walk, PARTICLES: walk, CONTROL: walk * max(even, EVENEST[basis]) ** 2}
     costs, measured = COSTS[basis], MEASURED[basis]
     return {name: measured[name] * (costs[name] * max(squares[name], 0.0)) ** 0.5 for name in costs}
+
+
+def rounding(problem: Problem, found: pilot.Pilot) -> float:
+    """Return half of a unit in which cosine lines of a gather count, over the RMS of the reflected light of patches.
+
+    A unit is a share of the brightest lamp's exitance. Light that is less than half of one counts as none.
+    """
+    area, albedo = problem.patches.area, problem.groups.scatter.albedo.max(axis=1)
+    light = found.irradiance.max(axis=1) * albedo
+    return most_read(problem) / (2 * UNITS) / max(float(area @ light**2 / area.sum()) ** 0.5, 1e-300)
 
 
 def _impossible(patches: Patches) -> str:

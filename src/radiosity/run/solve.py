@@ -31,6 +31,7 @@ from .whole_number import whole
 if TYPE_CHECKING:
     from .run import Run
 
+
 def solve(
     scene: Scene | Patches,
     method: str | Method | Baseline | Auto = "auto",

@@ -54,4 +54,3 @@ class Watching(Generic[R]):
             for n in quanta:
                 own.advance(n, looked)
                 self.show(results(own))
-

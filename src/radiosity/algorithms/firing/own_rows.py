@@ -70,6 +70,7 @@ class AbstractPost(ABC):
             False where none will come: nothing is due anywhere and no message is under way, or the time is over.
         """
 
+
 def dealt(n_rows: int, shares: list[float]) -> np.ndarray:
     """Return the owner of each row, (n_rows,) uint16, in proportion to shares.
 

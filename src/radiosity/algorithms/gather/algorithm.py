@@ -14,22 +14,21 @@ import numpy as np
 from ...device.backend import frozen, upload
 from ...errors import MethodError
 from ...patches.bases import BASES
-from ...sampling.blocks import BITS, BLOCK
+from ...sampling.blocks import BLOCK
 from ...sampling.streams import Purpose
 from ...tally.wraps import Wraps
 from ...tracing.coherent_costs import fewest_lines
 from ..base import AbstractAlgorithm, Interrupted, Swept
 from ..state import Arrays, Sizes
 from .chances import Chances
+from .correction import Correction
 from .elsewhere import AbstractLinesElsewhere, GatherLines
 from .lane_scatter import LaneScatter
-from .lines import UNITS, Lines
-from .moments import units
+from .lines import Lines
 from .near import Near
 from .packets import Packets
 from .pilot import LINES, Pilot
 from .reading import Reading
-from .rows import Rows
 from .shares import Shares
 from .smooth import SmoothTally
 from .state import GatherState
@@ -39,7 +38,6 @@ from .tally import GatherTally
 
 SLICE = 1 << 22  # lines of a slice: between slices a run can be interrupted
 APART = 1 << 24  # lines of a patch between two looks at sums, where they are very many
-TOLERANCE = 3e-3  # of the mean irradiance, in the first correction; later ones take less, as errors do
 
 
 class Gather(AbstractAlgorithm[GatherState]):
@@ -125,7 +123,7 @@ class Gather(AbstractAlgorithm[GatherState]):
             told += self._trace(shares, end)
             self._done = end
             if end in corrections:
-                self._correct(shares)
+                self._met, self._reading = self._corrected(shares)
             swept(told)
             told = 0
             if self.elsewhere is not None and self.elsewhere.over:
@@ -190,50 +188,11 @@ class Gather(AbstractAlgorithm[GatherState]):
             self._brought.set_apart()
             self._met.set_apart()
 
-    def _rows(self, shares: Shares) -> Rows:
-        _, _, place, _ = self.packets.read()
-        stored = self.packets.of_packets(shares.stored(self._done), place)
-        dr.eval(stored)
-        return Rows(self.packets, self._stored, stored, self._scatter)
-
-    def _correct(self, shares: Shares) -> None:
-        """Correct the radiosity that lines read."""
-        self._met, self._reading = self._corrected(shares)
-
     def _corrected(self, shares: Shares) -> tuple[Sums, Reading]:
         """Return sums of cosine lines, and what they read, corrected."""
-        types, lines = self.types, self._lines
-        assert lines is not None
-        _, _, place, _ = self.packets.read()
-        cosine, rays = (self._of_packets(each, place) for each in shares.counts(self._done))
-        finer = units(self.basis) * self.groups
-        irradiance = [
-            types.Float(brought / (rays * (UNITS * unit)) + met / (cosine * (lines.unit * unit)))
-            for brought, met, unit in zip(self._brought.about(), self._met.about(), finer, strict=True)
-        ]
-        irradiance = [dr.select(cosine > 0, value, 0) for value in irradiance]
-        dr.eval(irradiance)
-        rows = self._rows(shares)
-        grown = max(self._done / shares.stored_quanta, 1.0)
-        tolerance = TOLERANCE * np.max([self._mean(value) for value in irradiance[:: self.basis.size]], axis=0) / grown**0.5
-        reading, means = self._reading.corrected(rows, irradiance, np.maximum(tolerance, 1e-12), first=grown == 1.0)
-        met = self._met.copy()
-        scales = (lines.unit * unit for unit in finer)
-        met.add([types.Int64(dr.round(types.Float64(mean) * cosine * scale)) for mean, scale in zip(means, scales, strict=True)])
-        dr.eval(met.low)
-        return met, reading
-
-    def _of_packets(self, counts: np.ndarray, place):
-        """Return whole numbers of packets for each lane, Float64."""
-        kind, low = self.types.Float64, self.packets.of_packets(counts & (BLOCK - 1), place)
-        if int(counts.max()) < BLOCK:
-            return kind(low)
-        return kind(low) + kind(self.packets.of_packets(counts >> BITS, place)) * float(BLOCK)
-
-    def _mean(self, values) -> np.ndarray:
-        """Return the mean of positive values of each replicate, (replicates,), from whole numbers, so that no order matters."""
-        whole = self.types.UInt64(dr.maximum(values, 0) * 2.0**24)
-        return np.array(dr.block_sum(whole, self.packets.width), np.float64) / 2.0**24 / self.packets.width
+        assert self._lines is not None
+        correction = Correction(self.packets, shares, self._stored, self._scatter, self.basis, self.groups, self._lines.unit)
+        return correction.of(self._done, self._brought, self._met, self._reading)
 
     # ---- states ----------------------------------------------------------------------------------------------------
 

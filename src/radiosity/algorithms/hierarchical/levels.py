@@ -113,7 +113,7 @@ class Levels:
     def pull_ranks(self, values: np.ndarray) -> np.ndarray:
         """Do as `pull` does, with means by rank."""
         power = np.zeros((len(self.area), values.shape[1]))
-        power[self.leaf_rank] = values * self.hierarchy.patches.area[:, None]
+        power[self.leaf_rank] = values * self.area[self.leaf, None]  # whole areas: factors count the solid part of panes
         self.ranks.pull(power)
         return power / self.rank_area
 

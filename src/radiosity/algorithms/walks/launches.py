@@ -77,9 +77,7 @@ class AbstractWalks(AbstractAlgorithm[S]):
         """Return the number of chunks of walks that begin together."""
         return -(-begun.batch.total // chunk(self.geometry.device.types))
 
-    def _launches(
-        self, begun: Begun, before: int, done: int, end: int | None, limit: int
-    ) -> Iterator[tuple[Any, int | None]]:
+    def _launches(self, begun: Begun, before: int, done: int, end: int | None, limit: int) -> Iterator[tuple[Any, int | None]]:
         """Yield what `_follow` takes of walks that begin together, and the chunks done with it: None within a chunk.
 
         Args:

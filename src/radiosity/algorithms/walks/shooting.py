@@ -97,9 +97,7 @@ class Walks(AbstractWalks[WalkState]):
             return super()._chunks(begun, limit)
         return len(ranges(self.tracer, begun.batch, limit))
 
-    def _launches(
-        self, begun: Begun, before: int, done: int, end: int | None, limit: int
-    ) -> Iterator[tuple[Any, int | None]]:
+    def _launches(self, begun: Begun, before: int, done: int, end: int | None, limit: int) -> Iterator[tuple[Any, int | None]]:
         if self.method.order == "sorted":
             walks = self.source_sampling.count(before).sum(axis=1, dtype=np.int64)
             every = arrays(self.tracer, begun.batch, walks, done, limit)

@@ -24,7 +24,7 @@ def with_lights(scene: Any, lights: Lights) -> Any:
     Raises:
         SceneError: some light is in W and other light in lm, there are two skies, or bands that the scene has not.
     """
-    if scene.n_bands == 1 and any(len(np.unique(values, axis=-1).T) > 1 for values in map(_values, lights.all)):
+    if scene.n_bands == 1 and any((values != values[..., :1]).any() for values in map(_values, lights.all)):
         scene = _in_color(scene)
     both = merged(scene.lights, in_bands(lights, scene.n_bands), scene.source)
     lit = ((scene.emission > 0).any(axis=1)) | ((scene.back == Back.RADIATES) & (scene.back_emission > 0).any(axis=1))

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ....device import memory
 from ....errors import shown
 from ...assemble import Material, Part, ReadOptions, assemble, warn
 from ...lights.add import with_lights
@@ -28,6 +29,8 @@ from .material import Finish, Materials, Texture
 from .nodes import Node, cameras, walk
 
 LINES, TRIANGLES, STRIP, FAN = (0, 1, 2, 3), 4, 5, 6
+FACE = 176  # bytes a face, at the peak of reading (docs/performance.md)
+FEW = 2  # times the corners of a primitive are fewer than the vertices that it may name: then those that it uses are taken
 
 
 def read(path: Path, options: ReadOptions) -> Scene:
@@ -41,7 +44,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
     nodes = walk(file)
     materials, skins, lights = Materials(file), Skins(file), PunctualLights(file)
     left_out: dict[str, list[str]] = {}
-    parts = []
+    parts, faces, room = [], 0, memory.room()
     for node in nodes:
         if node.hidden and ({"mesh", "camera"} & set(node.info) or node.extension(file, PUNCTUAL) is not None):
             left_out.setdefault("hidden objects (KHR_node_visibility)", []).append(node.name)
@@ -59,6 +62,13 @@ def read(path: Path, options: ReadOptions) -> Scene:
             if mode not in (TRIANGLES, STRIP, FAN):
                 raise file.fail(f"mode of primitive {number} of '{node.name}' is {mode!r}; expected 0 to 6")
             parts.append(_part(file, node, mesh, primitive, materials, skins))
+            faces += len(parts[-1].faces)
+            if faces * FACE > room:
+                raise file.fail(
+                    f"with '{node.name}', one of {len(nodes)} nodes, there are {faces:,} faces, which take about "
+                    f"{memory.size(faces * FACE)} of memory, and {memory.size(room)} may be taken; take fewer copies of its "
+                    f"meshes ({memory.VARIABLE}=16G or none sets another limit)"
+                )
     for what, names in left_out.items():
         warn(f"{path}: {what} are left out: {shown(dict.fromkeys(names))}")
     materials.report()
@@ -75,17 +85,22 @@ def read(path: Path, options: ReadOptions) -> Scene:
 def _part(file: GltfFile, node: Node, mesh: dict, primitive: dict, materials: Materials, skins: Skins) -> Part:
     name, what = node.name, f"'{node.name}'"
     attributes = file.dictionary(primitive.get("attributes"), f"attributes of {what}")
-    vertices = _positions(file, attributes, primitive, what)
-    count = len(vertices)
+    count = _count(file, attributes, primitive, what)
     faces = _triangles(file, primitive, count, what)
+    rows = _used(node, primitive, faces, count)
+    if rows is not None:
+        faces = np.searchsorted(rows, faces)
+    vertices = _attribute(file, attributes, "POSITION", (3,), what, count, rows)
+    moving = len(vertices)
     vertices = morphed(file, node.info, mesh, primitive, vertices, what)
     vertices, faces = _placed(file, node, attributes, skins, vertices, faces)
     color = None
     if "COLOR_0" in attributes:
         color = _attribute(file, attributes, "COLOR_0", (3, 4), what, count)[:, :3]
-        if are_bytes(color):
+        if are_bytes(color):  # of all values: a few may be small
             materials.bytes[node.name] = None
             color = color / FULL
+        color = color if rows is None else color[rows]
         if (color == 1).all():
             color = None
     if "material" in primitive:
@@ -94,8 +109,8 @@ def _part(file: GltfFile, node: Node, mesh: dict, primitive: dict, materials: Ma
     else:
         finish = Finish("", Material((1.0,) if "COLOR_0" in attributes else None))
     base, emissive = finish.base, finish.emissive
-    uv = [_uv(file, attributes, texture, what, count) for texture in (base, emissive)]
-    copies = len(vertices) // max(count, 1)
+    uv = [_uv(file, attributes, texture, what, count, rows) for texture in (base, emissive)]
+    copies = len(vertices) // max(moving, 1)
     uv, (color,) = [_repeated(values, copies) for values in uv], [_repeated(color, copies)]
     return Part(
         name,
@@ -116,13 +131,30 @@ def _repeated(values: np.ndarray | None, copies: int) -> np.ndarray | None:
     return values if values is None or copies == 1 else np.tile(values, (copies, 1))
 
 
-def _positions(file: GltfFile, attributes: dict, primitive: dict, what: str) -> np.ndarray:
+def _count(file: GltfFile, attributes: dict, primitive: dict, what: str) -> int:
+    """Return the number of vertices that a primitive may name."""
     held = file.dictionary(primitive.get("extensions", {}), f"extensions of {what}")
     if "KHR_draco_mesh_compression" in held and "POSITION" in attributes:
         info = file.item("accessors", attributes["POSITION"])
         if "bufferView" not in info:
             raise file.fail(f"{what} is compressed with 'KHR_draco_mesh_compression', which is not read; {UNPACK}")
-    return _attribute(file, attributes, "POSITION", (3,), what)
+    return _held(file, attributes, "POSITION", what)
+
+
+def _used(node: Node, primitive: dict, faces: np.ndarray, count: int) -> np.ndarray | None:
+    """Return the vertices that faces use, in order, where they are few of those that several primitives share; else None.
+
+    Some programs write the vertices of all objects as one accessor, which each of thousands of primitives names.
+    """
+    if FEW * faces.size >= count or "skin" in node.info or primitive.get("targets"):
+        return None
+    return np.unique(faces)
+
+
+def _held(file: GltfFile, attributes: dict, key: str, what: str) -> int:
+    if key not in attributes:
+        raise file.fail(f"a primitive of {what} has no {key}")
+    return file.whole(file.item("accessors", attributes[key]), "count", f"accessor {attributes[key]}")
 
 
 def _placed(
@@ -142,20 +174,23 @@ def _placed(
     return place.reshape(-1, 3), every.reshape(-1, 3)
 
 
-def _attribute(file: GltfFile, attributes: dict, key: str, widths: tuple, what: str, count: int | None = None) -> np.ndarray:
-    if key not in attributes:
-        raise file.fail(f"a primitive of {what} has no {key}")
-    values = accessor(file, attributes[key]).astype(np.float64, copy=False)
-    if values.shape[1] not in widths or count not in (None, len(values)):
-        raise file.fail(f"{key} of {what} has shape {values.shape}; expected ({count or 'n'}, {' or '.join(map(str, widths))})")
+def _attribute(
+    file: GltfFile, attributes: dict, key: str, widths: tuple, what: str, count: int, rows: np.ndarray | None = None
+) -> np.ndarray:
+    """Return the values of all vertices of a primitive, or of some rows."""
+    held = _held(file, attributes, key, what)
+    values = accessor(file, attributes[key], rows if held == count else None).astype(np.float64, copy=False)
+    if values.shape[1] not in widths or held != count:
+        shape = held, values.shape[1]
+        raise file.fail(f"{key} of {what} has shape {shape}; expected ({count or 'n'}, {' or '.join(map(str, widths))})")
     return values
 
 
-def _uv(file: GltfFile, attributes: dict, texture: Texture | None, what: str, count: int) -> np.ndarray | None:
+def _uv(file: GltfFile, attributes: dict, texture: Texture | None, what: str, count: int, rows) -> np.ndarray | None:
     key = f"TEXCOORD_{texture.coordinates}" if texture else ""
     if texture is None or key not in attributes:
         return None
-    return texture.uv(_attribute(file, attributes, key, (2,), what, count))
+    return texture.uv(_attribute(file, attributes, key, (2,), what, count, rows))
 
 
 def _triangles(file: GltfFile, primitive: dict, n_vertices: int, what: str) -> np.ndarray:

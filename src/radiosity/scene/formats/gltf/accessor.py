@@ -10,8 +10,11 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 MOST_UNSTORED = 2**27  # numbers in an accessor that has no bytes of its own
 
 
-def accessor(file: GltfFile, index) -> np.ndarray:
+def accessor(file: GltfFile, index, rows: np.ndarray | None = None) -> np.ndarray:
     """Return the values, (count, width) float64, or int32 or int64 where the accessor holds integers that are not normalised.
+
+    Args:
+        rows: (n,) int, those that are wanted, all below ``count``; None: all.
 
     Raises:
         SceneError: the accessor does not exist, or does not fit its bytes.
@@ -29,6 +32,8 @@ def accessor(file: GltfFile, index) -> np.ndarray:
         values = np.zeros((count, width), dtype)
     if "sparse" in info:
         values = _sparse(file, file.dictionary(info["sparse"], f"sparse of {what}"), values.copy(), what)
+    if rows is not None:
+        values = values[rows]
     if dtype.kind == "f":
         return values.astype(np.float64)
     if info.get("normalized") is True:

@@ -108,14 +108,14 @@ class GltfFile:
             self.known[index] = data[:size]
         return self.known[index]
 
-    def view(self, index) -> tuple[bytes, int]:
-        """Bytes of a buffer view and its stride (0: tightly packed)."""
+    def view(self, index) -> tuple[memoryview, int]:
+        """Bytes of a buffer view, which are not copied, and its stride (0: tightly packed)."""
         info, what = self.item("bufferViews", index), f"buffer view {index}"
         data = self.buffer(info.get("buffer"))
         start, size = self.whole(info, "byteOffset", what, 0), self.whole(info, "byteLength", what)
         if start + size > len(data):
             raise self.fail(f"{what} ends at byte {start + size} of a buffer of {len(data)}; the file is damaged")
-        return data[start : start + size], self.whole(info, "byteStride", what, 0)
+        return memoryview(data)[start : start + size], self.whole(info, "byteStride", what, 0)
 
 
 def load(path: Path, options: ReadOptions) -> GltfFile:

@@ -249,7 +249,8 @@ class Materials:
         info = self.file.item("images", index)
         if index not in self.images:
             what = f"image {index}" + (f" ('{info['name']}')" if info.get("name") else "")
-            data = self.file.view(info["bufferView"])[0] if "bufferView" in info else self.file.resource(info.get("uri"), what)
+            packed = "bufferView" in info
+            data = bytes(self.file.view(info["bufferView"])[0]) if packed else self.file.resource(info.get("uri"), what)
             self.images[index] = linear_image(data, f"{self.file.path}: {what}", self.file.options)
         return self.images[index]
 

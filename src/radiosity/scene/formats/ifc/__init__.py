@@ -125,7 +125,6 @@ class Reader:
         if product.kind in WITH_PANES and not clear:
             self.opaque[name] = None
 
-
     def _add_own(self, product: Product) -> None:
         """Take a surface that `radiosity convert` wrote."""
         for number in np.unique(product.style):

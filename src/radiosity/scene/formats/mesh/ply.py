@@ -84,7 +84,16 @@ def read_ply(path: Path) -> Ply:
             raise SceneError(f"{path}: the file ends within the {kind}; it is truncated or damaged") from None
         if wanted <= columns.keys():
             break
+    if len(columns) == len(elements):  # of others that follow, the end is not known
+        _tell_of_rest(path, body[at:] if order else words[at:])
     return Ply(columns, comments)
+
+
+def _tell_of_rest(path: Path, rest: memoryview | np.ndarray) -> None:
+    """Warn of data after the last element: the header may announce too few."""
+    many, what = len(rest), "numbers" if isinstance(rest, np.ndarray) else "bytes"
+    if many and (what == "numbers" or bytes(rest).strip(b"\0 \t\r\n")):
+        warn(f"{path}: {many} {what} after the last row that the header announces are left out; its counts may be too low")
 
 
 def _parted(path: Path, data: bytes) -> tuple[list[str], memoryview]:

@@ -1,9 +1,14 @@
 """Rows of a PLY element as columns; lists may differ in length from row to row."""
 
 from dataclasses import dataclass
+from struct import Struct
 from typing import Any
 
 import numpy as np
+
+from ....pieces import pieces
+
+CODES = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "i8": "q", "u8": "Q"}  # of `struct`
 
 
 @dataclass(frozen=True)
@@ -70,19 +75,45 @@ def read_binary(body: memoryview, at: int, count: int, properties: list[Property
         if all((table[f"n{i}"] == size).all() for i, (p, size) in enumerate(zip(properties, sizes, strict=True)) if p.count):
             found = [([_packed(table, f"v{i}")], np.broadcast_to(np.int64(size), count)) for i, size in enumerate(sizes)]
             return _columns(properties, found), at + count * row.itemsize
-    found = [([], []) for _ in properties]
+    places, end = _places(body, at, count, properties)
+    data = np.frombuffer(body, np.uint8)
+    found = [([_gathered(data, *place, p.dtype)], place[1]) for p, place in zip(properties, places, strict=True)]
+    return _columns(properties, found), end
+
+
+def _places(body: memoryview, at: int, count: int, properties: list[Property]) -> tuple[list[tuple[np.ndarray, np.ndarray]], int]:
+    """Return where the values of each property begin in each row, and how many there are, (count,) int64; and where rows end."""
+    reads = [p.count and Struct(p.count.str[0].replace("|", "<") + CODES[p.count.str[1:]]) for p in properties]
+    plain = [(read, read.size if read else 0, p.dtype.itemsize) for read, p in zip(reads, properties, strict=True)]
+    begins, sizes = [[] for _ in properties], [[] for _ in properties]
+    takes, end = [(one.append, other.append) for one, other in zip(begins, sizes, strict=True)], len(body)
     for _ in range(count):
-        for p, (values, sizes) in zip(properties, found, strict=True):
+        for (read, before, width), (begin, many) in zip(plain, takes, strict=True):
             size = 1
-            if p.count is not None:
-                size = int(np.frombuffer(body, p.count, 1, at)[0])
-                at += p.count.itemsize
-                if size < 0:
-                    raise ValueError
-            values.append(np.frombuffer(body, p.dtype, size, at) if size else np.zeros(0, p.dtype))
-            sizes.append(size)
-            at += size * p.dtype.itemsize
-    return _columns(properties, found), at
+            if read is not None:
+                if at + before > end:
+                    raise IndexError
+                size = read.unpack_from(body, at)[0]
+                at += before
+            if size < 0 or size * width > end - at:
+                raise IndexError
+            begin(at)
+            many(size)
+            at += size * width
+    return [(np.asarray(one, np.int64), np.asarray(other, np.int64)) for one, other in zip(begins, sizes, strict=True)], at
+
+
+def _gathered(data: np.ndarray, begins: np.ndarray, sizes: np.ndarray, dtype: np.dtype) -> np.ndarray:
+    """Return runs of values one after another, that begin at some bytes."""
+    ends = np.cumsum(sizes)
+    result = np.empty((int(ends[-1]) if len(ends) else 0, dtype.itemsize), np.uint8)
+    within = np.arange(dtype.itemsize)
+    for part in pieces(len(sizes)):
+        size, first = sizes[part], int(ends[part.start] - sizes[part.start])
+        number = np.arange(first, int(ends[part.stop - 1]))
+        byte = np.repeat(begins[part] - dtype.itemsize * (ends[part] - size), size) + dtype.itemsize * number
+        result[first : first + len(number)] = data[byte[:, None] + within]
+    return result.view(dtype).ravel()
 
 
 def _packed(table: np.ndarray, name: Any) -> np.ndarray:

@@ -61,7 +61,7 @@ REQUIRED = {
     ("camera", "origin"): "where the camera stands, such as origin = [0, 0, 1.6] in metres",
     ("camera", "target"): "what the camera looks at, such as target = [1, 0, 1.6] in metres",
     ("opening", "corners"): "three or four points, such as corners = [[0, 0, 1], [2, 0, 1], [2, 0, 2], [0, 0, 2]] in metres",
-    ("sky", "type"): f"one of {', '.join(OF_SKIES)}, such as type = \"uniform\"",
+    ("sky", "type"): f'one of {", ".join(OF_SKIES)}, such as type = "uniform"',
 }  # what to write where a key is missing, by table ("" for the file itself) and key
 
 
