@@ -230,17 +230,20 @@ def test_sides_answer_for_the_clusters_that_receive_most(patches):
     "refinement", [REFINEMENTS[0], *(pytest.param(other, marks=pytest.mark.slow) for other in REFINEMENTS[1:])]
 )
 def test_random_walks_agree_the_better_the_smaller_epsilon(patches, refinement, geometry_of):
-    """On 100 sides of squares that turn any way: 1.4 to 3.3 %, and 1.0 to 1.4 %, with the walk's variance taken off."""
+    """On 100 sides of squares that turn any way: 1.2 to 4.5 %, and 0.2 to 0.9 %, with the walk's variance taken off.
+
+    Links have 256 rays: with 16 the second error is 1.0 to 1.5 %, which their rays alone make, whatever epsilon is.
+    """
     walk = rd.solve(patches, "random-walk", rays=2_000_000, replicates=4, seed=5)
     area, errors, geometry = patches.area, [], geometry_of(patches)
-    for epsilon in (3e-3, 3e-4):
-        result = solve_hierarchical(patches, geometry, Hierarchical(epsilon, refinement, clusters=True))
+    for epsilon in (1e-2, 3e-4):
+        result = solve_hierarchical(patches, geometry, Hierarchical(epsilon, refinement, rays=256, clusters=True))
         off, light = result.radiosity - walk.radiosity, walk.radiosity - patches.emission
         square = off[:, 0] ** 2 - walk.standard_error[:, 0] ** 2
         errors.append(math.sqrt(max(area @ square, 0) / (area @ light[:, 0] ** 2)))
-    assert errors[0] < 0.035
-    assert errors[1] < 0.016
-    assert errors[1] < errors[0]
+    assert errors[0] < 0.055
+    assert errors[1] < 0.012
+    assert errors[1] < 0.5 * errors[0]
 
 
 @pytest.mark.filterwarnings("ignore:.*out of balance")

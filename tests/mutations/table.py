@@ -1384,6 +1384,13 @@ MISTAKES = (
         "lines by the cosine law are as dense on sides that turn away",
     ),
     Mistake(
+        "algorithms/hierarchical/levels.py",
+        "self.area[self.leaf, None]",
+        "self.hierarchy.patches.area[:, None]",
+        ("test_panes.py",),
+        "means over elements of panes count their solid part, which factors count already",
+    ),
+    Mistake(
         "algorithms/hierarchical/answers.py",
         "error**2 / sides",
         "error**2",
