@@ -3423,4 +3423,25 @@ MISTAKES = (
         ("test_choosing.py",),
         "few lines with a basis go to a gather, which takes more than were asked for",
     ),
+    Mistake(
+        "scene/formats/room.py",
+        '".obj": 8.0',
+        '".obj": 80.0',
+        ("test_reading_memory.py",),
+        "OBJ files that fit in memory are refused",
+    ),
+    Mistake(
+        "scene/formats/room.py",
+        "    if wanted > most:",
+        "    if wanted > 10 * most:",
+        ("test_reading_memory.py",),
+        "files that do not fit in memory are read",
+    ),
+    Mistake(
+        "scene/formats/mesh/ply.py",
+        "FACE * faces if binary else WORD * words",
+        "FACE * faces + WORD * words",
+        ("test_reading_memory.py",),
+        "the numbers of binary PLY files are taken for words of text",
+    ),
 )
