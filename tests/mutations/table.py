@@ -80,7 +80,7 @@ MISTAKES = (
     Mistake(
         "device/instructions.py",
         'f"+{feature}" in there',
-        'feature in features',
+        "feature in features",
         ("test_coherent_costs.py",),
         "instructions that LLVM says are not there are taken for there",
     ),
@@ -2865,14 +2865,14 @@ MISTAKES = (
     ),
     Mistake(
         "conversion/view3d.py",
-        'given = given.get(side) if isinstance(given, dict) else given',
+        "given = given.get(side) if isinstance(given, dict) else given",
         'given = given.get("front") if isinstance(given, dict) else given',
         ("test_convert_view3d.py",),
         "backs have the emissivity of fronts in files for View3D",
     ),
     Mistake(
         "scene/formats/ifc/__init__.py",
-        "back = Back.ABSORBS if style.get(\"side\") == ONE_SIDED else Back.RADIATES",
+        'back = Back.ABSORBS if style.get("side") == ONE_SIDED else Back.RADIATES',
         "back = Back.ABSORBS",
         ("test_convert_ifc.py",),
         "two-sided surfaces of IFC models of our own become one-sided",
@@ -3418,7 +3418,7 @@ MISTAKES = (
     ),
     Mistake(
         "run/choice.py",
-        'ENOUGH[basis] + pilot.LINES)',
+        "ENOUGH[basis] + pilot.LINES)",
         'ENOUGH["constant"] + pilot.LINES)',
         ("test_choosing.py",),
         "few lines with a basis go to a gather, which takes more than were asked for",
