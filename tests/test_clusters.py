@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import radiosity as rd
-from radiosity.algorithms.hierarchical import REFINEMENTS, Hierarchical, parameters, solve_hierarchical
+from radiosity.algorithms.hierarchical import REFINEMENTS, Hierarchical, parameters, solve_hierarchical, values
 from radiosity.algorithms.hierarchical.answers import replaced
+from radiosity.algorithms.hierarchical.bounds import bounded
 from radiosity.algorithms.hierarchical.levels import Levels
 from radiosity.algorithms.hierarchical.links import Links
 from radiosity.algorithms.hierarchical.rounds import Rounds
@@ -152,33 +153,72 @@ def test_a_ball_is_seen_as_a_cluster_by_its_closed_form(turned):
     assert back.spread[0] > back.factor[0]  # half of the ball sees nothing, and its pole four times the mean
 
 
-def test_values_are_those_of_a_ball_as_it_shines(geometry_of):
-    """Where the near half alone shines, as bright, the mean B is half as large and F twice; where the far half does, it is 0.
+@pytest.mark.parametrize("far", [2.5, 10.0])
+def test_lines_find_a_ball_as_it_shines(monkeypatch, far, geometry_of):
+    """The irradiance is cos / 16 where the near half shines, too, and 0 where the far half does; with and without cosine lines.
 
     Of 2^14 lines about one in eight counts: 2 % is five standard errors.
     """
+    monkeypatch.setattr(values, "FAR", far)
     clusters = ball_and_square(60.0)
     tree, n = clusters.hierarchy, len(clusters.order) - 1
     links = Links(np.array([n, len(tree) + 1]), np.array([len(tree) + 1, n]), np.zeros(2), np.zeros(2))
-    near = clusters.side_area * (clusters.corners.mean(axis=1)[:, 2] < 0)
-    for power, times in ((clusters.side_area, 1), (near, 2), (clusters.side_area - near, 0)):
-        found, lines = valued(clusters, geometry_of(tree.patches), Hierarchical(rays=1 << 14), links, power)
-        assert lines == 2 << 14
-        assert found.factor[0] == pytest.approx(times * 0.5 / 16, rel=0.035)  # 1.5 % as the polyhedron is less than the ball
-        assert found.factor[1] * clusters.area[1] == pytest.approx(0.5 / 16 * clusters.side_area[n], rel=0.035)
+    near = 1.0 * (clusters.corners.mean(axis=1)[:, 2] < 0)
+    for shine, bright in ((np.ones(n + 1), 1), (near, 1), (1 - near, 0)):
+        found = valued(clusters, geometry_of(tree.patches), (1 << 14, 0), links, shine)
+        assert found.rays == (2 << 14 if far < 4 else 4 << 14)
+        assert set(found.links.receiver[found.row == 0]) <= {n}
+        received = np.bincount(found.row, weights=found.links.factor * shine[found.links.source], minlength=2)
+        assert received[0] == pytest.approx(bright * 0.5 / 16, rel=0.035)  # 1.5 % as the polyhedron is less than the ball
+        factor = found.links.factor[found.row == 1].sum()
+        assert factor * clusters.area[1] == pytest.approx(0.5 / 16 * clusters.side_area[n], rel=0.035)
+
+
+def test_no_line_to_a_near_side_counts_for_more_than_its_share(geometry_of):
+    """Two squares that touch: cos cos' / r² has no bound there, and lines of both kinds together bring the closed form."""
+    corners = np.concatenate([quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0, 0, 0), (0, 1, 0), (0, 0, 1))])
+    scene = rd.Scene.from_arrays(corners, np.arange(8).reshape(2, 4), 0.0, 1.0)
+    tree = Hierarchy(rd.subdivide(scene, cells=1))
+    clusters = Clusters(tree, np.arange(2), np.array([0, 1]), np.array([2, 2]), np.array([-1, 0]), np.arange(2), np.array([0, 1]))
+    links = Links(np.array([0]), np.array([3]), np.zeros(1), np.zeros(1))
+    found = valued(clusters, geometry_of(tree.patches), (1 << 12, 0), links, np.ones(2))
+    assert found.links.factor.sum() == pytest.approx(0.2000438, rel=0.02)
+    few = [valued(clusters, geometry_of(tree.patches), (1, seed), links, np.ones(2)).links.factor.sum() for seed in range(20)]
+    assert max(few) <= 2
+
+
+def test_factors_that_lines_find_let_light_fade(patches):
+    """Where light would last, sums of factors times the reflectance are at most 0.98, and only what lines found is scaled."""
+    levels = Levels(Hierarchy(patches), grow(Hierarchy(patches)))
+    random, count = np.random.default_rng(1), len(levels.area)
+    receiver = np.append(random.integers(0, count, 4 * count), len(levels.hierarchy))  # at last the whole scene
+    source = random.integers(0, len(levels.hierarchy), len(receiver))
+    links = Links(receiver, source, np.append(random.uniform(0, 0.2, 4 * count), 0.5), np.zeros(len(receiver)))
+    lines = np.arange(len(receiver)) < 4 * count
+    found = bounded(levels, links, lines)
+    assert found.factor[-1] == 0.5
+    assert (found.factor <= links.factor).all()
+    before, after = (
+        levels.push(np.bincount(receiver, weights=some.factor, minlength=count)[:, None])[:, 0] * patches.reflectance[:, 0]
+        for some in (links, found)
+    )
+    assert (before > 1.1).any()
+    assert after.max() <= 0.98 + 1e-12
+    few = Links(receiver, source, links.factor / 100, links.spread)
+    assert bounded(levels, few, lines) is few
 
 
 def test_sides_answer_for_the_clusters_that_receive_most(patches):
-    """Links are replaced by those of all sides below, the best by squared error for a link first, no more than there were."""
+    """Links are replaced by those of all sides below, the best by squared error for a link first, no more than are wanted."""
     levels = Levels(Hierarchy(patches), grow(Hierarchy(patches)))
     clusters = levels.clusters
     assert clusters is not None
     count, n = len(levels.hierarchy), len(clusters)
-    receiver, lamp = count + np.arange(n), levels.hierarchy.first[6]
-    links = Links(receiver, np.full(n, lamp), np.zeros(n), np.linspace(1, 2, n))
-    chosen, sides, sources = replaced(levels, links, np.ones((len(levels.area), 2)))
+    receiver, lamp, brought = count + np.arange(n), levels.hierarchy.first[6], np.linspace(1, 2, n)
+    links = Links(receiver, np.full(n, lamp), np.zeros(n), np.zeros(n))
+    chosen, sides, sources = replaced(levels, links, brought, n)
     held = clusters.end - clusters.begin
-    gain = clusters.area * links.spread**2 / held
+    gain = clusters.area * brought**2 / held
     assert held[chosen].sum() == len(sides) <= n < held.sum()
     assert gain[chosen].min() >= gain[~chosen & (held <= n - len(sides))].max()
     wanted = [clusters.order[clusters.begin[k] : clusters.end[k]] for k in np.flatnonzero(chosen)]
@@ -190,17 +230,20 @@ def test_sides_answer_for_the_clusters_that_receive_most(patches):
     "refinement", [REFINEMENTS[0], *(pytest.param(other, marks=pytest.mark.slow) for other in REFINEMENTS[1:])]
 )
 def test_random_walks_agree_the_better_the_smaller_epsilon(patches, refinement, geometry_of):
-    """On 100 sides of squares that turn any way: 2.4 to 3.6 %, and 1.0 to 1.3 %, with the walk's variance taken off."""
+    """On 100 sides of squares that turn any way: 1.2 to 4.5 %, and 0.2 to 0.9 %, with the walk's variance taken off.
+
+    Links have 256 rays: with 16 the second error is 1.0 to 1.5 %, which their rays alone make, whatever epsilon is.
+    """
     walk = rd.solve(patches, "random-walk", rays=2_000_000, replicates=4, seed=5)
     area, errors, geometry = patches.area, [], geometry_of(patches)
-    for epsilon in (3e-3, 3e-4):
-        result = solve_hierarchical(patches, geometry, Hierarchical(epsilon, refinement, clusters=True))
+    for epsilon in (1e-2, 3e-4):
+        result = solve_hierarchical(patches, geometry, Hierarchical(epsilon, refinement, rays=256, clusters=True))
         off, light = result.radiosity - walk.radiosity, walk.radiosity - patches.emission
         square = off[:, 0] ** 2 - walk.standard_error[:, 0] ** 2
         errors.append(math.sqrt(max(area @ square, 0) / (area @ light[:, 0] ** 2)))
-    assert errors[0] < 0.05
-    assert errors[1] < 0.02
-    assert errors[1] < 0.6 * errors[0]
+    assert errors[0] < 0.055
+    assert errors[1] < 0.012
+    assert errors[1] < 0.5 * errors[0]
 
 
 @pytest.mark.filterwarnings("ignore:.*out of balance")

@@ -282,7 +282,7 @@ def test_units_scale_the_cameras_of_files_as_they_scale_their_faces(load, tmp_pa
         ("", ["empty"]),
         ("[[surface", ["no TOML", "array declaration"]),
         ('geometri = ["room.obj"]', ["geometry is missing", "geometri: unknown key", "'geometry'"]),
-        ('unit = "m"', ["geometry is missing; write a list of files of shapes, such as geometry = [\"room.obj\"]"]),
+        ('unit = "m"', ['geometry is missing; write a list of files of shapes, such as geometry = ["room.obj"]']),
         ('[[geometry]]\nunit = "m"', ["geometry 1, file is missing; write a file of shapes"]),
         ('geometry = ["room.obj"]\n[[camera]]\nfov = 40', ["camera 1, origin is missing; write where", "camera 1, target is"]),
         ('geometry = ["room.obj"]\n[[opening]]', ["opening 1, corners is missing; write three or four points"]),

@@ -110,6 +110,13 @@ class Clusters:
         return child[rows], np.searchsorted(parent[rows], np.arange(len(self) + 1))
 
     @cached_property
+    def place(self) -> np.ndarray:
+        """The place of each side in ``order``, (n_sides,) int64."""
+        place = np.empty(len(self.order), np.int64)
+        place[self.order] = np.arange(len(self.order))
+        return place
+
+    @cached_property
     def reach(self) -> np.ndarray:
         """Areas of sides summed along ``order``, (n_sides + 1,) float64, m²."""
         return np.concatenate([[0], np.cumsum(self.side_area[self.order])])

@@ -12,10 +12,12 @@ import numpy as np
 
 from ..device.backend import upload
 from ..device.turn import turn
+from ..sampling.hemisphere import hemisphere
 from ..sampling.numbers import ready
 from ..sampling.numbers.random import philox
 from .geometry import Geometry
-from .visibility import Polygons, between, is_triangle, point_of, records_of
+from .hits import first_hit, patch_of
+from .visibility import WORDS, Polygons, between, is_triangle, point_of, records_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,17 +66,8 @@ def kernels(
         source, receiver, keys = (np.repeat(values, 2, axis=0) for values in (source, receiver, keys))
         found = kernels(geometry, table, source, receiver, keys, seed)
         return found[0][:m], found[1][:m]
-    UInt32 = types.UInt32
-    words = [upload(UInt32, (keys >> np.uint64(part)).astype(np.uint32)) for part in (0, 32)]
+    numbers, UInt32 = _numbers(types, keys, rays, seed), types.UInt32
     rows = [upload(UInt32, ends.astype(np.uint32)) for ends in (source, receiver)]
-    lane = dr.arange(UInt32, m * rays)
-    pair = lane // dr.opaque(UInt32, rays)
-    shift = philox(
-        [*(dr.gather(UInt32, word, pair) for word in words), UInt32(0), UInt32(0)],
-        [dr.opaque(UInt32, seed >> part & 0xFFFFFFFF) for part in (0, 32)],
-    )
-    index = lane - pair * dr.opaque(UInt32, rays) + 1
-    numbers = ready("sobol", types).points(index, pair, [*shift, UInt32(0)], 16)
     faces = [dr.gather(UInt32, table.faces, row) for row in rows]
     start, end = (
         point_of(types, table.records, row, (face & 1) != 0, *numbers[at : at + 2])
@@ -84,3 +77,57 @@ def kernels(
     dr.eval(found)
     kernel, met = (np.array(values, np.float64).reshape(m, rays) * geometry.bvh.scale**2 for values in found)
     return kernel, met
+
+
+@turn()
+def cosine_lines(
+    geometry: Geometry, table: Table, receiver: np.ndarray, keys: np.ndarray, seed: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the patches that local lines of polygons hit, (m, rays) int64, and cos cos' / r² of where they leave and hit, 1/m².
+
+    The number of patches stands for lines that hit none.
+
+    Args:
+        receiver: (m, rays), polygons of the table, which lines leave.
+        keys: (m,) uint64, numbers that give rows other points.
+    """
+    types, (m, rays) = geometry.device.types, receiver.shape
+    if m * rays < 2:  # arrays of one entry would compile kernels of their own
+        found = cosine_lines(geometry, table, np.repeat(receiver, 2, axis=0), np.repeat(keys, 2), seed)
+        return found[0][:m], found[1][:m]
+    UInt32, none = types.UInt32, len(geometry.patches)
+    numbers = _numbers(types, keys, rays, seed)
+    row = upload(UInt32, receiver.astype(np.uint32))
+    begin, normal, above = point_of(types, table.records, row, (dr.gather(UInt32, table.faces, row) & 1) != 0, *numbers[:2])
+    first = dr.normalize(types.Array3f(*(dr.gather(types.Float, table.records, row * WORDS + i) for i in (3, 4, 5))))
+    x, y, z = hemisphere(*numbers[2:4])
+    way = first * x + dr.cross(normal, first) * y + normal * z
+    hit = first_hit(geometry, begin + normal * above, way)
+    patch = patch_of(geometry, hit, none, none)
+    face = dr.gather(UInt32, geometry.faces.primitive_faces, hit.primitive, hit.valid)
+    facing = dr.abs(dr.dot(way, dr.gather(types.Array3f, _normals(geometry), face, hit.valid)))
+    kernel = dr.select(hit.valid, z * facing / dr.square(hit.distance), 0)
+    dr.eval(patch, kernel)
+    hits, values = np.array(patch, np.int64), np.array(kernel, np.float64) * geometry.bvh.scale**2
+    return hits.reshape(m, rays), values.reshape(m, rays)
+
+
+def _numbers(types, keys: np.ndarray, rays: int, seed: int):
+    """Return the points of lines, whose randomisation each row of lines has for itself."""
+    UInt32 = types.UInt32
+    words = [upload(UInt32, (keys >> np.uint64(part)).astype(np.uint32)) for part in (0, 32)]
+    lane = dr.arange(UInt32, len(keys) * rays)
+    pair = lane // dr.opaque(UInt32, rays)
+    shift = philox(
+        [*(dr.gather(UInt32, word, pair) for word in words), UInt32(0), UInt32(0)],
+        [dr.opaque(UInt32, seed >> part & 0xFFFFFFFF) for part in (0, 32)],
+    )
+    index = lane - pair * dr.opaque(UInt32, rays) + 1
+    return ready("sobol", types).points(index, pair, [*shift, UInt32(0)], 16)
+
+
+def _normals(geometry: Geometry):
+    """Return the normals of faces, which are uploaded once."""
+    if "normals" not in geometry.made:
+        geometry.made["normals"] = upload(geometry.device.types.Float, geometry.scene.normal)
+    return geometry.made["normals"]

@@ -14,7 +14,7 @@ class Exchange:
 
     Args:
         levels: the values of all elements.
-        links: the links, sorted.
+        links: the links; sums over those of one receiver are in their order.
     """
 
     def __init__(self, levels: Levels, links: Links):

@@ -28,7 +28,7 @@ class Links:
     def __len__(self) -> int:
         return len(self.receiver)
 
-    def take(self, rows: np.ndarray) -> "Links":
+    def take(self, rows: np.ndarray | slice) -> "Links":
         """Return some of the links (indices, mask or slice)."""
         return Links(*(value[rows] for value in vars(self).values()))
 

@@ -1,6 +1,6 @@
 """Links made from pairs of elements: form factor, visible share, and by how much they may be wrong."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,7 @@ from ...tracing.visibility import Polygons, visible_share
 from .kernel import Shapes, facing, samples, unoccluded
 from .links import Links
 from .parameters import Hierarchical
-from .values import valued
+from .values import Values, valued
 from .volumes import volumetric
 
 BATCH = 1 << 13  # pairs: their points fit into the processor's cache
@@ -42,34 +42,55 @@ class Maker:
     rays: int = 0
     pairs: int = 0
 
-    def make(self, receiver: np.ndarray, source: np.ndarray) -> Links:
-        """Return links for the pairs that face each other, batch after batch."""
-        parts = [self._batch(receiver[at : at + BATCH], source[at : at + BATCH]) for at in range(0, len(receiver), BATCH)] or [
-            Links.none()
-        ]
+    def make(self, receiver: np.ndarray, source: np.ndarray, radiosity: np.ndarray | None = None) -> Links:
+        """Return links for the pairs that face each other, batch after batch.
+
+        Args:
+            radiosity: (n_elements, n_bands): lines that judge a link draw most sides of its source by their power; None: by area.
+        """
+        reach = None
+        if self.clusters is not None and radiosity is not None:
+            power = radiosity[self.hierarchy.first[:-1]].sum(axis=1) * self.clusters.side_area
+            reach = np.concatenate([[0], np.cumsum(power[self.clusters.order])])
+        parts = [self._batch(receiver[rows], source[rows], reach) for rows in _batches(len(receiver), BATCH)] or [Links.none()]
         return Links.appended(parts)
 
-    def valued(self, links: Links, power: np.ndarray) -> Links:
-        """Return sorted links with new factors where an end is a cluster; ``power`` (n_sides,) leaves each side."""
-        if self.clusters is None or self.geometry is None:
-            return links
-        volume = np.flatnonzero(np.maximum(links.receiver, links.source) >= len(self.hierarchy))
-        factor = links.factor.copy()
-        for rows in (volume[at : at + BATCH] for at in range(0, len(volume), BATCH)):
-            new, rays = valued(self.clusters, self.geometry, self.parameters, links.take(rows), power)
-            factor[rows] = new.factor
-            self.rays += rays
-            self.told(rays)
-        return Links(links.receiver, links.source, factor, links.spread)
+    def valued(self, links: Links, rays: int, shine: np.ndarray) -> Values:
+        """Return what lines find of links of which an end is a cluster; see `values.valued`."""
+        assert self.clusters is not None
+        assert self.geometry is not None
+        parts = []
+        for rows in _batches(len(links), max(16 * BATCH // rays, 1)):
+            found = valued(self.clusters, self.geometry, (rays, self.parameters.seed), links.take(rows), shine)
+            parts.append(Values(found.links, found.row + rows.start, found.rays))
+            self._count(found.rays, rows.stop - rows.start)
+        row = np.concatenate([part.row for part in parts]) if parts else np.zeros(0, np.int64)
+        return Values(Links.appended([Links.none(), *(part.links for part in parts)]), row, sum(part.rays for part in parts))
 
-    def _batch(self, receiver: np.ndarray, source: np.ndarray) -> Links:
+    def plain(self, receiver: np.ndarray, source: np.ndarray, rays: int) -> Links:
+        """Return links of elements that are not judged: their spread is their factor."""
+        parts = [Links.none()]
+        for rows in _batches(len(receiver), 4 * BATCH):
+            one, other = Shapes.of(self.hierarchy, receiver[rows]), Shapes.of(self.hierarchy, source[rows])
+            some, _ = facing(self.hierarchy, one, other)
+            one, other = one.take(some), other.take(some)
+            share, traced = self._visible(one, other, rays)
+            factor = unoccluded(self.hierarchy, one, other) * share
+            parts.append(Links(one.element, other.element, factor, factor))
+            self._count(traced, rows.stop - rows.start)
+        return Links.appended(parts)
+
+    def _count(self, rays: int, pairs: int) -> None:
+        self.rays += rays
+        self.pairs += pairs
+        self.told(rays)
+
+    def _batch(self, receiver: np.ndarray, source: np.ndarray, reach: np.ndarray | None) -> Links:
         if self.clusters is None:
             return self._flat(receiver, source)
         flat = np.maximum(receiver, source) < len(self.hierarchy)
-        links, rays = volumetric(self.clusters, self.geometry, self.parameters, receiver[~flat], source[~flat])
-        self.pairs += int((~flat).sum())
-        self.rays += rays
-        self.told(rays)
+        links, rays = volumetric(self.clusters, self.geometry, self.parameters, receiver[~flat], source[~flat], reach)
+        self._count(rays, int((~flat).sum()))
         return Links.appended([self._flat(receiver[flat], source[flat]), links])
 
     def _flat(self, receiver: np.ndarray, source: np.ndarray) -> Links:
@@ -78,23 +99,20 @@ class Maker:
         some, whole = facing(self.hierarchy, one, other)
         one, other, whole = one.take(some), other.take(some), whole[some]
         factor = unoccluded(self.hierarchy, one, other)
-        share, rays = self._visible(one, other)
+        share, rays = self._visible(one, other, self.parameters.rays)
         if self.parameters.refinement == "brightness-factor":
             spread = _seen(np.where(whole, factor, np.maximum(factor, _disc(one, other))), share, self.parameters.rays)
         else:
             spread = self._spread(one, other, factor, share, whole)
-        self.pairs += len(receiver)
-        self.rays += rays
-        self.told(rays)
+        self._count(rays, len(receiver))
         return Links(one.element, other.element, factor * share, spread)
 
-    def _visible(self, receiver: Shapes, source: Shapes) -> tuple[np.ndarray, int]:
+    def _visible(self, receiver: Shapes, source: Shapes, rays: int) -> tuple[np.ndarray, int]:
         """Return visible shares, with rays from the source as light goes, and the number of rays."""
         count = len(receiver.element)
         if self.geometry is None or count == 0:
             return np.ones(count), 0
         one, other = (Polygons(shape.corners, self.hierarchy.face(shape.element)) for shape in (source, receiver))
-        rays = self.parameters.rays
         share = visible_share(self.geometry, one, other, rays, self.parameters.seed)
         if (through := self.geometry.scene.transmittance) is not None:  # irradiance is that of the receiver's solid part
             share /= 1 - through[other.face]
@@ -111,6 +129,11 @@ class Maker:
         clear = np.maximum(high - factor, factor - low)
         partly = np.maximum(high - factor * share, factor * share)
         return np.where(share >= 1, clear, _seen(np.where(share > 0, partly, high), share, self.parameters.rays))
+
+
+def _batches(count: int, size: int) -> Iterator[slice]:
+    for at in range(0, count, size):
+        yield slice(at, min(at + size, count))
 
 
 def _seen(value: np.ndarray, share: np.ndarray, rays: int) -> np.ndarray:

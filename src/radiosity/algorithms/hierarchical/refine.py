@@ -22,7 +22,7 @@ def refined(links: Links, oracle: Oracle, maker: Maker, radiosity: Radiosity, ep
     if not len(going):
         return links, False
     while len(going):
-        new = maker.make(*split(going, oracle, radiosity))
+        new = maker.make(*split(going, oracle, radiosity), radiosity.mean)
         coarse = oracle.too_coarse(new, radiosity, epsilon)
         kept.append(new.take(~coarse))
         going = new.take(coarse)

@@ -7,8 +7,8 @@ import numpy as np
 from ...patches import Hierarchy, Patches
 from ...patches.clusters import grow
 from ...tracing.geometry import Geometry
-from .answers import replaced
 from .exchange import Exchange
+from .last import last
 from .levels import Levels
 from .links import Links
 from .making import Maker, Told
@@ -72,7 +72,7 @@ class Rounds:
                 change = _change(before, self.emission + self.reflectance * irradiance)
                 history.append(Pass(epsilon, len(links), change))
         if self.complete + 1 == len(self.parameters.rounds):
-            links = self._last(links, irradiance)
+            links = last(self.levels, self.maker, links, self.levels.pull(self.emission + self.reflectance * irradiance))
             irradiance = self._solved(links, irradiance, self.parameters.tolerance)
         self.links, self.irradiance, self.history = links, irradiance, history
         self.complete += 1
@@ -87,16 +87,6 @@ class Rounds:
             return root_pairs(self.hierarchy, self.told)
         root = np.array([len(self.hierarchy)])
         return root, root
-
-    def _last(self, links: Links, irradiance: np.ndarray) -> Links:
-        """Return the links of the last solution: where clusters receive much, links of their sides; then values of clusters."""
-        if self.clusters is None:
-            return links
-        radiosity = self.levels.pull(self.emission + self.reflectance * irradiance)
-        chosen, receiver, source = replaced(self.levels, links, radiosity)
-        links = Links.joined([links.take(~chosen), self.maker.make(receiver, source)])
-        power = radiosity[self.hierarchy.first[:-1]].sum(axis=1) * self.clusters.side_area
-        return self.maker.valued(links, power)
 
     def _solved(self, links: Links, begin: np.ndarray, tolerance: float) -> np.ndarray:
         return Exchange(self.levels, links).solve(self.emission, self.reflectance, begin, tolerance, self.told)

@@ -14,13 +14,22 @@ from ...tracing.geometry import Geometry
 from .ends import Ends
 from .links import Links
 from .parameters import Hierarchical
-from .sampled import sampled
+from .sampled import drawn
 
 
 def volumetric(
-    clusters: Clusters, geometry: Geometry | None, parameters: Hierarchical, receiver: np.ndarray, source: np.ndarray
+    clusters: Clusters,
+    geometry: Geometry | None,
+    parameters: Hierarchical,
+    receiver: np.ndarray,
+    source: np.ndarray,
+    reach: np.ndarray | None = None,
 ) -> tuple[Links, int]:
-    """Return links for pairs of which an end is a cluster, and the number of rays. Pairs that cannot see each other have none."""
+    """Return links for pairs of which an end is a cluster, and the number of rays. Pairs that cannot see each other have none.
+
+    Args:
+        reach: what sides of sources are drawn in proportion to, as in `Clusters.drawn`.
+    """
     one, other = Ends.of(clusters, receiver), Ends.of(clusters, source)
     way = other.centre - one.centre
     ahead = (_height(way, one) > -other.radius) & (_height(-way, other) > -one.radius)
@@ -35,7 +44,7 @@ def volumetric(
     share, rays = np.ones(len(factor)), 0
     if geometry is not None and len(factor):
         rays = len(factor) * parameters.rays
-        whole, seen, closer = _sampled(clusters, geometry, parameters, one, other)
+        whole, seen, closer = _sampled(clusters, geometry, parameters, one, other, reach)
         factor = factor * np.maximum(closer * square, 1)
         share = np.divide(seen, whole, out=np.zeros(len(whole)), where=whole > 0)
         near = ~apart & (share > 0)
@@ -71,13 +80,14 @@ def _spread(clusters, one: Ends, other: Ends, shown, reach, factor, share, param
 
 
 def _sampled(
-    clusters: Clusters, geometry: Geometry, parameters: Hierarchical, one: Ends, other: Ends
+    clusters: Clusters, geometry: Geometry, parameters: Hierarchical, one: Ends, other: Ends, reach: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return means of cos cos' / r² over points of ends, of all points and of those that see each other, (m,) 1/m² each.
 
     The third is the mean of 1 / r² over middles of what was drawn: nearby pairs count for more than the middles of both ends.
     """
-    (whole, seen), middles = sampled(clusters, geometry, (parameters.rays, parameters.seed), one, other)
+    lines = drawn(clusters, geometry, (parameters.rays, parameters.seed), one, other, reach=reach)
+    middles = lines.middles(clusters, one, other)
     square = ((middles[0] - middles[1]) ** 2).sum(axis=2)
     least = (0.25 * (one.radius + other.radius)) ** 2
-    return whole, seen, (1 / np.maximum(square, least[:, None])).mean(axis=1)
+    return lines.whole.mean(axis=1), lines.seen.mean(axis=1), (1 / np.maximum(square, least[:, None])).mean(axis=1)

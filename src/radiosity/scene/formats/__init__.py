@@ -9,6 +9,7 @@ import numpy as np
 from ...errors import INSTALL, RadiosityError, SceneError
 from ..assemble import ReadOptions
 from ..model import Scene
+from .room import check_size
 
 FORMATS = {
     ".xml": "mitsuba",
@@ -42,6 +43,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
             raise SceneError(f"{path}: unknown format '{suffix}'; known are {', '.join(FORMATS)}")
         if path.stat().st_size == 0:
             raise SceneError(f"{path}: the file is empty")
+        check_size(path)
         with np.errstate(all="ignore"):  # numbers out of range are found by the checks, with their place
             return import_module(f".{FORMATS[suffix]}", __package__).read(path, replace(options, read=read))
     except (RadiosityError, Warning):

@@ -19,6 +19,7 @@ from ...model import Scene
 from ...sampler import DEFAULT_SAMPLER
 from ..beside import warn_of_case
 from ..mesh_colors import FULL, are_bytes
+from ..room import refuse
 from ..textures import warn_of_means, with_means
 from .accessor import accessor
 from .deform import Skins, morphed
@@ -63,12 +64,8 @@ def read(path: Path, options: ReadOptions) -> Scene:
                 raise file.fail(f"mode of primitive {number} of '{node.name}' is {mode!r}; expected 0 to 6")
             parts.append(_part(file, node, mesh, primitive, materials, skins))
             faces += len(parts[-1].faces)
-            if faces * FACE > room:
-                raise file.fail(
-                    f"with '{node.name}', one of {len(nodes)} nodes, there are {faces:,} faces, which take about "
-                    f"{memory.size(faces * FACE)} of memory, and {memory.size(room)} may be taken; take fewer copies of its "
-                    f"meshes ({memory.VARIABLE}=16G or none sets another limit)"
-                )
+            what = f"with '{node.name}', one of {len(nodes)} nodes, there are {faces:,} faces, which take"
+            refuse(path, faces * FACE, what, "take fewer copies of its meshes", room)
     for what, names in left_out.items():
         warn(f"{path}: {what} are left out: {shown(dict.fromkeys(names))}")
     materials.report()

@@ -13,6 +13,7 @@ from ....errors import SceneError, shown
 from ...assemble import warn
 from ..encoding import decode
 from ..names import repeated
+from ..room import refuse
 from .ply_rows import Columns, Property, read_ascii, read_binary
 
 TYPES = {
@@ -36,6 +37,7 @@ TYPES = {
     "float64": "f8",
 }
 WITH_FACES = ("vertex", "face", "tristrips")
+FACE, WORD = 100, 40  # bytes of memory beside the file: for a face of a binary one; for a number of an ASCII one
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
@@ -63,6 +65,7 @@ def read_ply(path: Path) -> Ply:
     wanted = {name for name, _, _ in elements if name in WITH_FACES}
     if others := [f"{name} ({count})" for name, count, _ in elements if name not in WITH_FACES and count]:
         warn(f"{path}: elements that are left out: {shown(others)}")
+    _check_memory(path, len(data), bool(order), elements)
     columns = {}
     words = np.array([]) if order else _numbers(path, body)
     at = 0
@@ -87,6 +90,13 @@ def read_ply(path: Path) -> Ply:
     if len(columns) == len(elements):  # of others that follow, the end is not known
         _tell_of_rest(path, body[at:] if order else words[at:])
     return Ply(columns, comments)
+
+
+def _check_memory(path: Path, size: int, binary: bool, elements: list[tuple[str, int, list[Property]]]) -> None:
+    """Refuse a file whose faces, or numbers of text, do not fit in memory; a header that announces too many is damage."""
+    faces = min(size // 4, sum(count for name, count, _ in elements if name == "face"))
+    words = min(size // 2, sum(count * (len(rows) + 3 * (name == "face")) for name, count, rows in elements))
+    refuse(path, size + (FACE * faces if binary else WORD * words), f"reading its {faces:,} faces takes")
 
 
 def _tell_of_rest(path: Path, rest: memoryview | np.ndarray) -> None:
