@@ -103,9 +103,9 @@ def test_a_hundredth_more_reflectance_is_rejected(room, discrete, monkeypatch):
 @pytest.mark.parametrize("name", ["matrix, local", "global-form-factors"])
 def test_own_light_that_is_not_stated_is_rejected(room, discrete, monkeypatch, name):
     """Patches get back their own light by the spans that led it away: 40 % too much on the lamp, by global lines."""
-    from radiosity.algorithms.matrix import tally
+    from radiosity.factors import counted
 
-    monkeypatch.setattr(tally, "of_own_light", lambda *arguments, **named: np.zeros(len(room)))
+    monkeypatch.setattr(counted, "of_own_light", lambda *arguments, **named: np.zeros(len(room)))
     assert excess(room, TABLE[name], discrete).max() > BOUND
 
 
