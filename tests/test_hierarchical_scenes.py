@@ -1,5 +1,7 @@
 """Hierarchical radiosity against random walks on the same patches, where obstacles stand, backs radiate, absorb and pass."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -20,14 +22,18 @@ def difference(patches, found, expected) -> float:
 WALKED = (("room", 1.0), ("cornell-box", 0.14))
 
 
-@pytest.fixture(scope="module", params=WALKED, ids=lambda param: param[0])
-def walked(request):
+@cache
+def walk(name: str, size: float):
     """Patches and their radiosity, within 0.3 %."""
-    name, size = request.param
     patches = rd.subdivide(rd.load_scene(name), size=size, powers_of_two=True)
     solution = rd.solve(patches, "random-walk", rays=4_000_000, replicates=4, seed=5)
     assert solution.error < 0.004
     return patches, solution.radiosity
+
+
+@pytest.fixture(params=WALKED, ids=lambda param: param[0])
+def walked(request):
+    return walk(*request.param)
 
 
 LONGER = (("room", "error-power"), ("cornell-box", "brightness-factor"))  # each refinement and scene is in another pair, too

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from import_graph import walked
 
 import radiosity
 
@@ -25,7 +26,7 @@ def faults(mistake: Mistake, text: str) -> list[str]:
         after = statements(text.replace(mistake.old, mistake.new))
     except SyntaxError as error:
         return [f"is no Python ({error})"]
-    if [one.dump for one in unmistaken(text)] == [one.dump for one in after]:
+    if alike(unmistaken(text), after):
         return ["changes no code"]
     unknown = set().union(*(one.read for one in after)).difference(*(one.bound for one in after), dir(builtins), {"__file__"})
     return [f"reads names that the file does not have: {', '.join(sorted(unknown))}"] if unknown else []
@@ -34,9 +35,25 @@ def faults(mistake: Mistake, text: str) -> list[str]:
 class Statement(NamedTuple):
     """A statement of a file at its top level: its syntax tree, and the names that it reads and gives to something."""
 
-    dump: str
+    tree: ast.AST
     read: set[str]
     bound: set[str]
+
+
+def alike(some: list[Statement], others: list[Statement]) -> bool:
+    """Whether statements are the same code. What has the same source is one `Statement`: most are not compared."""
+    return len(some) == len(others) and all(a is b or same(a.tree, b.tree) for a, b in zip(some, others, strict=True))
+
+
+def same(a: object, b: object) -> bool:
+    """Whether two syntax trees, or parts of them, are the same but for where they stand in a file."""
+    if type(a) is not type(b):
+        return False
+    if isinstance(a, ast.AST):
+        return all(same(getattr(a, field, None), getattr(b, field, None)) for field in a._fields)
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(same, a, b))
+    return repr(a) == repr(b)
 
 
 KNOWN: dict[tuple[str, int, int], Statement] = {}  # by their source: a row changes one of the many of its file
@@ -49,7 +66,7 @@ def statements(text: str) -> list[Statement]:
         first = min(part.lineno for part in (node, *getattr(node, "decorator_list", ())))
         source = "\n".join(lines[first - 1 : node.end_lineno]), node.col_offset, node.end_col_offset
         if source not in KNOWN:
-            KNOWN[source] = Statement(ast.dump(node), read(node), bound(node))
+            KNOWN[source] = Statement(node, read(node), bound(node))
         found.append(KNOWN[source])
     return found
 
@@ -60,7 +77,7 @@ unmistaken = cache(statements)
 def bound(tree: ast.AST) -> set[str]:
     """Names that a statement gives to something."""
     found = set()
-    for node in ast.walk(tree):
+    for node in walked(tree):
         if isinstance(node, ast.Import | ast.ImportFrom):
             found |= {(alias.asname or alias.name).split(".")[0] for alias in node.names}
         elif isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
@@ -76,7 +93,7 @@ def bound(tree: ast.AST) -> set[str]:
 
 def read(tree: ast.AST) -> set[str]:
     """Names that a statement reads."""
-    return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+    return {node.id for node in walked(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
 
 
 def missing(test: str) -> bool:
