@@ -102,7 +102,8 @@ def solution() -> rd.Solution:
     patches, random = rd.subdivide(everything(), size=2.5), np.random.Generator(np.random.Philox(2))
     own = {"own_reflectance": patches.reflectance / 2, "own_emission": random.random(patches.emission.shape)}
     solution = rd.solve(replace(patches, **own), "random-walk", quanta=2000, replicates=3, seed=2**40)
-    return replace(solution, warnings=("one", "another"))
+    bias = random.random((2 * len(patches.scene.names), 2))
+    return replace(solution, warnings=("one", "another"), side_bias=bias)
 
 
 def test_no_field_has_its_default(solution):

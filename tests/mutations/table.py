@@ -2675,8 +2675,8 @@ MISTAKES = (
     ),
     Mistake(
         "run/snapshot.py",
-        "self.tally.bias_of_sums(",
-        "self.tally.bias(",
+        "tally.bias_of_sums(",
+        "tally.bias(",
         ("test_gather_smooth.py",),
         "targets of means wait for biases that cancel",
     ),
@@ -3464,5 +3464,19 @@ MISTAKES = (
         "FACE * faces + WORD * words",
         ("test_reading_memory.py",),
         "the numbers of binary PLY files are taken for words of text",
+    ),
+    Mistake(
+        "solution/means.py",
+        "error = np.hypot(error, part * bias / area[:, None])",
+        "error = np.hypot(error, 0 * part * bias / area[:, None])",
+        ("test_gather_bias.py",),
+        "intervals of surfaces do not hold the bias of stored lines",
+    ),
+    Mistake(
+        "run/snapshot.py",
+        "np.bincount(key, bias, 2 * len(patches.scene.names))",
+        "np.bincount(key, bias * bias, 2 * len(patches.scene.names))",
+        ("test_gather_bias.py",),
+        "biases of sides are sums of squares",
     ),
 )

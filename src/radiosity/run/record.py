@@ -122,6 +122,7 @@ class Record(AbstractRecord[Solution]):
             snapshot.side_power,
             kept_warnings(),
             *(snapshot.coefficients or (None, None)),
+            snapshot.side_bias,
         )
 
     def told(self, result: Solution) -> Solution:

@@ -31,7 +31,7 @@ class Snapshot:
         As long as a state is held, what the algorithm writes next goes to a copy.
         """
         if self.tally.settles:
-            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power
+            _ = self.quanta, self.lines, self.arrivals, self.irradiance, self.surface_power, self.side_power, self.side_bias
             _ = self.books, self.asked, self.coefficients
             self.state = None
             self.tally.forget()
@@ -134,6 +134,15 @@ class Snapshot:
         if not patches.is_back.any():
             return None
         return self.sums(2 * patches.surface.astype(np.int64) + patches.is_back, 2 * len(patches.scene.names))
+
+    @cached_property
+    def side_bias(self) -> np.ndarray | None:
+        """The biases of what sides of surfaces receive, see `Solution.side_bias`."""
+        patches, tally = self.problem.patches, self.tally
+        if tally.basis.size == 1 or not isinstance(tally, AbstractBiasedTally):
+            return None
+        key = 2 * patches.surface.astype(np.int64) + patches.is_back
+        return self._biases(tally, lambda bias: np.bincount(key, bias, 2 * len(patches.scene.names)))
 
     def sums(self, key: np.ndarray, count: int) -> np.ndarray:
         """Return the power that patches of an equal key receive and reflect, (2, replicates, count, n_bands), W or lm.
@@ -241,11 +250,15 @@ class Snapshot:
         """Return a bound of the sum of the biases of some patches, (n_bands,), W or lm; 0 where the tally has no biases."""
         if not isinstance(self.tally, AbstractBiasedTally):
             return np.zeros(len(self.problem.groups.index))
+        return self._biases(self.tally, lambda bias: bias[rows].sum())
+
+    def _biases(self, tally: AbstractBiasedTally, summed: Callable) -> np.ndarray:
+        """Return sums of the sizes of biases of patches, (..., n_bands), W or lm."""
         groups, found = self.problem.groups, []
         for group in range(groups.n_groups):
-            _, unit = self.tally.irradiance(self.problem, self.state, group)
-            found.append(np.abs(self.tally.bias_of_sums(self.problem, self.state, group))[rows].sum() * unit)
-        return np.array(found)[groups.index] * groups.scale
+            _, unit = tally.irradiance(self.problem, self.state, group)
+            found.append(summed(np.abs(tally.bias_of_sums(self.problem, self.state, group))) * unit)
+        return np.stack(found, axis=-1)[..., groups.index] * groups.scale
 
     def margin(self, rows: np.ndarray | slice = slice(None)) -> float:
         """Return how many times `error` the true one may be, see `solution.errors.margin`; the largest of the groups of bands."""

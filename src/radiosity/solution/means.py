@@ -17,7 +17,8 @@ from .sides import BACK
 def of_surfaces(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     """The intervals of `Solution.surface_interval`."""
     n, surface = len(solution.patches.scene.names), solution.patches.surface
-    ends = _of_sets(solution, level, quantity, np.where(solution.sides.left_out, -1, surface), n, solution.surface_power)
+    bias = None if solution.side_bias is None else solution.side_bias[0::2] + solution.side_bias[1::2]
+    ends = _of_sets(solution, level, quantity, np.where(solution.sides.left_out, -1, surface), n, solution.surface_power, bias)
     return ends.low, ends.high
 
 
@@ -28,14 +29,19 @@ def of_scene(solution, level: float, quantity: str) -> tuple[np.ndarray, np.ndar
         whole = np.zeros((*power.shape[:2], 1, power.shape[3]))
         np.add.at(np.moveaxis(whole, 2, 0), np.zeros(power.shape[2], np.int64), np.moveaxis(power, 2, 0))
         power = whole
-    ends = _of_sets(solution, level, quantity, np.where(solution.sides.left_out, -1, 0), 1, power)
+    bias = None if solution.side_bias is None else solution.side_bias.sum(axis=0, keepdims=True)
+    ends = _of_sets(solution, level, quantity, np.where(solution.sides.left_out, -1, 0), 1, power, bias)
     return ends.low[0], ends.high[0]
 
 
 def of_rows(solution, level: float, quantity: str) -> "Ends":
     """The errors and intervals of the rows of tables (`Solution.sides`); ``quantity`` may also be "absorbed"."""
-    sides = solution.sides
-    return _of_sets(solution, level, quantity, sides.row, len(sides.surface), row_powers(solution))
+    sides, bias = solution.sides, solution.side_bias
+    if bias is not None:
+        front, back = bias[2 * sides.surface], bias[2 * sides.surface + 1]
+        part = np.array([side == BACK for side in sides.side])[:, None]
+        bias = np.where(sides.whole[:, None], front + back, np.where(part, back, front))
+    return _of_sets(solution, level, quantity, sides.row, len(sides.surface), row_powers(solution), bias)
 
 
 def row_powers(solution) -> np.ndarray | None:
@@ -63,7 +69,9 @@ class Ends:
     high: np.ndarray
 
 
-def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, power: np.ndarray | None) -> Ends:
+def _of_sets(
+    solution, level: float, quantity: str, key: np.ndarray, n: int, power: np.ndarray | None, bias: np.ndarray | None
+) -> Ends:
     """Intervals of area means over sets of patches, NaN where unknown.
 
     Args:
@@ -71,6 +79,7 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
         key: (n_patches,) int, the set of each patch, 0 to n - 1, or -1 for patches in no set.
         n: the number of sets.
         power: (2, replicates, n, n_bands) W or lm that the sets receive, and the part that they reflect.
+        bias: (n, n_bands) W or lm, by how much what they receive may be off in all replicates alike; None: by nothing.
     """
     if quantity != "absorbed":
         check(quantity)
@@ -84,6 +93,10 @@ def _of_sets(solution, level: float, quantity: str, key: np.ndarray, n: int, pow
     received, reflected = power / area[:, None]  # (replicates, n, n_bands)
     values = {"irradiance": received, "radiosity": reflected}.get(quantity, received - reflected)
     mean, error = mean_and_error(values)
+    if bias is not None:
+        part, whole = np.abs(mean), received.mean(axis=0)
+        part = np.divide(part, whole, out=np.ones_like(part), where=whole > 0)  # of what is received
+        error = np.hypot(error, part * bias / area[:, None])
     half = student(level, solution.replicates)
     # a side of a diffusing pane may send out more than it receives: that counts as negative absorption
     floor = -np.inf if quantity == "absorbed" and scatter.through is not None else 0.0

@@ -47,6 +47,8 @@ class Solution:
         irradiance_coefficients: (n_patches, n_bands, K - 1) float64, in the unit of the irradiance: the coefficients after the
             mean of its polynomial on each patch, where the method's basis has K functions (`basis`); else None.
         irradiance_coefficients_standard_error: the same shape; NaN (unknown) without replicates.
+        side_bias: (2 n_surfaces, n_bands) float64, W or lm: by how much what the front and the back of each surface receive may
+            be off in all replicates alike, which they do not show. Of gathers with a basis; else None.
 
     Example:
         >>> solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), rays=10_000)
@@ -72,6 +74,7 @@ class Solution:
     warnings: tuple[str, ...] = ()
     irradiance_coefficients: np.ndarray | None = None
     irradiance_coefficients_standard_error: np.ndarray | None = None
+    side_bias: np.ndarray | None = None
 
     @cached_property
     def radiosity(self) -> np.ndarray:

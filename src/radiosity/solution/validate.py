@@ -42,6 +42,9 @@ def validate(solution: Solution) -> None:
         if power is not None:
             _array("powers", power, "f", (2, solution.replicates, many * len(scene.names), bands))
             _that((np.abs(power) <= MOST).all(), "powers that are not finite")
+    if (bias := solution.side_bias) is not None:
+        _array("biases", bias, "f", (2 * len(scene.names), bands))
+        _that(((bias >= 0) & (bias <= MOST)).all(), "biases out of range")
     _coefficients(solution, (n_patches, bands), bool(none_yet))
     history = solution.history
     _that(history.ndim == 2 and history.shape[1] == 2 and history.dtype.kind in "fiu", "a history of another shape")

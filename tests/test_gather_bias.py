@@ -1,0 +1,61 @@
+"""Intervals of surfaces hold the bias that polynomials along few stored lines have, which replicates do not show."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import radiosity as rd
+
+LINES = 400_000  # shortly before a correction, where the bias is largest beside the noise
+# irradiance of surfaces by 30 million lines, seed 999; by its own intervals right to 0.15 % (the light: 0.3 %)
+KNOWN = np.array(
+    [
+        [0.47814, 0.32516, 0.09216],
+        [0.42773, 0.26049, 0.06398],
+        [0.72598, 0.48614, 0.13712],
+        [0.78268, 0.52816, 0.1575],
+        [0.69585, 0.45007, 0.13466],
+        [0.4597, 0.28847, 0.07439],
+        [0.4687, 0.34297, 0.0926],
+        [0.68508, 0.41745, 0.12147],
+    ]
+)
+
+
+@pytest.fixture(scope="module")
+def runs():
+    patches = rd.subdivide(rd.load_scene("cornell-box"), cells=3)
+    return [rd.solve(patches, "gather", basis="linear", rays=LINES, seed=seed) for seed in range(6)]
+
+
+def held(solutions) -> float:
+    """Return the share of the 95 % intervals that hold what is known."""
+    return float(np.mean([(low <= KNOWN) & (high >= KNOWN) for low, high in (each.surface_interval() for each in solutions)]))
+
+
+def test_intervals_hold_the_bias_of_few_stored_lines(runs):
+    assert held(runs) > 0.9  # 0.93 of 16 runs; 0.82 of 24 without the bias
+    assert held([replace(each, side_bias=None) for each in runs]) < 0.85
+
+
+def test_the_bias_is_in_rows_surfaces_and_the_scene_and_is_kept_in_files(runs, tmp_path):
+    run = runs[0]
+    spread, bias = replace(run, side_bias=None), run.side_bias
+    assert (bias > 0).any(axis=1).sum() == 9  # eight fronts, and the back of the light
+    for quantity in ("irradiance", "radiosity"):
+        for ends, narrow in (
+            (run.surface_interval(quantity=quantity), spread.surface_interval(quantity=quantity)),
+            (run.scene_interval(quantity=quantity), spread.scene_interval(quantity=quantity)),
+        ):
+            assert (ends[1] - ends[0] > narrow[1] - narrow[0]).all()
+    rows = zip(run.surface_table(), spread.surface_table(), strict=True)
+    assert all(one["interval"] > other["interval"] for one, other in rows)
+    run.save(tmp_path / "run.npz")
+    np.testing.assert_array_equal(rd.load_solution(tmp_path / "run.npz").side_bias, bias)
+
+
+def test_constants_and_particles_state_no_bias_of_sums(runs):
+    patches = runs[0].patches
+    assert rd.solve(patches, "gather", rays=10_000).side_bias is None
+    assert rd.solve(patches, "particle-tracing", basis="linear", rays=10_000).side_bias is None
