@@ -3354,6 +3354,20 @@ MISTAKES = (
         "words that wrap around in a sum of states are lost",
     ),
     Mistake(
+        "cluster/crew.py",
+        "            self._deaths = 0\n",
+        "",
+        ("test_cluster.py::test_workers_that_die_in_a_row_end_a_run_and_others_do_not",),
+        "eight workers that die within days end a run",
+    ),
+    Mistake(
+        "cluster/crew.py",
+        "patience *= 2",
+        "break",
+        ("test_cluster.py::test_a_result_whose_worker_died_before_it_came_is_not_waited_for",),
+        "results that come slowly are traced again",
+    ),
+    Mistake(
         "cluster/room.py",
         "    if wanted > there:\n",
         "    if wanted > 100 * there:\n",
