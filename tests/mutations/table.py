@@ -3361,6 +3361,13 @@ MISTAKES = (
         "eight workers that die within days end a run",
     ),
     Mistake(
+        "algorithms/firing/due.py",
+        "return large if counters.firer is not None",
+        "return small if counters.firer is not None",
+        ("test_wide_counts.py::test_wavefronts_that_others_fire_are_as_long_as_before",),
+        "wavefronts that others fire are short, and workers wait for each other",
+    ),
+    Mistake(
         "cluster/crew.py",
         "patience *= 2",
         "break",
