@@ -1,6 +1,7 @@
 """Runs on a cluster of Dask have the bits of runs on one machine, however many workers there are and whatever becomes of them."""
 
 import signal
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from some_cases import some
 from test_merge import FIRST, INCREMENTAL, PARTS, TOGETHER, assert_same
 
 import radiosity as rd
+from radiosity.algorithms.in_parts import Share
 from radiosity.algorithms.matrix.state import MatrixState
 from radiosity.algorithms.merging import merge as merge_states
 from radiosity.algorithms.splitting import divisible, split
@@ -236,3 +238,27 @@ def test_a_result_whose_worker_died_before_it_came_is_not_waited_for():
 
     assert crew.fetched(Lost()) is None
     assert crew.fetched(Slow()) == "brought"
+
+
+def test_workers_that_die_in_a_row_end_a_run_and_others_do_not(monkeypatch):
+    """A run of days may lose many workers, as long as parts come back in between."""
+    brought = SimpleNamespace(lines=5)
+    monkeypatch.setattr(crew.DaskCrew, "_outcome", lambda self, future, one: future.brings)
+    monkeypatch.setattr(crew.DaskCrew, "_take", lambda *_: None)
+    run, one = crew.DaskCrew(None, None, ""), crew.Active(Share(0, 1, None), "tcp://gone", 0.0)
+
+    class Ended:
+        status, brings, cancel = "finished", None, staticmethod(lambda: None)
+
+    def ends(brings) -> int:
+        future = Ended()
+        future.brings = brings
+        return run._take_back(None, [one.share], {future: one})
+
+    for _ in range(3):
+        assert [ends(None) for _ in range(crew.DEATHS - 1)] == [0] * (crew.DEATHS - 1)
+        assert ends(brought) == 5
+    for _ in range(crew.DEATHS - 1):
+        ends(None)
+    with pytest.raises(rd.DeviceError, match=r"8 workers in a row died .* tcp://gone"):
+        ends(None)

@@ -4,6 +4,7 @@ No test traces so many lines. A state is made whose counts lie just below 2^32 (
 """
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import drjit as dr
 import numpy as np
@@ -188,7 +189,7 @@ def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
     patches, told = rd.subdivide(rd.load_scene("room"), cells=2), []
     monkeypatch.setitem(breadth_first.TAILS, "cpu", 0)
     whole = rd.solve(patches, rd.Method(), quanta=20_000, replicates=2)
-    monkeypatch.setitem(due.MOST, "cpu", 3_000)
+    monkeypatch.setitem(due.MOST, "cpu", (3_000, 3_000))
     fire = breadth_first.fire
 
     def remembered(counters, wavefront, largest):
@@ -200,6 +201,17 @@ def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
     assert all(np.array_equal(whole.state[name], parts_of_it.state[name]) for name in whole.state)
     assert max(told) < 3_400
     assert len(told) > 20
+
+
+@pytest.mark.parametrize(
+    ("rows", "firer", "most"), [(5, None, 1 << 24), (1 << 21, None, 1 << 25), (1 << 30, None, 1 << 26), (5, "others", 1 << 26)]
+)
+def test_wavefronts_that_others_fire_are_as_long_as_before(rows, firer, most):
+    """Those fired here are short, but for many rows, since each costs a pass over all of them."""
+    from radiosity.algorithms.firing import due
+
+    tracer = SimpleNamespace(geometry=SimpleNamespace(device=SimpleNamespace(name="cpu")))
+    assert due._most(SimpleNamespace(tracer=tracer, firer=firer, total=rows)) == most
 
 
 def test_powers_of_bands_go_on_beyond_64_bits(geometry):

@@ -3354,6 +3354,27 @@ MISTAKES = (
         "words that wrap around in a sum of states are lost",
     ),
     Mistake(
+        "cluster/crew.py",
+        "            self._deaths = 0\n",
+        "",
+        ("test_cluster.py::test_workers_that_die_in_a_row_end_a_run_and_others_do_not",),
+        "eight workers that die within days end a run",
+    ),
+    Mistake(
+        "algorithms/firing/due.py",
+        "return large if counters.firer is not None",
+        "return small if counters.firer is not None",
+        ("test_wide_counts.py::test_wavefronts_that_others_fire_are_as_long_as_before",),
+        "wavefronts that others fire are short, and workers wait for each other",
+    ),
+    Mistake(
+        "cluster/crew.py",
+        "patience *= 2",
+        "break",
+        ("test_cluster.py::test_a_result_whose_worker_died_before_it_came_is_not_waited_for",),
+        "results that come slowly are traced again",
+    ),
+    Mistake(
         "cluster/room.py",
         "    if wanted > there:\n",
         "    if wanted > 100 * there:\n",

@@ -9,8 +9,10 @@ from ...tally.wraps import PERIOD
 from ...tracing.lanes import PIECE, Wavefront, sums
 from .counters import FiringCounters
 
-# Lines of a wavefront of integers: a few seconds, after which a run can be stopped, or its checkpoint written.
-MOST = {"cpu": 1 << 26, "cuda": 1 << 32}
+# Most lines of a wavefront of integers, in small scenes and in large ones: a few seconds, after which a run can be stopped, or
+# its checkpoint written.
+MOST = {"cpu": (1 << 24, 1 << 26), "cuda": (1 << 32, 1 << 32)}
+A_ROW = 16  # lines for each row, from which passes over all rows take little of the time
 
 
 def due(counters: FiringCounters) -> tuple[Wavefront | None, int]:
@@ -75,7 +77,7 @@ def _wavefront(counters: FiringCounters, numbers, low: int, size: int) -> tuple[
         dr.eval(total, largest, *([counts] if keep else []), *([arrivals] if bands is not None else []))
         if bands is not None:
             bands.weigh(counters, piece, places, arrivals, counts)
-    lines, most = int(total[0]), MOST[counters.tracer.geometry.device.name]
+    lines, most = int(total[0]), _most(counters)
     counters.parted = bands is None and lines > most
     if not lines:
         return None, 0
@@ -83,6 +85,12 @@ def _wavefront(counters: FiringCounters, numbers, low: int, size: int) -> tuple[
         counts, lines = _part(counters, counts, most / lines)
     blocks = counters.blocks if wide else None
     return Wavefront(numbers, low, size, lines, counts if keep else None, blocks), int(largest[0])
+
+
+def _most(counters: FiringCounters) -> int:
+    """Return the most lines of a wavefront; where others fire it, each gets a part of it."""
+    small, large = MOST[counters.tracer.geometry.device.name]
+    return large if counters.firer is not None else min(max(A_ROW * counters.total, small), large)
 
 
 def _part(counters: FiringCounters, counts, share: float):
