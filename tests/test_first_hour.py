@@ -251,6 +251,8 @@ def test_bounds_that_are_left_out_say_so(room):
         rd.load_scene(str(ROOT / "README.md"), max_reflectance=1)
     with pytest.raises(rd.MethodError, match="above 0 and strictly below 1"):
         room.interval(1.0)
+    with pytest.raises(rd.MethodError, match="level is 'floor'; it must be above 0"):
+        room.surface_interval("floor")
     with pytest.raises(rd.SceneError, match="strictly below 1"):
         rd.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 1.0, 1.0)
 

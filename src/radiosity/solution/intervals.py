@@ -25,9 +25,9 @@ def student(level: float, replicates: int) -> float:
     """Half the width of a two-sided interval, in standard errors; NaN for a single replicate.
 
     Raises:
-        MethodError: a level outside (0, 1).
+        MethodError: a level that is no number in (0, 1).
     """
-    if not 0 < level < 1:
+    if not isinstance(level, int | float | np.number) or not 0 < level < 1:
         raise MethodError(f"level is {level!r}; it must be above 0 and strictly below 1, such as 0.95")
     if replicates < 2:
         return float("nan")
