@@ -74,7 +74,10 @@ class Life:
         with self.errors.open("w") as errors:
             self.process = subprocess.Popen(
                 [sys.executable, str(Path(__file__).with_name("soak_life.py")), *self.command],
-                stdout=subprocess.PIPE, stderr=errors, text=True, start_new_session=True,
+                stdout=subprocess.PIPE,
+                stderr=errors,
+                text=True,
+                start_new_session=True,
             )
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()

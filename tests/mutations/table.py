@@ -1301,8 +1301,8 @@ MISTAKES = (
     ),
     Mistake(
         "cli/outputs.py",
-        "resume = \"\" if checkpoint is None else",
-        "resume = \"\" if checkpoint is not None else",
+        'resume = "" if checkpoint is None else',
+        'resume = "" if checkpoint is not None else',
         ("test_cli_checkpoint.py::test_what_had_no_room_beside_the_outputs_is_gone_on_from_elsewhere",),
         "what was kept elsewhere is traced again",
     ),
