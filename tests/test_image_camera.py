@@ -6,6 +6,7 @@ from image_samples import plain_hits, quad_scene
 
 import radiosity as rd
 from radiosity.image import fit, view
+from radiosity.image.standing import face_at, tell_of_nothing
 from radiosity.scene.shapes import box, join
 from radiosity.scene.up import up_axis
 
@@ -116,3 +117,33 @@ def test_an_object_is_seen_from_outside_and_whole():
         assert y.min() >= 0
         assert y.max() <= height
         assert max(np.ptp(x) / width, np.ptp(y) / height) > 0.5
+
+
+@pytest.mark.parametrize(
+    ("point", "face"),
+    [
+        ((0.5, 0.5, 0.0), 0),  # on the square
+        ((1.0, 1.0, 1e-8), 0),  # its corner, within rounding
+        ((1.01, 0.5, 0.0), None),  # in its plane, beside it
+        ((0.5, 0.5, 0.001), None),  # a millimetre in front
+        ((2.25, 0.25, 5.0), 1),  # on the triangle
+        ((2.75, 0.75, 5.0), None),  # beyond its long edge
+    ],
+)
+def test_which_face_a_point_lies_on(point, face):
+    vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 5], [3, 0, 5], [2, 1, 5]]
+    scene = rd.Scene.from_arrays(vertices, [[0, 1, 2, 3], [4, 5, 6, -1]], 0.5, 1.0)
+    assert face_at(scene, point) == face
+
+
+def test_cameras_that_stand_in_a_face_or_see_nothing_are_told(cube, recwarn):
+    nothing, something = np.zeros((3, 4)), np.eye(3, 4)
+    middle = (0.5, 0.5, 0.5)
+    with pytest.warns(rd.RadiosityWarning, match=r"camera at \(0.5, 0, 0.5\) stands in a face of"):
+        tell_of_nothing(cube, rd.Camera((0.5, 0.0, 0.5), middle), something)
+    with pytest.warns(rd.RadiosityWarning, match="picture is empty"):
+        tell_of_nothing(cube, rd.Camera((5, 5, 5), (6, 6, 6)), nothing)
+    recwarn.clear()
+    tell_of_nothing(cube, rd.Camera((0.5, 0.001, 0.5), middle), something)
+    tell_of_nothing(cube, rd.plan(cube, cut=1.0), something)
+    assert not recwarn.list

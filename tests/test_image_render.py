@@ -55,7 +55,8 @@ def test_edges_are_blended_with_the_background():
 
 def test_absorbing_backs_are_black_and_radiating_ones_are_not():
     below = rd.Camera((1, 1, -5), (1, 1, 0), (0, 1, 0), 40.0, 40, 30)
-    assert not render(square([1] * 4), camera=below, hits=plain_hits, scale=1.0).any()
+    with pytest.warns(rd.RadiosityWarning, match="picture is empty"):
+        assert not render(square([1] * 4), camera=below, hits=plain_hits, scale=1.0).any()
     seen = render(square([1] * 4 + [0.5] * 4, two_sided=True), camera=below, hits=plain_hits, scale=1.0)
     assert seen[15, 20, 0] == np.rint(255 * srgb(np.array(0.5)))
 

@@ -218,7 +218,7 @@ def test_sensors_and_cameras_see_by_closed_forms():
         ({"importance": "surface:no such"}, "no surface is called"),
         ({"importance": "walls"}, "surface:NAME"),
         ({"importance": 3}, "int"),
-        ({"importance": "camera:2"}, "camera 2"),
+        ({"importance": "camera:2"}, r"camera 2; the scene has 1 \(counted from 1\)"),
         ({"importance": "sensors"}, "asks for no sensors"),
         ({"importance": "surface:desk", "method": "gather"}, "incremental"),
         ({"importance": "surface:desk", "order": "incremental", "estimator": "bidirectional"}, "estimator"),

@@ -3228,6 +3228,20 @@ MISTAKES = (
         "colours bleed in at the seams of lightmaps",
     ),
     Mistake(
+        "image/standing.py",
+        "u + v - slack_u - slack_v)",
+        "np.maximum(u, v) - slack_u)",
+        ("test_image_camera.py",),
+        "a camera beside a triangle is said to stand in it",
+    ),
+    Mistake(
+        "image/standing.py",
+        "scene.normal).sum(axis=1)) <= near",
+        "scene.normal).sum(axis=1)) < 0",
+        ("test_image_camera.py",),
+        "a camera in a wall makes a black picture without a word",
+    ),
+    Mistake(
         "image/render.py",
         "        maps.check(range, log, color_map)",
         "        pass",

@@ -18,6 +18,7 @@ from .output import check_writable, require, require_results
 from .picture import checked_samples, choose_camera, first_hits, take
 from .projections import View, checked
 from .quantity import choose
+from .standing import tell_of_nothing
 
 SUFFIXES = (".png", ".exr")
 
@@ -104,6 +105,7 @@ def render(
             of_gather = {"lines": lines, "points": points, "seed": seed, "progress": progress, "cluster": client}
             look = Gathered.of(solution, look, quantity, band, single=false_color, **of_gather)
         picture = take(solution, shown, view, look=look, samples=samples, hits=hits)
+    tell_of_nothing(solution.patches.scene, view, picture.cover)
     picture = replace(picture, values=denoised(picture)) if denoise else picture
     facts = {"quantity": shown.title, "unit": shown.unit, "bands": ", ".join(shown.bands), "camera": repr(view)}
     if final_gather is not None:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..errors import MethodError
+from ..image.standing import tell_of_standing
 from ..image.view import check, directions
 from ..scene.model import Camera, Scene
 from .model import Sensors
@@ -25,11 +26,11 @@ def sight(scene: Scene, given) -> tuple[str, np.ndarray, np.ndarray]:
     if isinstance(given, str):
         kind, _, number = given.partition(":")
         if kind == "camera" and (not number or number.isdigit()):
-            return _of_camera(f"camera {number or 1}", _camera(scene, int(number or 1)))
+            return _of_camera(f"camera {number or 1}", _camera(scene, int(number or 1)), scene)
         if given == "sensors":
             return _of_sensors("the scene's sensors", Sensors.of_scene(scene))
     if isinstance(given, Camera):
-        return _of_camera("a camera", given)
+        return _of_camera("a camera", given, scene)
     if isinstance(given, Sensors):
         return _of_sensors("sensors", given)
     shown = f"'{given}'" if isinstance(given, str) else type(given).__name__
@@ -41,7 +42,8 @@ def sight(scene: Scene, given) -> tuple[str, np.ndarray, np.ndarray]:
 
 def _camera(scene: Scene, number: int) -> Camera:
     if not 1 <= number <= len(scene.cameras):
-        raise MethodError(f"{scene.source}: importance is for camera {number}, and there are {len(scene.cameras)} cameras")
+        there = len(scene.cameras)
+        raise MethodError(f"{scene.source}: importance is for camera {number}; the scene has {there} (counted from 1)")
     return scene.cameras[number - 1]
 
 
@@ -50,8 +52,8 @@ def _numbers(count: int) -> np.ndarray:
     return ((np.arange(count) + 0.5)[:, None] * IRRATIONAL) % 1.0
 
 
-def _of_camera(called: str, camera: Camera) -> tuple[str, np.ndarray, np.ndarray]:
-    check(camera)
+def _of_camera(called: str, camera: Camera, scene: Scene) -> tuple[str, np.ndarray, np.ndarray]:
+    tell_of_standing(scene, check(camera))
     x, y, _ = _numbers(RAYS).T
     ways = directions(camera, x * camera.width, y * camera.height)
     return called, np.tile(np.asarray(camera.origin, np.float64), (RAYS, 1)), ways
