@@ -57,6 +57,17 @@ def test_control_groups_of_version_2_limit(system):
     assert memory.free() == 2 * GIB  # the group around it has 3, of which files that make room take 1 and the rest 1
 
 
+def test_where_a_group_is_slowed_down_it_is_limited(system):
+    """Above memory.high nothing is killed: the run would seem to hang."""
+    system("proc/self/cgroup", "0::/job\n")
+    system("groups/job/memory.max", f"{6 * GIB}\n")
+    system("groups/job/memory.current", f"{GIB}\n")
+    system("groups/job/memory.high", "max\n")
+    assert memory.free() == 5 * GIB
+    system("groups/job/memory.high", f"{4 * GIB}\n")
+    assert memory.free() == 3 * GIB
+
+
 def test_control_groups_of_version_1_limit(system):
     system("proc/self/cgroup", "9:name=systemd:/\n4:cpu,memory:/a/b\n0::/\n")
     system("groups/memory/memory.limit_in_bytes", "9223372036854771712\n")

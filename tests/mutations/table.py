@@ -1815,6 +1815,13 @@ MISTAKES = (
         ("test_round_trip.py",),
         "two methods of one name",
     ),
+    Mistake(
+        "device/memory.py",
+        '("memory.max", "memory.high")',
+        '("memory.max",)',
+        ("test_memory.py",),
+        "a run that its control group slows down for ever is begun",
+    ),
     Mistake("device/memory.py", '"G": 2**30', '"G": 10**9', ("test_memory.py",), "gibibytes are gigabytes"),
     Mistake(
         "device/memory.py",

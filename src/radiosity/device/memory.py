@@ -100,7 +100,10 @@ def _system() -> float:
 
 
 def _groups() -> Iterator[float]:
-    """Yield the free bytes of each control group that the process is in, version 1 or 2, and of the groups around it."""
+    """Yield the free bytes of each control group that the process is in, version 1 or 2, and of the groups around it.
+
+    Above ``memory.max`` a process is killed, and above ``memory.high`` it is slowed down until it seems to hang.
+    """
     try:
         lines = (PROC / "self/cgroup").read_text().splitlines()
     except (OSError, ValueError):
@@ -108,14 +111,16 @@ def _groups() -> Iterator[float]:
     for line in lines:
         _, controllers, path = line.split(":", 2)
         if controllers == "":
-            folder, names = GROUPS, ("memory.max", "memory.current", "inactive_file")
+            folder, limits, names = GROUPS, ("memory.max", "memory.high"), ("memory.current", "inactive_file")
         elif "memory" in controllers.split(","):
-            folder, names = GROUPS / "memory", ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+            folder, limits = GROUPS / "memory", ("memory.limit_in_bytes",)
+            names = ("memory.usage_in_bytes", "total_inactive_file")
         else:
             continue
         parts = [part for part in path.split("/") if part not in ("", "..")]
         for depth in range(len(parts) + 1):  # in a container the group may be called as it is outside, where we cannot look
-            yield _left(folder.joinpath(*parts[:depth]), *names)
+            for limit in limits:
+                yield _left(folder.joinpath(*parts[:depth]), limit, *names)
 
 
 def _left(folder: Path, limit: str, used: str, cache: str) -> float:
