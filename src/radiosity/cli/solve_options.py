@@ -167,7 +167,8 @@ class Running(Machine):
     Attributes:
         replicates: Number of independent randomised runs, from which errors are found. Default: 8; 1 for baselines.
         resume: Continue from this .npz file of the same scene, method, seed and replicates, finished or interrupted. Its lines
-            count. It reuses its patches unless you set others. Not for full-matrix and hierarchical.
+            count. It reuses its patches unless you set others. Not for full-matrix. In several bands a finished run must have
+            ended on a power of two of --quanta.
         checkpoint: An .npz file that keeps the state of the run, written about every 30 seconds, for --resume after a crash, a
             kill or a power cut. It is removed when all outputs are written. Default: for longer runs, beside the
             first output: out/box.glb -> out/box.checkpoint.npz.
