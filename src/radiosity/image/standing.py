@@ -18,7 +18,7 @@ def face_at(scene: Scene, point) -> int | None:
     """
     origin, first, second = scene.frames
     point = np.asarray(point, np.float64)
-    near = OFFSET * max(np.ptp(scene.vertices, axis=0).max(), np.abs(point - scene.vertices).max())
+    near = OFFSET * np.maximum(scene.plane_reach, np.abs(point - scene.centre).max())  # whatever lies far away
     away = point - origin
     u, v = _coordinates(away, first, second)
     slack_u, slack_v = (near / np.linalg.norm(edge, axis=1) for edge in (first, second))
