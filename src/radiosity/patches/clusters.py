@@ -119,7 +119,11 @@ class Clusters:
     @cached_property
     def reach(self) -> np.ndarray:
         """Areas of sides summed along ``order``, (n_sides + 1,) float64, m²."""
-        return np.concatenate([[0], np.cumsum(self.side_area[self.order])])
+        return self.summed(self.side_area)
+
+    def summed(self, values: np.ndarray) -> np.ndarray:
+        """Return values of sides, (n_sides,), summed along ``order``, (n_sides + 1,) float64; `drawn` takes such sums."""
+        return np.concatenate([[0], np.cumsum(values[self.order])])
 
     def drawn(self, cluster: np.ndarray, number: np.ndarray, reach: np.ndarray | None = None) -> np.ndarray:
         """Return sides of clusters, drawn by numbers in [0, 1), both of one shape.

@@ -54,10 +54,9 @@ def _valued(levels: Levels, maker: Maker, links: Links, shine: np.ndarray, sides
     part = np.sqrt(levels.area[links.receiver]) * np.maximum(links.factor, links.spread / 4) * shine[links.source]
     lines = LINES * part / max(part.mean(), 1e-300) if len(part) else part
     lines = np.clip(np.exp2(np.round(np.log2(np.maximum(lines, 1)))), LEAST, MOST).astype(np.int64)
-    found, rows = [], []
+    parts = []
     for rays in np.unique(lines):
         some = np.flatnonzero(lines == rays)
-        found.append(maker.valued(links.take(some), int(rays), sides))
-        rows.append(some[found[-1].row])
-    row = np.concatenate(rows) if rows else np.zeros(0, np.int64)
-    return Values(Links.appended([Links.none(), *(part.links for part in found)]), row, sum(part.rays for part in found))
+        found = maker.valued(links.take(some), int(rays), sides)
+        parts.append(Values(found.links, some[found.row], found.rays))
+    return Values.joined(parts)

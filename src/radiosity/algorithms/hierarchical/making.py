@@ -1,12 +1,13 @@
 """Links made from pairs of elements: form factor, visible share, and by how much they may be wrong."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...patches import Hierarchy
 from ...patches.clusters import Clusters
+from ...pieces import pieces
 from ...tracing.geometry import Geometry
 from ...tracing.visibility import Polygons, visible_share
 from .kernel import Shapes, facing, samples, unoccluded
@@ -51,8 +52,8 @@ class Maker:
         reach = None
         if self.clusters is not None and radiosity is not None:
             power = radiosity[self.hierarchy.first[:-1]].sum(axis=1) * self.clusters.side_area
-            reach = np.concatenate([[0], np.cumsum(power[self.clusters.order])])
-        parts = [self._batch(receiver[rows], source[rows], reach) for rows in _batches(len(receiver), BATCH)] or [Links.none()]
+            reach = self.clusters.summed(power)
+        parts = [self._batch(receiver[rows], source[rows], reach) for rows in pieces(len(receiver), BATCH)] or [Links.none()]
         return Links.appended(parts)
 
     def valued(self, links: Links, rays: int, shine: np.ndarray) -> Values:
@@ -60,17 +61,16 @@ class Maker:
         assert self.clusters is not None
         assert self.geometry is not None
         parts = []
-        for rows in _batches(len(links), max(16 * BATCH // rays, 1)):
+        for rows in pieces(len(links), max(16 * BATCH // rays, 1)):
             found = valued(self.clusters, self.geometry, (rays, self.parameters.seed), links.take(rows), shine)
             parts.append(Values(found.links, found.row + rows.start, found.rays))
             self._count(found.rays, rows.stop - rows.start)
-        row = np.concatenate([part.row for part in parts]) if parts else np.zeros(0, np.int64)
-        return Values(Links.appended([Links.none(), *(part.links for part in parts)]), row, sum(part.rays for part in parts))
+        return Values.joined(parts)
 
     def plain(self, receiver: np.ndarray, source: np.ndarray, rays: int) -> Links:
         """Return links of elements that are not judged: their spread is their factor."""
         parts = [Links.none()]
-        for rows in _batches(len(receiver), 4 * BATCH):
+        for rows in pieces(len(receiver), 4 * BATCH):
             one, other = Shapes.of(self.hierarchy, receiver[rows]), Shapes.of(self.hierarchy, source[rows])
             some, _ = facing(self.hierarchy, one, other)
             one, other = one.take(some), other.take(some)
@@ -129,11 +129,6 @@ class Maker:
         clear = np.maximum(high - factor, factor - low)
         partly = np.maximum(high - factor * share, factor * share)
         return np.where(share >= 1, clear, _seen(np.where(share > 0, partly, high), share, self.parameters.rays))
-
-
-def _batches(count: int, size: int) -> Iterator[slice]:
-    for at in range(0, count, size):
-        yield slice(at, min(at + size, count))
 
 
 def _seen(value: np.ndarray, share: np.ndarray, rays: int) -> np.ndarray:

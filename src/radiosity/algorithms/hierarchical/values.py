@@ -43,6 +43,13 @@ class Values:
     row: np.ndarray
     rays: int
 
+    @staticmethod
+    def joined(parts: list["Values"]) -> "Values":
+        """Return those of all parts, one after the other."""
+        row = np.concatenate([np.zeros(0, np.int64), *(part.row for part in parts)])
+        links = Links.appended([Links.none(), *(part.links for part in parts)])
+        return Values(links, row, sum(part.rays for part in parts))
+
 
 def valued(clusters: Clusters, geometry: Geometry, lines: tuple[int, int], links: Links, shine: np.ndarray) -> Values:
     """Return what lines find of links of which an end is a cluster.
@@ -52,7 +59,7 @@ def valued(clusters: Clusters, geometry: Geometry, lines: tuple[int, int], links
         shine: (n_sides,) float64, the radiosity of sides, W/m² or lm/m², summed over bands.
     """
     one, other = Ends.of(clusters, links.receiver), Ends.of(clusters, links.source)
-    reach = np.concatenate([[0], np.cumsum((shine * clusters.side_area)[clusters.order])])
+    reach = clusters.summed(shine * clusters.side_area)
     found = drawn(clusters, geometry, lines, one, other, STREAM, reach)
     density = _density(clusters, geometry, other, shine, reach)
     distance = np.linalg.norm(other.centre - one.centre, axis=1)
