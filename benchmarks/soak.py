@@ -1,10 +1,10 @@
 """Runs that are killed, whose disk is full for spells and whose workers die: ``python benchmarks/soak.py [--part 0.1]``.
 
-Three runs, a grey one, one in colours and one on a cluster of two processes, are killed (SIGKILL) at random times and
+Four runs, a grey one, one in colours, one of iterations and one on a cluster of two processes, are killed (SIGKILL) at random times and
 resumed from what is on the disk until they are done. A row a life tells what the kill cost: the seconds from the moment
 at which the lines that the next life begins with were first there, until the kill; the lines that were told since; and of these
 seconds those in which the disk was full. At the end the results are compared, bit for bit, with those of runs never stopped.
-An hour on two cores; ``--part`` of all lines takes as much less. Where no disk of its own may be mounted (not root), it is
+An hour and a half on two cores; ``--part`` of all lines takes as much less. Where no disk of its own may be mounted (not root), it is
 never full.
 """
 
@@ -29,8 +29,8 @@ import radiosity as rd
 LIFE = (15.0, 150.0)  # seconds, drawn between these two
 WORKER = (15.0, 60.0)  # seconds between two workers that are killed
 ORPHANS = 60.0  # seconds after a driver's kill by which its workers have ended
-COMMON = ("--method", "random-walk", "--replicates", "4", "--cells", "8", "--seed", "5")
-ROW = "{:<8} {:>4} {:>7} {:>7} {:>14} {:>14} {:>12} {:>7} {:>7} {:>7} {:>7} {:>9} {:>8}  {}"
+COMMON = ("--replicates", "4", "--cells", "8", "--seed", "5")
+ROW = "{:<10} {:>4} {:>7} {:>7} {:>14} {:>14} {:>12} {:>7} {:>7} {:>7} {:>7} {:>9} {:>8}  {}"
 HEAD = (
     "run", "life", "wall s", "start s", "lines at first", "at the end", "lost lines", "lost s", "full s", "MiB", "most",
     "workers", "orphans", "end",
@@ -39,21 +39,23 @@ HEAD = (
 
 @dataclass(frozen=True)
 class Case:
-    """A run: its name, scene, quanta, and further arguments."""
+    """A run: its name, scene, method, quanta, and further arguments."""
 
     name: str
     scene: str
+    method: str
     quanta: int
     also: tuple[str, ...] = ()
 
     def arguments(self, part: float, out: Path) -> list[str]:
-        return ["solve", self.scene, *COMMON, "--quanta", str(round(self.quanta * part)), "-o", str(out)]
+        return ["solve", self.scene, "--method", self.method, *COMMON, "--quanta", str(round(self.quanta * part)), "-o", str(out)]
 
 
 CASES = (
-    Case("grey", "room", 200_000_000),
-    Case("colours", "cornell-box", 110_000_000),
-    Case("cluster", "room", 200_000_000, ("--cluster", "local:2")),
+    Case("grey", "room", "random-walk", 200_000_000),
+    Case("colours", "cornell-box", "random-walk", 220_000_000),
+    Case("iterations", "cornell-box", "stochastic-jacobi", 600_000_000),
+    Case("cluster", "room", "random-walk", 200_000_000, ("--cluster", "local:2")),
 )
 
 
@@ -192,12 +194,12 @@ def main() -> None:
         folder = given.folder or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
         os.environ["TMPDIR"] = str(folder)
-        whole: dict[tuple[str, int], rd.Solution] = {}
+        whole: dict[tuple[str, str, int], rd.Solution] = {}
         print(ROW.format(*HEAD), flush=True)
         with Disk(folder / "disk", given.seed) as disk:
             ends = [(case, *soak(case, given.part, disk, folder, random)) for case in CASES if case.name in given.runs]
         for case, lost, found in ends:
-            key = (case.scene, case.quanta)
+            key = (case.scene, case.method, case.quanta)
             if key not in whole:
                 out = folder / f"{case.name}-whole.npz"
                 command = [sys.executable, "-m", "radiosity", *case.arguments(given.part, out)]

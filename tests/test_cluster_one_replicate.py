@@ -10,7 +10,7 @@ from test_merge import FIRST, INCREMENTAL, PARTS, TOGETHER, assert_same
 import radiosity as rd
 from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.run import budget
-from radiosity.tracing import lanes
+from radiosity.tracing import lanes, parts
 
 distributed = pytest.importorskip("distributed", reason="distributed is not installed")
 from radiosity.cluster import barrier, post, room, steps, wavefronts  # noqa: E402
@@ -40,6 +40,7 @@ CUT = {
     "grey": ("room", {}, {}),
     "depth-first": ("room", {"order": "depth-first"}, {}),
     "colours": ("cornell-box", {}, {}),
+    "colours in parts": ("cornell-box", {}, {}),
     "random numbers": ("room", {"numbers": "random"}, {}),
 }
 
@@ -51,10 +52,12 @@ def cut_small(monkeypatch, rows: int) -> None:
     monkeypatch.setattr(breadth_first, "TAILS", {"cpu": 64})
 
 
-@some(["grey", "colours"], ["depth-first", "random numbers"])
+@some(["grey", "colours", "colours in parts"], ["depth-first", "random numbers"])
 def test_one_replicate_on_two_workers(client, name, monkeypatch):
     scene, choices, options = CUT[name]
     cut_small(monkeypatch, rows=10_000)  # each wavefront ends with a barrier
+    if name == "colours in parts":
+        monkeypatch.setitem(parts.MOST, "cpu", (512, 512))
     patches, units = rd.subdivide(rd.load_scene(scene), cells=2), []
     submit = barrier.Barrier._submit
     monkeypatch.setattr(barrier.Barrier, "_submit", lambda *of: (units.append(of[1]), submit(*of)))
@@ -112,14 +115,16 @@ def test_a_worker_that_waits_for_others_comes_back_when_it_is_told(client):
     assert future.result(timeout=30) is False
 
 
-STEPS = ["regular", "incremental", "continuous", "gather"]
+STEPS = ["regular", "regular in parts", "incremental", "continuous", "gather"]
 MORE_STEPS = ["two ends", "control variate", "warm-up", "gathering", "fractional", "sorted", "density", "incremental, two ends"]
 OTHERS = {"gather": rd.PRESETS["gather"].method, "sorted": rd.Method(equation="continuous", order="sorted")}
 
 
 @some(STEPS, MORE_STEPS)
 def test_steps_of_one_replicate_on_two_workers(client, coloured, name, monkeypatch):
-    method = (PARTS | TOGETHER | INCREMENTAL | OTHERS)[name]
+    method = (PARTS | TOGETHER | INCREMENTAL | OTHERS)[name.removesuffix(" in parts")]
+    if name != name.removesuffix(" in parts"):
+        monkeypatch.setitem(parts.MOST, "cpu", (512, 512))
     monkeypatch.setattr(steps, "FEWEST", 64)
     monkeypatch.setattr(lanes, "CHUNK", 512)
     units, submit = [], barrier.Barrier._submit

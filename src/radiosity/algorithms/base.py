@@ -74,6 +74,10 @@ class AbstractAlgorithm(ABC, Generic[S]):
         """Return the number of lines up to now, without those that are traced when results are read."""
         return self.tally.swept_lines(self.problem, self.capture())
 
+    def behind(self) -> float:
+        """Return for how many seconds work has been under way, on other machines, that `capture` would lack."""
+        return 0.0
+
     @abstractmethod
     def read(self, arrays: Arrays, sizes: Sizes) -> S:
         """Return the state of a run of this method from the arrays that `AbstractState.arrays` gave.

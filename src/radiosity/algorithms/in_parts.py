@@ -71,6 +71,10 @@ class AbstractCrew(ABC):
         states.
         """
 
+    def behind(self) -> float:
+        """Return for how many seconds work has been under way that the shares' states lack."""
+        return 0.0
+
 
 class InTurn(AbstractCrew):
     """Brings one part after the other forward, here: how a run goes on alone that several machines have begun."""
@@ -129,6 +133,9 @@ class InParts(AbstractAlgorithm[AbstractState]):
     def swept_so_far(self) -> int:
         states = [share.state for share in self._shares if share.state is not None]
         return sum(self.tally.swept_lines(self.problem, state) for state in states)
+
+    def behind(self) -> float:
+        return self.crew.behind()
 
     def part(self, share: Share) -> AbstractAlgorithm:
         """Return a new algorithm of a share's replicates."""

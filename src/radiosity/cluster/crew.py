@@ -4,6 +4,7 @@ import threading
 import time
 import uuid
 import warnings
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import CancelledError
 from contextlib import suppress
@@ -22,8 +23,9 @@ from .job import INSTRUCTIONS, facts
 from .worker import Missing, Outcome, Unit, advance, owned
 
 SECONDS = 4.0  # of a unit at least: what a killed worker can lose
-TIMES = 30  # a unit lasts for as many times what it takes to send it and its state
+TIMES = 30  # a unit lasts for as many times what it takes to send it and its state: the least that the last few took
 MOST_SECONDS = 60.0
+LAST = 4  # units of a worker: a busy machine holds some of them up
 AWAKE = 0.2  # seconds between two looks at Ctrl-C, the clock and the workers
 LOOK = 1.0  # seconds between two looks at which workers there are
 SMALL = 1 << 20  # bytes that are sent along with a task; more is sent to the worker first
@@ -52,7 +54,7 @@ def fetched(future: Any) -> Any:
 
 @dataclass(eq=False)
 class Active:
-    """A unit that a worker works on."""
+    """A unit that a worker works on, handed out when it was ``begun``."""
 
     share: Share
     address: str
@@ -82,7 +84,8 @@ class DaskCrew(AbstractCrew):
     _threads: dict[str, int] = field(default_factory=dict)
     _looked: float = -1e9
     _heard: float = field(default_factory=time.monotonic)
-    _seconds: float = SECONDS
+    _active: dict[Any, Active] = field(default_factory=dict)
+    _sending: dict[str, deque[float]] = field(default_factory=dict)  # seconds of each worker's last units
     _deaths: int = 0
     _told: set[str] = field(default_factory=set)
     awake: threading.Event = field(default_factory=threading.Event)
@@ -120,7 +123,7 @@ class DaskCrew(AbstractCrew):
     # ---- units -----------------------------------------------------------------------------------------------------
 
     def complete(self, run: InParts, shares: list[Share], quanta: int, swept: Swept) -> None:
-        active: dict[Any, Active] = {}
+        self._active = active = dict[Any, Active]()
         lonely = time.monotonic()
         try:
             while not all(share.done for share in shares):
@@ -139,6 +142,11 @@ class DaskCrew(AbstractCrew):
             for future in active:
                 with suppress(Exception):  # the scheduler may have gone
                     future.cancel()
+            self._active = {}
+
+    def behind(self) -> float:
+        now = time.monotonic()
+        return max((now - one.begun for one in self._active.values()), default=0.0)
 
     def _split(self, shares: list[Share], active: dict[Any, Active], workers: dict[str, int]) -> None:
         """Give idle workers half of what waits, where states can be split within a stage."""
@@ -179,7 +187,7 @@ class DaskCrew(AbstractCrew):
             token = token or "sent"
             if sum(np.asarray(value).nbytes for value in arrays.values()) > SMALL:
                 arrays = self.client.scatter(arrays, workers=[address], hash=False)
-        unit = Unit(self.job.key, share.first, share.count, quanta, token, self._seconds)
+        unit = Unit(self.job.key, share.first, share.count, quanta, token, self._seconds(address))
         # no other worker: Dask leaves tasks alone whose workers have all gone, also when others come; `_take_back` sees that
         future = self.client.submit(advance, unit, arrays, pure=False, workers=[address], key=f"radiosity-{uuid.uuid4().hex}")
         future.add_done_callback(lambda _: self.awake.set())
@@ -212,11 +220,15 @@ class DaskCrew(AbstractCrew):
         shares[at] = Share(one.share.first, one.share.count, state, outcome.done)
         self._tokens[state] = (outcome.token, outcome.address)
         wall = time.monotonic() - one.begun
-        self._seconds = min(max(SECONDS, TIMES * (wall - outcome.seconds)), MOST_SECONDS)
+        self._sending.setdefault(one.address, deque(maxlen=LAST)).append(wall - outcome.seconds)
         for text in outcome.told:
             self.tell(text)
         if outcome.ended:
             raise Interrupted(outcome.ended)
+
+    def _seconds(self, address: str) -> float:
+        """Return the seconds of a worker's next unit."""
+        return min(max(SECONDS, TIMES * min(self._sending.get(address, [0.0]))), MOST_SECONDS)
 
     def _outcome(self, future: Any, one: Active) -> Outcome | None:
         """Return what a unit has done; None where it must be handed out again."""

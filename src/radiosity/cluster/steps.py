@@ -17,7 +17,7 @@ from ..algorithms.walks.launches import AbstractWalks, AbstractWalksElsewhere, C
 from ..tally.shots import Landed, Shot, Shots
 from .barrier import Barrier
 from .crew import DaskCrew
-from .wavefronts import FEWEST, DaskFirer
+from .wavefronts import FEWEST, DaskFirer, most_lines
 from .worker_steps import follow, gather_of, shoot, shot_of, trace, walks_of
 
 AT_A_TIME = 4  # units of each worker between two barriers, where they need not be fewer: an idle one then takes the next
@@ -45,6 +45,10 @@ class DaskShots(Shots):
     def __init__(self, crew: DaskCrew, replicates: int):
         self.barrier = Barrier(crew, shoot, lambda unit: [shot_of(crew.job, unit)])
         self.replicates, self.least = replicates, 2 * FEWEST
+
+    @property
+    def most(self) -> int:
+        return most_lines(self.barrier)
 
     def trace(self, lines: Shot) -> Iterator[Landed]:
         total = lines.total

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..algorithms.firing.elsewhere import Begun, Due, Firer, Hits, Lines, cut
 from ..algorithms.firing.own_rows import OwnRows, dealt
+from ..tracing.parts import MOST
 from . import post
 from .barrier import Barrier
 from .crew import DaskCrew
@@ -15,7 +16,7 @@ from .worker import fire, fire_all, fire_own_rows
 
 FEWEST = 1 << 17  # lines of a unit: smaller ones are given to fewer workers, and wavefronts of fewer than two are fired here
 LEAST = 1 << 17  # lines of own rows, for each worker that is told of their hits, that must be due before a worker fires them
-SECONDS = 30.0  # after which workers that fire together come back: what all of them lose where one is killed
+SECONDS = 10.0  # after which workers that fire together come back: what all of them lose where one is killed
 ROWS = 64  # of a worker at least, where they have rows of their own: so that each has about as much to fire
 
 
@@ -29,6 +30,10 @@ class DaskFirer(Firer):
     def __init__(self, crew: DaskCrew):
         self.barrier = Barrier(crew, fire, lambda lines: list(fire_all(crew.job, lines)))
         self.least = 2 * FEWEST
+
+    @property
+    def most(self) -> int:
+        return most_lines(self.barrier)
 
     def trace(self, lines: Due) -> Iterator[Hits]:
         barrier, total = self.barrier, sum(one.total for one in lines.lines)
@@ -60,6 +65,12 @@ class DaskFirer(Firer):
         for brought in found:
             barrier.note(sum(int(hits.arrivals.sum() + hits.missed.sum()) for hits in brought.what), brought)
         return [hits for brought in found for hits in brought.what]
+
+
+def most_lines(barrier: Barrier) -> int:
+    """Return the most lines between two barriers: some seconds of each worker."""
+    each, least = MOST[barrier.crew.job.device]
+    return max(each * len(barrier.workers()), least)
 
 
 def tasks(lines: Lines, begun: Begun, rates: list[float]) -> list[OwnRows]:

@@ -51,6 +51,7 @@ class Checkpoint:
     _due: float = field(init=False)  # by when it should be written
     _rest: float = field(init=False, default=0.0)  # until when it is not
     _swept: float | None = field(init=False, default=None)  # when the last wavefront ended
+    _behind: float = field(init=False, default=0.0)  # seconds of work that it lacks
     _longest: float = field(init=False, default=0.0)  # seconds of a wavefront since it was written
     _sized: bool = field(init=False, default=False)
     _warned: bool = field(init=False, default=False)
@@ -93,15 +94,18 @@ class Checkpoint:
             raise OutputError(f"{self.path}: a checkpoint is an .npz file; give it that suffix")
         check_place(self.path)
 
-    def due(self) -> bool:
+    def due(self, behind: float = 0.0) -> bool:
         """Return whether to write it now; asked after each wavefront.
 
         It is written before another wavefront, as long as the longest since the last writing, would end too late.
+
+        Args:
+            behind: seconds of work under way that it would lack: the next one is written as much earlier.
         """
         now = time.monotonic()
         if self._swept is not None:
             self._longest = max(self._longest, now - self._swept)
-        self._swept = now
+        self._swept, self._behind = now, behind
         return now >= self._rest and now + self._longest >= self._due
 
     def write(self, solution: Callable[[], Result]) -> None:
@@ -121,7 +125,7 @@ class Checkpoint:
         wait = self.every if self._save(what) else min(self.every, AGAIN)
         self._swept, self._longest = time.monotonic(), 0.0
         self._rest = self._swept + TIMES * (self._swept - begun)
-        self._due = max(self._swept + wait, self._rest)
+        self._due = max(self._swept + wait - self._behind, self._rest)
 
     def end(self, solution: Result) -> None:
         """Write the file at the end of a run; that of a complete run only where the run has written one before."""

@@ -262,7 +262,7 @@ class Run(Generic[R]):
         seconds = self.budget.seconds
         if seconds is not None and self.teller.stage and self.teller.elapsed > PATIENCE * seconds + 1:
             raise Interrupted("complete")
-        if self.checkpoint is not None and self.checkpoint.due():
+        if self.checkpoint is not None and self.checkpoint.due(self.algorithm.behind()):
             self.checkpoint.write(lambda: self._so_far("interrupted", self.algorithm.capture()))
 
     def _first_quanta(self) -> int:

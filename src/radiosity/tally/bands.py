@@ -30,6 +30,7 @@ class BandTally:
         fired: UInt64, power that left replicate r along lines since the last look, at g * replicates + r; ``fired_much`` has more
             of it, in 2^32 of its units, and ``fired_before`` what left before.
         upper: upper words of ``received`` by rows, ``received`` by other slots, and ``sent``, which are modulo 2^64.
+        parted: True where a part of the last wavefront is left to fire.
         weights: UInt32, of group g, what each line of the i-th patch of a wavefront carries, at i * n_groups + g; None between
             stages.
     """
@@ -47,6 +48,7 @@ class BandTally:
         self.tracer, self.fired_before = tracer, [0] * (self.n * tracer.replicates)
         self._begin_fired()
         self.weights = self.arrivals_before = None
+        self.parted = False
         self.upper = {name: Wraps(types, 64) for name in ("received", "missed", "sent")}
 
     def _begin_fired(self) -> None:

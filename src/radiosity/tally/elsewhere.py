@@ -13,10 +13,12 @@ class AbstractElsewhere(ABC, Generic[L, S]):
 
     Attributes:
         least: lines (of drawn walks: chunks) from which it pays; fewer are traced here.
+        most: lines that are traced before there is a state to go on from.
         over: True where the run is to end: the lines that it was given have been traced all the same.
     """
 
     least: int = 0
+    most: int = 1 << 26
     over: bool = False
 
     @abstractmethod

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..device.backend import frozen, upload
 from ..device.launches import shared
+from ..errors import MethodError
 from ..method import Method
 from ..patches.bases import CONSTANT, Basis
 from ..problem.lights import AbstractLights
@@ -22,6 +23,7 @@ from ..sampling.streams import Purpose, Seed
 from ..tracing.geometry import Geometry
 from ..tracing.lanes import Batch, Launch, sums
 from ..tracing.line_tracer import LineTracer
+from ..tracing.parts import most_lines, part
 from ..tracing.spots import traced
 from .hit_counts import HitCounts
 from .hit_tally import DENSE
@@ -64,6 +66,20 @@ class Receivers:
     of: Callable[[Any, Any], Any]
 
 
+@dataclass(frozen=True)
+class Begun:
+    """A shot that is fired in parts, after some of them.
+
+    Attributes:
+        done: (total,) UInt32, lines of each patch number that were fired in it.
+        received, moved: as of `Shooter`, what they brought.
+    """
+
+    done: Any
+    received: Any
+    moved: Any = None
+
+
 class Shooter:
     """Counters of lines of patches, and of lights without area after them, and the kernel that fires them.
 
@@ -77,6 +93,8 @@ class Shooter:
         moved: (slots * n_columns,) Int64, what of the last shot with receivers other slots received than those that lines hit, by
             the slots that they hit.
         elsewhere: fires many lines elsewhere; None: here.
+        told: is called with the number of its lines after each part of a shot but the last; None: shots are fired whole.
+        begun: the shot of which a part has been fired; the next one goes on with it.
     """
 
     def __init__(
@@ -101,6 +119,8 @@ class Shooter:
         self._upper = [Wraps(self.types) for _ in range(sequences)]
         self.fired = self._fired[0]
         self.elsewhere: Shots | None = None
+        self.told: Callable[[int], None] | None = None
+        self.begun: Begun | None = None
 
     @property
     def sequences(self) -> int:
@@ -134,7 +154,7 @@ class Shooter:
         pairs: Pairs | None = None,
         receivers: Receivers | None = None,
     ) -> int:
-        """Fire lines, and return their number.
+        """Fire lines, and return their number, that of lines of a shot that had begun included.
 
         Args:
             counts: (total,) UInt32, lines that each patch number fires now.
@@ -145,19 +165,32 @@ class Shooter:
                 arrays are valid until it returns.
             receivers: what receives, where it is not what lines hit; without polynomials.
         """
-        if self.groups:
+        total, left, begun = 0, counts, self.begun
+        if begun is not None:
+            self.received, self.moved, left = begun.received, begun.moved, counts - begun.done
+            (total,) = sums(self.types, begun.done)
+            if dr.any(begun.done > counts):
+                raise MethodError("the solution to go on from has lines of another step; start anew")
+        elif self.groups:
             groups = self.groups if ends is None or ends.groups is None else ends.groups
             size = self.slots if receivers is None else receivers.size
             self.received = dr.opaque(self.types.Int64, 0, size * groups * self.basis.size)
             self.moved = dr.opaque(self.types.Int64, 0, self.slots * groups) if receivers else None
-        total, left = 0, counts
         while left is not None:
             lines, left = self._shoot(left, weights, ends, pairs, receivers)
             total += lines
+            if left is not None and self.told is not None:
+                self.begun = Begun(counts - left, self.received, self.moved)
+                dr.eval(self.begun.done)
+                self.told(lines)
+        self.begun = None
         return total
 
     def _shoot(self, counts, weights, ends: Ends | None, pairs: Pairs | None, receivers: Receivers | None) -> tuple[int, Any]:
-        """Fire lines of each patch that lie in one block. Return their number, and the counts of those that are left, or None."""
+        """Fire lines of each patch that lie in one block, or a part of them.
+
+        Return their number, and the counts of those that are left, or None.
+        """
         types, tracer = self.types, self.tracer
         dr.eval(counts, weights)
         rows: Any = dr.compress(counts > 0)
@@ -167,9 +200,12 @@ class Shooter:
         if self.elsewhere is not None and pairs is None and receivers is None and self.upper.halves is None:
             (lines,) = sums(types, now)
             if lines >= self.elsewhere.least:
-                shoot_elsewhere(self, self.elsewhere, rows, now, weights, ends)
+                some = self._some(now, lines, self.elsewhere.most)
+                left = None if some is None else counts - self._spread(some, rows)
+                lines = shoot_elsewhere(self, self.elsewhere, rows, now if some is None else some, weights, ends)
+                dr.eval(left)
                 self._look()
-                return lines, None
+                return lines, left
         largest, blocks, left = dr.max(now + fired), None, None
         if self.upper.halves is not None:
             first = fired + 1
@@ -178,6 +214,10 @@ class Shooter:
             left, largest = counts - self._spread(now, rows), dr.full(types.UInt32, BLOCK - 1, 2)
             tracer.blocks.prepare(self.upper.largest + 1)
         batch = Batch.of(types, rows, now, fired, tracer.record, blocks=blocks)
+        some = self._some(now, batch.total, most_lines(tracer.geometry.device.name, self.total))
+        if some is not None:
+            left = counts - self._spread(some, rows)
+            batch = Batch.of(types, rows, some, fired, tracer.record, blocks=blocks)
         # read after the batch, whose size the host has waited for; batches of few lines share one kernel, whatever their indices
         bits = tracer.numbers.bits_for(int(largest[0]))
         mode = dr.ReduceMode.Expand if batch.total > DENSE * self.total else dr.ReduceMode.Direct
@@ -189,6 +229,10 @@ class Shooter:
         dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
         dr.eval(self.fired, left)
         return batch.total, left if left is not None and dr.any(left > 0) else None
+
+    def _some(self, counts, lines: int, most: int):
+        """Return counts of a part of the lines; None where they are fired whole."""
+        return None if self.told is None or lines <= most else part(self.types, counts, most / lines)
 
     def _spread(self, values, rows):
         """Return values of some patch numbers as an array of all."""

@@ -42,7 +42,7 @@ class FiringCounters:
         landed: the slots that lines of the last wavefront hit, on the host, where these were few; else None.
         has_due: True where some row may still have to fire a line.
         firer: fires wavefronts elsewhere; None: here.
-        parted: True where the last wavefront has a part of the lines that were due.
+        parted: True where the last wavefront has a part of the lines that were due, or of those of a wavefront with bands.
         wide: True where 32 bits may be too few for the next wavefront.
         swept: lines of the wavefronts so far.
         unseen: at least the number of lines since counters were looked at.

@@ -7,16 +7,17 @@ from ...device.backend import upload
 from ...sampling.blocks import BLOCK
 from ...tally.wraps import PERIOD
 from ...tracing.lanes import PIECE, Wavefront, sums
+from ...tracing.parts import most_lines, part
 from .counters import FiringCounters
-
-# Most lines of a wavefront of integers, in small scenes and in large ones: a few seconds, after which a run can be stopped, or
-# its checkpoint written.
-MOST = {"cpu": (1 << 24, 1 << 26), "cuda": (1 << 32, 1 << 32)}
-A_ROW = 16  # lines for each row, from which passes over all rows take little of the time
 
 
 def due(counters: FiringCounters) -> tuple[Wavefront | None, int]:
     """Return the lines that are due now, and the largest line number among them."""
+    if counters.bands is not None and counters.bands.parted:
+        wavefront, largest = _left(counters)
+        if wavefront is not None:
+            return wavefront, largest
+        counters.everywhere = True
     numbers = _candidates(counters)
     wavefront, largest = _wavefront(counters, numbers, 0, counters.total if numbers is None else dr.width(numbers))
     counters.has_due = wavefront is not None
@@ -63,8 +64,9 @@ def _wavefront(counters: FiringCounters, numbers, low: int, size: int) -> tuple[
 
     With bands, all rows are taken in pieces, to save memory, and hit counts are kept in place of counts of lines.
     """
-    u32, bands, wide, counts = counters.types.UInt32, counters.bands, counters.wide, None
-    total, largest = dr.opaque(counters.types.UInt64, 0, 2), dr.opaque(u32, 0, 2)
+    types, bands, wide, counts = counters.types, counters.bands, counters.wide, None
+    u32 = types.UInt32
+    total, largest = dr.opaque(types.UInt64, 0, 2), dr.opaque(u32, 0, 2)
     keep = bands is None or size <= PIECE or wide
     step = PIECE if numbers is None and bands is not None and not wide else max(size, 1)
     for start in range(0, size, step):
@@ -78,28 +80,49 @@ def _wavefront(counters: FiringCounters, numbers, low: int, size: int) -> tuple[
         if bands is not None:
             bands.weigh(counters, piece, places, arrivals, counts)
     lines, most = int(total[0]), _most(counters)
-    counters.parted = bands is None and lines > most
+    counters.parted = lines > most and (bands is None or _can_be_parted(counters, numbers))
     if not lines:
         return None, 0
+    if counters.parted and bands is not None:
+        return _left(counters)
     if counters.parted:
-        counts, lines = _part(counters, counts, most / lines)
+        counts = part(types, counts, most / lines)
+        (lines,) = sums(types, counts)
     blocks = counters.blocks if wide else None
     return Wavefront(numbers, low, size, lines, counts if keep else None, blocks), int(largest[0])
 
 
 def _most(counters: FiringCounters) -> int:
     """Return the most lines of a wavefront; where others fire it, each gets a part of it."""
-    small, large = MOST[counters.tracer.geometry.device.name]
-    return large if counters.firer is not None else min(max(A_ROW * counters.total, small), large)
+    if counters.firer is not None:
+        return counters.firer.most
+    return most_lines(counters.tracer.geometry.device.name, counters.total)
 
 
-def _part(counters: FiringCounters, counts, share: float):
-    """Return counts of a part of all lines, and their number: what is left is due in the next wavefront."""
-    types = counters.types
-    share = dr.opaque(types.Float64, share)
-    some = dr.minimum(types.UInt32(types.Float64(counts) * share) + 1, counts)
-    dr.eval(some)
-    return some, sums(types, some)[0]
+def _can_be_parted(counters: FiringCounters, numbers) -> bool:
+    """Return whether a wavefront with bands may be fired in parts: one of all rows, that is neither wide nor coherent."""
+    return numbers is None and not counters.wide and counters.packets_from is None
+
+
+def _left(counters: FiringCounters) -> tuple[Wavefront | None, int]:
+    """Return what is left of a wavefront with bands that is fired in parts, or a part of it; None where nothing is left.
+
+    Its lines, and what they carry, were fixed before its first part. So parts bring what the whole would.
+    """
+    types, bands = counters.types, counters.bands
+    assert bands is not None
+    targets = counters.target_counts_before(dr.arange(types.UInt32, counters.total))
+    counts, largest = targets - counters.targets.read(counters.fired, None), dr.max(targets)
+    dr.eval(counts, largest)
+    (lines,), most = sums(types, counts), _most(counters)
+    bands.parted = lines > most
+    if not lines:
+        return None, 0
+    if bands.parted:
+        counts = part(types, counts, most / lines)
+        (lines,) = sums(types, counts)
+    counters.parted = True
+    return Wavefront(None, 0, counters.total, lines, counts), int(largest[0])
 
 
 def _count(counters: FiringCounters, numbers, arrivals, total, largest):

@@ -38,7 +38,7 @@ def fire(counters: FiringCounters, wavefront: Wavefront, largest: int) -> None:
         return
     types = counters.types
     bits = counters.tracer.numbers.bits_for(largest)
-    few = wavefront.total <= FEW and wavefront.blocks is None
+    few = wavefront.total <= FEW and wavefront.blocks is None and not counters.parted
     everywhere = wavefront.blocks is not None or counters.parted or (not few and MANY * wavefront.total >= counters.total)
     tally, landed = hit_tally(counters.hits, wavefront.total, flags=not few and not everywhere), []
     for batch in batches(counters, wavefront, () if few else _shifts(counters, wavefront)):

@@ -23,6 +23,8 @@ class BandState(Record):
         received_upper, received_missed_upper, sent_upper, fired_power_upper: uint32, the upper words of these, where some are not
             zero.
         within: True within a stage.
+        wavefront_arrivals, wavefront_weights: (replicates, n_rows) and (replicates, n_rows, groups) uint32, within a wavefront
+            that is fired in parts: the hit counts when it began, and what its lines carry.
     """
 
     received: np.ndarray = array("replicates", "rows", "groups")
@@ -34,6 +36,8 @@ class BandState(Record):
     sent_upper: np.ndarray | None = array("replicates", "rows", "groups", optional=True, zeros=True)
     fired_power_upper: np.ndarray | None = array("groups", "replicates", optional=True, zeros=True)
     within: bool | None = number(bool, optional=True)
+    wavefront_arrivals: np.ndarray | None = array("replicates", "rows", optional=True)
+    wavefront_weights: np.ndarray | None = array("replicates", "rows", "groups", optional=True)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -81,6 +85,9 @@ def _powers(bands: BandTally, sizes: Sizes) -> dict[str, Any]:
         upper = bands.upper[key].read(columns[key])
         found[name] = low[name].reshape(shapes[name])
         found[f"{name}_upper"] = None if upper is None else upper.reshape(shapes[name])
+    if bands.parted:
+        found["wavefront_arrivals"] = frozen(bands.arrivals_before).reshape(replicates, rows)
+        found["wavefront_weights"] = frozen(bands.weights).reshape(replicates, rows, n)
     fired = bands.fired_in_all
     words = [np.array([(power >> shift) % 2**64 for power in fired], np.uint64).reshape(n, replicates) for shift in (0, 64)]
     return found | {"fired_power": words[0], "fired_power_upper": words[1].astype(np.uint32) if words[1].any() else None}
@@ -108,4 +115,9 @@ def restore(counters: FiringCounters, state: FiringState) -> None:
         bands.received = upload(types.UInt64, np.concatenate([rows, missed]))
         bands.sent = upload(types.UInt64, bands.upper["sent"].of(powers.sent, powers.sent_upper))
         bands.set_fired(np.ravel(powers.fired_power), powers.fired_power_upper)
+        before, weights = powers.wavefront_arrivals, powers.wavefront_weights
+        bands.parted = before is not None and weights is not None
+        if before is not None and weights is not None:
+            bands.arrivals_before = upload(types.UInt32, np.ravel(before))
+            bands.weights = upload(types.UInt32, np.ravel(weights))
     counters.set_quanta(state.quanta)

@@ -5,7 +5,12 @@ radiosity", Eurographics Rendering Workshop 1995; P. Bekaert, "Hierarchical and 
 K. U. Leuven 1999.
 """
 
+import numpy as np
+
+from ...device.backend import upload
 from ...errors import MethodError
+from ...solution.books import exact_sum
+from ...tally.shooter import Begun
 from ..base import AbstractAlgorithm, Interrupted, Swept
 from ..state import Arrays, Sizes
 from .control import Control
@@ -30,6 +35,7 @@ class Iteration(AbstractAlgorithm[IterationState]):
             )
         self.exchange = Exchange(self.geometry, self.problem, method, self.seed, self.replicates)
         self.importance = self.problem.shares
+        self._told = 0  # lines of the step that were told of before its end
         self.control = Control(self.exchange) if method.control_variate else None
         if method.order == "incremental":
             self.scheme: Incremental | Regular = Incremental(self.exchange, self.problem, self.control)
@@ -56,7 +62,16 @@ class Iteration(AbstractAlgorithm[IterationState]):
             if shots is not None and shots.over:
                 raise Interrupted("interrupted")
 
-        self.scheme.advance(quanta, told)
+        def of_part(lines: int) -> None:
+            self._told += lines
+            told(lines)
+
+        def of_step(lines: int) -> None:
+            rest, self._told = lines - self._told, 0
+            told(rest)
+
+        self.exchange.shooter.told = of_part
+        self.scheme.advance(quanta, of_step)
 
     def capture(self) -> IterationState:
         scheme = self.scheme.capture()
@@ -73,7 +88,16 @@ class Iteration(AbstractAlgorithm[IterationState]):
             regular=scheme if isinstance(scheme, RegularState) else None,
             incremental=scheme if isinstance(scheme, IncrementalState) else None,
             control=None if self.control is None else self.control.capture(),
+            **self._shot(),
         )
+
+    def _shot(self) -> dict[str, np.ndarray]:
+        """Return what a state has of a step whose lines are fired in parts."""
+        begun = self.exchange.shooter.begun
+        if begun is None:
+            return {}
+        found = {"shot_done": np.array(begun.done).reshape(self.replicates, -1), "shot_received": np.array(begun.received)}
+        return found if begun.moved is None else found | {"shot_moved": np.array(begun.moved)}
 
     def read(self, arrays: Arrays, sizes: Sizes) -> IterationState:
         wanted = {"incremental" if isinstance(self.scheme, Incremental) else "regular"}
@@ -90,6 +114,7 @@ class Iteration(AbstractAlgorithm[IterationState]):
         self.exchange.shooter.write(state.arrivals, state.fired, state.missed, state.fired_apart)
         self.exchange.step, self.importance = state.step, state.importance
         self.exchange.share_out_by(state.importance)
+        self._begin_shot(state)
         if self.control is not None and state.control is not None:
             self.control.restore(state.control)
         if isinstance(self.scheme, Incremental):
@@ -98,6 +123,15 @@ class Iteration(AbstractAlgorithm[IterationState]):
         else:
             assert state.regular is not None
             self.scheme.restore(state.regular)
+
+    def _begin_shot(self, state: IterationState) -> None:
+        """Let the next shot go on with the one that had begun, if any."""
+        shooter, types, done, received = self.exchange.shooter, self.exchange.types, state.shot_done, state.shot_received
+        shooter.begun, self._told = None, 0
+        if done is not None and received is not None:
+            moved = None if state.shot_moved is None else upload(types.Int64, state.shot_moved)
+            shooter.begun = Begun(upload(types.UInt32, np.ravel(done)), upload(types.Int64, received), moved)
+            self._told = exact_sum(done)
 
     @property
     def tally(self) -> IterationTally | RefinedTally:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...device.backend import upload
 from ...tally.shooter import Ends
-from .exchange import BITS, LINE, MOST, Exchange
+from .exchange import BITS, LINE, Exchange
 from .state import ControlState
 
 UNIT = 2**20  # fixed point units of one missed line, in moments
@@ -39,10 +39,10 @@ class Control:
         self._kept: Any = None  # `kept` on the device
 
     def probe(self, lines: int) -> int:
-        """Fire ``lines`` of each replicate, evenly over all area and at least one a patch, to count which are missed."""
-        return sum(self._probe_some(min(MOST, lines - begin)) for begin in range(0, lines, MOST))
+        """Fire ``lines`` of each replicate, evenly over all area and at least one a patch, to count which are missed.
 
-    def _probe_some(self, lines: int) -> int:
+        There are `MOST` at most.
+        """
         exchange, types = self.exchange, self.exchange.types
         counts = dr.maximum(exchange.counts(types.UInt64(exchange.area * dr.opaque(types.Float64, float(lines) * LINE))), 1)
         fired = self._probe(counts) if exchange.basis.size == 1 else self._probe_moments(counts)

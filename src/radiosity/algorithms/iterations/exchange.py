@@ -216,8 +216,9 @@ class Exchange:
     def shoot(self, counts, weights=None, ends: Ends | None = None, receivers: Receivers | None = None) -> int:
         """Fire the lines of a step, see `Shooter.shoot`."""
         self.shooter.take(self.first + self.turn)
-        self.step += 1
-        return self.shooter.shoot(counts, weights, ends, receivers=receivers)
+        lines = self.shooter.shoot(counts, weights, ends, receivers=receivers)
+        self.step += 1  # last: where the shot is stopped between two parts, the state is that before the step
+        return lines
 
     def _stream(self, replicate: int) -> np.random.SeedSequence:
         return stream(self.seed, replicate, Purpose.ROUNDING, self.step)

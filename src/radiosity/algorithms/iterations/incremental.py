@@ -83,7 +83,6 @@ class Incremental:
         """Add emission, up to that of the stage."""
         exchange, types = self.exchange, self.exchange.types
         more = min(self.quanta - self.begun, MOST // self.finer)
-        self.begun += more
         if self.quanta > EXACT // self.finer:
             self.received = types.Float64(self.received)
             self.blurred = None if self.blurred is None else types.Float64(self.blurred)
@@ -92,6 +91,7 @@ class Incremental:
             self.probing = self.control.probe(max(more // SHARE, 1))
             # B - beta solves the equation of the source E - (1 - rho f) beta
             source += np.array(exchange.scattered(self.control.received()) - self.control.constant())
+        self.begun += more  # after the probe: where that is stopped between two parts, nothing has been emitted
         new = np.rint(source * (float(more) * exchange.unit))
         self.unsent = upload(types.Float64, np.array(self.unsent) + new)
         if self.quanta <= EXACT // self.finer:
@@ -105,10 +105,10 @@ class Incremental:
         exchange, types = self.exchange, self.exchange.types
         if not dr.any(self.unsent != 0):
             return 0  # no step is counted: a run that continues here calls this twice
-        expected = exchange.lines_of(self.unsent)
+        unsent, expected = self.unsent, exchange.lines_of(self.unsent)
         if exchange.basis.size > 1:
-            self.unsent, expected = end_of_polynomials(exchange, self.unsent, self.quanta)
-        lines, fired = exchange.send(self.unsent, expected, float(self.begun) * exchange.unit)
+            unsent, expected = end_of_polynomials(exchange, unsent, self.quanta)
+        lines, fired = exchange.send(unsent, expected, float(self.begun) * exchange.unit)
         self.fired += 0 if fired is None or not self.exact else fired()
         self.received += type(self.received)(exchange.shooter.received)
         self.unsent = dr.round(exchange.scattered(types.Float64(exchange.patches(exchange.shooter.received))))

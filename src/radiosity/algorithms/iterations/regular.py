@@ -24,7 +24,7 @@ from ...errors import MethodError
 from ...problem.model import Problem
 from ..base import Swept
 from .control import Control
-from .exchange import LINE, Exchange
+from .exchange import LINE, MOST, Exchange
 from .incremental import Incremental
 from .plan import START, Plan
 from .polynomials import least_lines
@@ -80,9 +80,10 @@ class Regular:
     def _next(self) -> int:
         plan = self.plan
         if plan.probing and self.control is not None:
-            lines, plan.probing = plan.probing, 0
-            plan.done += lines
-            return self.control.probe(lines)
+            lines = min(plan.probing, MOST)
+            fired = self.control.probe(lines)
+            plan.probing, plan.done = plan.probing - lines, plan.done + lines
+            return fired
         if plan.starting and self.warm is not None:
             lines = self.warm.step()
             if lines == 0:

@@ -115,6 +115,8 @@ class IterationState(AbstractState):
             the sum.
         step: the number of steps so far.
         importance: (n_rows,) float64, by which lines are shared out.
+        shot_done, shot_received, shot_moved: (replicates, n_rows) uint32, and flat int64, between two parts of the lines of a
+            step, see `tally.shooter.Begun`. All else is then as before the step, but for the counts of lines.
     """
 
     arrivals: np.ndarray = array("replicates", "rows")
@@ -126,6 +128,9 @@ class IterationState(AbstractState):
     regular: RegularState | None = part(RegularState, optional=True)
     incremental: IncrementalState | None = part(IncrementalState, optional=True)
     control: ControlState | None = part(ControlState, optional=True)
+    shot_done: np.ndarray | None = array("replicates", "rows", optional=True)
+    shot_received: np.ndarray | None = array("any", optional=True)
+    shot_moved: np.ndarray | None = array("any", optional=True)
 
     def fits_turns(self, turns: int, sequences: int) -> bool:
         """There is a source for each turn, and a count for each sequence."""
@@ -142,4 +147,4 @@ class IterationState(AbstractState):
 
     @property
     def unfinished(self) -> bool:
-        return self.scheme.unfinished
+        return self.shot_done is not None or self.scheme.unfinished
