@@ -1,11 +1,11 @@
 """Runs that are killed, whose disk is full for spells and whose workers die: ``python benchmarks/soak.py [--part 0.1]``.
 
-Four runs, a grey one, one in colours, one of iterations and one on a cluster of two processes, are killed (SIGKILL) at random times and
-resumed from what is on the disk until they are done. A row a life tells what the kill cost: the seconds from the moment
-at which the lines that the next life begins with were first there, until the kill; the lines that were told since; and of these
-seconds those in which the disk was full. At the end the results are compared, bit for bit, with those of runs never stopped.
-An hour and a half on two cores; ``--part`` of all lines takes as much less. Where no disk of its own may be mounted (not root), it is
-never full.
+Four runs, a grey one, one in colours, one of iterations and one on a cluster of two processes, are killed (SIGKILL) at random
+times and resumed from what is on the disk until they are done. A row a life tells what the kill cost: the seconds from the
+moment at which the lines that the next life begins with were first there, until the kill; the lines that were told since; and of
+these seconds those in which the disk was full. At the end the results are compared, bit for bit, with those of runs never
+stopped. An hour and a half on two cores; ``--part`` of all lines takes as much less. Where no disk of its own may be mounted
+(not root), it is never full.
 """
 
 import argparse
