@@ -341,6 +341,21 @@ def test_long_sweeps_do_not_make_it_late(grey, tmp_path, monkeypatch, sweep, mom
     assert written == moments
 
 
+def test_what_workers_have_under_way_counts_as_lost(grey, tmp_path, monkeypatch):
+    """Workers give back every ten seconds, the last just after it was written: the next one is as much earlier."""
+    now, written = [0.0], []
+    monkeypatch.setattr(checkpoints.time, "monotonic", lambda: now[0])
+    keeper = Checkpoint(tmp_path / "a.npz", 30, lambda *_: written.append((now[0], now[0] // 10 * 10)))
+    solution = rd.solve(grey, "random-walk", quanta=10, replicates=1)
+    for _ in range(120):
+        now[0] += 1
+        if keeper.due(now[0] % 10):
+            keeper.write(lambda: solution)
+    moments, holds = zip(*written, strict=True)
+    assert moments == (29, 49, 69, 89, 109)
+    assert max(later - held for later, held in zip(moments[1:], holds, strict=False)) < 30
+
+
 def test_leftovers_of_killed_processes_are_removed(grey, tmp_path):
     dead = child("import os; print(os.getpid())").stdout.strip()
     left, other, alive = (

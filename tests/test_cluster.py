@@ -10,7 +10,7 @@ from some_cases import some
 from test_merge import FIRST, INCREMENTAL, PARTS, TOGETHER, assert_same
 
 import radiosity as rd
-from radiosity.algorithms.in_parts import Share
+from radiosity.algorithms.in_parts import InParts, Share
 from radiosity.algorithms.matrix.state import MatrixState
 from radiosity.algorithms.merging import merge as merge_states
 from radiosity.algorithms.splitting import divisible, split
@@ -238,6 +238,31 @@ def test_a_result_whose_worker_died_before_it_came_is_not_waited_for():
 
     assert crew.fetched(Lost()) is None
     assert crew.fetched(Slow()) == "brought"
+
+
+def test_units_last_by_the_quickest_sending_and_tell_their_age(grey, monkeypatch):
+    """A busy machine holds some states up: that makes no unit longer. A checkpoint is told how old the oldest state is."""
+    monkeypatch.setattr(crew, "SECONDS", 4.0)
+    monkeypatch.setattr(crew, "MOST_SECONDS", 60.0)
+    monkeypatch.setattr(crew.DaskCrew, "check", lambda *_: None)
+    now = [100.0]
+    monkeypatch.setattr(crew.time, "monotonic", lambda: now[0])
+    whole = prepared(grey, rd.Method(), quanta=1, replicates=1)._spread_out()
+    shares, state = [Share(0, 1, None)], whole.capture().arrays()
+    team = crew.DaskCrew(None, None, "")
+    run = InParts(whole, team)
+    assert team.behind() == run.behind() == 0
+    lasts = []
+    for spent in (0.01, 9.0, 0.5, 7.0, 3.0, 8.0, 2.5):
+        lasts.append(team._seconds("tcp://a"))
+        one = crew.Active(shares[0], "tcp://a", now[0])
+        team._active = {"a": one, "b": crew.Active(shares[0], "tcp://b", now[0] + 2)}
+        now[0] += 5.0 + spent
+        assert team.behind() == run.behind() == pytest.approx(5.0 + spent)
+        team._take(one, worker.Outcome(state, "token", 5, False, 5.0, "", (), "tcp://a", {}), run, shares)
+    assert lasts == pytest.approx([4, 4, 4, 4, 4, 15, 15])
+    assert team._seconds("tcp://a") == 60
+    assert team._seconds("tcp://b") == 4
 
 
 def test_workers_that_die_in_a_row_end_a_run_and_others_do_not(monkeypatch):
