@@ -2696,6 +2696,13 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/firing/orders/depth_first.py",
+        "counters.wide or counters.parted",
+        "counters.wide",
+        ("test_parts.py",),
+        "of a wavefront in parts, walks from the first part alone are followed",
+    ),
+    Mistake(
+        "algorithms/firing/orders/depth_first.py",
         "    counters.look_everywhere()  # where",
         "    pass  # where",
         ("test_tail.py",),
