@@ -68,9 +68,8 @@ class DaskFirer(Firer):
 
 
 def most_lines(barrier: Barrier) -> int:
-    """Return the most lines between two barriers: some seconds of each worker."""
-    each, least = MOST[barrier.crew.job.device]
-    return max(each * len(barrier.workers()), least)
+    """Return the most lines between two barriers: for each worker as many as one machine fires at most, some seconds."""
+    return MOST[barrier.crew.job.device][1] * max(len(barrier.workers()), 1)
 
 
 def tasks(lines: Lines, begun: Begun, rates: list[float]) -> list[OwnRows]:
