@@ -183,13 +183,13 @@ def test_wide_counters_give_the_integers_of_narrow_ones(monkeypatch):
 
 def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
     """A wavefront of very many lines is fired in parts, so that runs can be stopped in between."""
-    from radiosity.algorithms.firing import due
     from radiosity.algorithms.firing.orders import breadth_first
+    from radiosity.tracing.parts import MOST
 
     patches, told = rd.subdivide(rd.load_scene("room"), cells=2), []
     monkeypatch.setitem(breadth_first.TAILS, "cpu", 0)
     whole = rd.solve(patches, rd.Method(), quanta=20_000, replicates=2)
-    monkeypatch.setitem(due.MOST, "cpu", (3_000, 3_000))
+    monkeypatch.setitem(MOST, "cpu", (3_000, 3_000))
     fire = breadth_first.fire
 
     def remembered(counters, wavefront, largest):
@@ -204,13 +204,14 @@ def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("rows", "firer", "most"), [(5, None, 1 << 24), (1 << 21, None, 1 << 25), (1 << 30, None, 1 << 26), (5, "others", 1 << 26)]
+    ("rows", "others", "most"), [(5, None, 1 << 24), (1 << 21, None, 1 << 25), (1 << 30, None, 1 << 26), (5, 1 << 28, 1 << 28)]
 )
-def test_wavefronts_that_others_fire_are_as_long_as_before(rows, firer, most):
+def test_wavefronts_that_others_fire_are_as_long_as_they_say(rows, others, most):
     """Those fired here are short, but for many rows, since each costs a pass over all of them."""
     from radiosity.algorithms.firing import due
 
     tracer = SimpleNamespace(geometry=SimpleNamespace(device=SimpleNamespace(name="cpu")))
+    firer = None if others is None else SimpleNamespace(most=others, least=1 << 18)
     assert due._most(SimpleNamespace(tracer=tracer, firer=firer, total=rows)) == most
 
 
