@@ -2696,6 +2696,13 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/firing/orders/depth_first.py",
+        "counters.wide or counters.parted",
+        "counters.wide",
+        ("test_parts.py",),
+        "of a wavefront in parts, walks from the first part alone are followed",
+    ),
+    Mistake(
+        "algorithms/firing/orders/depth_first.py",
         "    counters.look_everywhere()  # where",
         "    pass  # where",
         ("test_tail.py",),
@@ -3383,9 +3390,9 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/firing/due.py",
-        "return large if counters.firer is not None",
-        "return small if counters.firer is not None",
-        ("test_wide_counts.py::test_wavefronts_that_others_fire_are_as_long_as_before",),
+        "return counters.firer.most",
+        "return counters.firer.least",
+        ("test_wide_counts.py::test_wavefronts_that_others_fire_are_as_long_as_they_say",),
         "wavefronts that others fire are short, and workers wait for each other",
     ),
     Mistake(
