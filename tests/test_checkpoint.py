@@ -300,12 +300,15 @@ def test_a_full_disk_is_told_once_and_the_old_checkpoint_stays(tmp_path):
 
 
 def test_what_a_full_disk_refused_is_tried_again_soon(grey, tmp_path, monkeypatch):
-    """A clock of our own: the disk is full from second 25 to 68, and a sweep takes a second."""
+    """A clock of our own: the disk is full from second 25 to 68, and from 120 on; a sweep takes a second.
+
+    Each time is told once.
+    """
     now, tried = [0.0], []
 
     def refused(solution, path):
         tried.append(now[0])
-        if 25 <= now[0] < 68:
+        if 25 <= now[0] < 68 or now[0] >= 120:
             raise rd.OutputError("x: cannot be written (No space left on device)")
 
     monkeypatch.setattr(checkpoints.time, "monotonic", lambda: now[0])
@@ -313,14 +316,15 @@ def test_what_a_full_disk_refused_is_tried_again_soon(grey, tmp_path, monkeypatc
     solution = rd.solve(grey, "random-walk", quanta=10, replicates=1)
 
     def run():
-        for _ in range(110):
+        for _ in range(140):
             now[0] += 1
             if keeper.due():
                 keeper.write(lambda: solution)
 
-    with pytest.warns(rd.RadiosityWarning, match="the run goes on"):
+    with pytest.warns(rd.RadiosityWarning, match="the run goes on") as told:
         run()
-    assert tried == [29, 33, 37, 41, 45, 49, 53, 57, 61, 65, 69, 98]
+    assert tried == [29, 33, 37, 41, 45, 49, 53, 57, 61, 65, 69, 98, 127, 131, 135, 139]
+    assert len(told) == 2
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from kills import assert_same
 
 import radiosity as rd
 from radiosity.algorithms.firing import due
+from radiosity.algorithms.firing.orders import FIRED
 from radiosity.run import checkpoint as checkpoints
 from radiosity.tally import shooter
 from radiosity.tracing import parts
@@ -64,7 +65,7 @@ def test_parts_bring_what_the_whole_does_wherever_it_is_stopped(coloured, tmp_pa
     kept[0].save(tmp_path / "b.npz")  # as a file has it
     at = len(between) // 2
     between[at].save(tmp_path / "c.npz")
-    for stopped in (*between[:: max(len(between) // 3, 1)], rd.load_solution(tmp_path / "c.npz")):
+    for stopped in (*between[:: max(len(between) // 3, 1)], between[-1], rd.load_solution(tmp_path / "c.npz")):
         assert stopped.status == "interrupted"
         assert_same(rd.solve(coloured, method, resume=stopped, **options), whole)
     most(monkeypatch, 1 << 26)  # parts of another size, or none
@@ -112,6 +113,15 @@ def test_parts_of_a_run_are_fired_in_parts(coloured, tmp_path, monkeypatch):
         stopped = [solution for solution in kept if within(solution)]
         found.append(rd.solve(coloured, "random-walk", resume=stopped[len(stopped) // 2], **options))
     assert_same(rd.merge(found), whole)
+
+
+@pytest.mark.parametrize("order", FIRED)
+def test_walks_are_followed_from_all_lines_that_are_due(monkeypatch, order):
+    """Where a part of them is followed to the end of its walks, the others are followed after it."""
+    patches, options = rd.subdivide(rd.load_scene("room"), cells=1), {"quanta": 1 << 14, "replicates": 2}
+    whole = rd.solve(patches, rd.Method(order=order), **options)
+    most(monkeypatch, 1 << 11)
+    assert_same(rd.solve(patches, rd.Method(order=order), **options), whole)
 
 
 @pytest.mark.parametrize("kind", ["walks", "steps"])

@@ -2696,6 +2696,13 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/firing/orders/depth_first.py",
+        "counters.wide or counters.parted",
+        "counters.wide",
+        ("test_parts.py",),
+        "of a wavefront in parts, walks from the first part alone are followed",
+    ),
+    Mistake(
+        "algorithms/firing/orders/depth_first.py",
         "    counters.look_everywhere()  # where",
         "    pass  # where",
         ("test_tail.py",),
@@ -3383,9 +3390,9 @@ MISTAKES = (
     ),
     Mistake(
         "algorithms/firing/due.py",
-        "return large if counters.firer is not None",
-        "return small if counters.firer is not None",
-        ("test_wide_counts.py::test_wavefronts_that_others_fire_are_as_long_as_before",),
+        "return counters.firer.most",
+        "return counters.firer.least",
+        ("test_wide_counts.py::test_wavefronts_last_some_seconds",),
         "wavefronts that others fire are short, and workers wait for each other",
     ),
     Mistake(
@@ -3520,5 +3527,40 @@ MISTAKES = (
         "np.bincount(key, bias * bias, 2 * len(patches.scene.names))",
         ("test_gather_bias.py",),
         "biases of sides are sums of squares",
+    ),
+    Mistake(
+        "algorithms/firing/fire.py",
+        "wavefront.blocks is None and not counters.parted",
+        "wavefront.blocks is None",
+        ("test_parts.py",),
+        "after a small last part of a wavefront only what that part hit is looked at",
+    ),
+    Mistake(
+        "algorithms/firing/state.py",
+        "bands.parted = before is not None and weights is not None",
+        "bands.parted = False",
+        ("test_parts.py",),
+        "a wavefront that was stopped between two parts is weighed anew",
+    ),
+    Mistake(
+        "algorithms/iterations/algorithm.py",
+        "self._told = exact_sum(done)",
+        "pass",
+        ("test_parts.py",),
+        "lines of a step that was stopped are told twice",
+    ),
+    Mistake(
+        "run/checkpoint.py",
+        "self._swept + wait - self._behind",
+        "self._swept + wait",
+        ("test_checkpoint.py::test_what_workers_have_under_way_counts_as_lost",),
+        "a checkpoint does not count what workers have under way",
+    ),
+    Mistake(
+        "cluster/crew.py",
+        "TIMES * min(self._sending",
+        "TIMES * max(self._sending",
+        ("test_cluster.py::test_units_last_by_the_quickest_sending_and_tell_their_age",),
+        "a busy machine makes units last a minute",
     ),
 )

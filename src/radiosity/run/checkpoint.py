@@ -143,5 +143,5 @@ class Checkpoint:
                 )
             self._warned = True
             return False
-        self.written = True
+        self.written, self._warned = True, False
         return True

@@ -18,7 +18,7 @@ class AbstractElsewhere(ABC, Generic[L, S]):
     """
 
     least: int = 0
-    most: int = 1 << 26
+    most: int = 1 << 32
     over: bool = False
 
     @abstractmethod

@@ -5,7 +5,7 @@ from ..counters import FiringCounters
 from ..due import due
 from ..fire import fire
 from .base import AbstractOrder
-from .depth_first import walk_all
+from .depth_first import more_is_due, walk_all
 
 # Wavefronts of fewer lines are followed depth-first until they are absorbed: the counters are the same. A wavefront costs passes
 # over all rows, and a kernel that Python traces anew; a depth-first launch adds single words. On a CPU, processor time is least
@@ -28,9 +28,9 @@ class BreadthFirst(AbstractOrder):
                 return
             if wavefront.blocks is None and wavefront.total < tail(counters):
                 walk_all(counters, wavefront, swept)
-                if counters.targets.panes is None and not counters.wide:
+                if not more_is_due(counters):
                     return
-                continue  # walks end on diffusing panes
+                continue
             before = counters.swept
             fire(counters, wavefront, largest)
             swept(counters.swept - before)  # of others, too, where they were fired elsewhere

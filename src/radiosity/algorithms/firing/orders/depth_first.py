@@ -32,8 +32,16 @@ class DepthFirst(AbstractOrder):
                 swept(wavefront.total)
                 continue
             walk_all(counters, wavefront, swept)
-            if counters.targets.panes is None and not counters.wide:  # walks end on diffusing panes, and other walks begin there
+            if not more_is_due(counters):
                 return
+
+
+def more_is_due(counters: FiringCounters) -> bool:
+    """Return whether lines may be due after the walks from the lines of a wavefront.
+
+    Walks end on diffusing panes, where others begin; and the wavefront may have had a part of the lines that were due.
+    """
+    return counters.targets.panes is not None or counters.wide or counters.parted
 
 
 def walk_all(counters: FiringCounters, wavefront: Wavefront, swept: Swept) -> None:
