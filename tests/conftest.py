@@ -1,5 +1,6 @@
 """What the tests share: scenes made by strangers, where a checkout has them, and a small closed box."""
 
+import gc
 import os
 import signal
 import sys
@@ -14,6 +15,8 @@ import radiosity as rd
 
 settings.register_profile("repeatable", deadline=None, derandomize=True, database=None)
 settings.load_profile("repeatable")
+
+gc.set_threshold(100_000, 50)  # syntax trees are a million objects, which the collector would look through again and again
 
 STRANGERS = Path(__file__).resolve().parents[2] / "shared" / "scenes"
 

@@ -36,7 +36,7 @@ def walls() -> rd.Patches:
 def exact() -> dict[str, np.ndarray]:
     """(6,) power that each wall receives, by equation."""
     fine = rd.subdivide(cube(RHO[:, None], LIGHT[:, None]), cells=CUT)
-    solution = rd.solve(fine, "random-walk", rays=30_000_000)
+    solution = rd.solve(fine, "random-walk", rays=15_000_000)
     return {
         "discrete": cube_irradiance(RHO, LIGHT),
         "continuous": np.bincount(fine.surface, fine.area * solution.irradiance[:, 0]),

@@ -25,7 +25,7 @@ def test_no_power_is_left_behind_at_five_lines_a_patch():
     patches = rd.subdivide(cube(COLORS, LIGHT), cells=20)
     few = rd.solve(patches, quanta=4_500, replicates=64, numbers="random")
     assert 4 < few.rays / few.replicates / len(patches) < 7
-    many = rd.solve(patches, "random-walk", rays=20_000_000, replicates=8)
+    many = rd.solve(patches, "random-walk", rays=10_000_000, replicates=8)
     assert np.abs(total(few) / total(many) - 1).max() < 0.005
 
 

@@ -16,9 +16,9 @@ COVERED = 1.3  # RMS of errors over stated errors: that of Student's t of 8 repl
 
 @pytest.fixture(scope="module")
 def room():
-    """Patches, and their irradiance by counting fifteen times as many lines."""
+    """Patches, and their irradiance by counting ten times as many lines."""
     patches = rd.subdivide(rd.load_scene("room"), cells=24)
-    return patches, cache(lambda rays: rd.solve(patches, "particle-tracing", rays=15 * rays, seed=50))
+    return patches, cache(lambda rays: rd.solve(patches, "particle-tracing", rays=10 * rays, seed=50))
 
 
 def rms(room, rays: int) -> tuple[float, float]:

@@ -31,12 +31,13 @@ def walk(name: str, size: float):
     return patches, solution.radiosity
 
 
-@pytest.fixture(params=WALKED, ids=lambda param: param[0])
+@pytest.fixture
 def walked(request):
     return walk(*request.param)
 
 
-LONGER = (("room", "error-power"), ("cornell-box", "brightness-factor"))  # each refinement and scene is in another pair, too
+# each refinement and scene is in another pair, too
+LONGER = (("room", "error-power"), ("cornell-box", "brightness-factor"), ("cornell-box", "error-radiance"))
 
 
 # 10 % at the largest epsilon, and at the smallest 3 %: what 16 rays leave of the shadows of patches of this size
@@ -63,6 +64,11 @@ def test_random_walks_agree_the_better_the_smaller_epsilon(walked, refinement, g
     assert errors[2] < 0.75 * errors[0]
 
 
+@pytest.mark.parametrize(
+    "walked",
+    [pytest.param(scene, marks=pytest.mark.slow if scene[0] == "room" else (), id=scene[0]) for scene in WALKED],
+    indirect=True,
+)
 def test_more_rays_leave_less(walked, geometry_of):
     """256 rays of a link instead of 16 leave a fourth or less of the error; 1 % is allowed, for the quadrature too."""
     patches, expected = walked

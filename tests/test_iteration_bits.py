@@ -6,6 +6,7 @@ import signal
 import numpy as np
 import pytest
 from iterations import VARIANTS, open_room
+from some_cases import some
 
 import radiosity as rd
 
@@ -43,7 +44,10 @@ def stopped(patches, method, folder, **budget) -> rd.Solution:
         stops += 1
 
 
-@pytest.mark.parametrize("name", VARIANTS)
+QUICK = ("incremental, both ends", "regular, everything")  # states of all of them are compared in test_axis_order.py
+
+
+@some(QUICK, [name for name in VARIANTS if name not in QUICK])
 def test_an_interrupted_run_goes_on_to_the_same_bits(patches, name, tmp_path):
     method, budget = rd.Method(**VARIANTS[name]), {"quanta": 1_200_000, "replicates": 2}
     assert same(stopped(patches, method, tmp_path, **budget), rd.solve(patches, method, **budget))

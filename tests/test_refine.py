@@ -87,7 +87,7 @@ def test_it_finds_the_known_error_of_a_mesh():
     """Against a mesh of four times as many cells along each edge."""
     coarse = rd.subdivide(rd.load_scene("room"), cells=1)
     finest = rd.subdivide(rd.load_scene("room"), cells=8)
-    truth = rd.solve(finest, "random-walk", rays=8_000_000).radiosity
+    truth = rd.solve(finest, "random-walk", rays=4_000_000).radiosity
     of = parents(finest, coarse)
     mean = np.bincount(of, finest.area * truth[:, 0]) / coarse.area
     found = rd.refine_check(coarse, "random-walk", rays=2_000_000)

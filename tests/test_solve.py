@@ -230,11 +230,14 @@ def test_unwritable_solution(solution, tmp_path):
         solution.save(tmp_path / "file" / "x.npz")
 
 
+QUANTA = 1_250_000  # enough for four stops
+
+
 @pytest.mark.parametrize("scene", ["room", "cornell-box"])
 def test_an_interrupted_run_goes_on_to_the_same_bits(scene, tmp_path):
     """Stopped after every few sweeps, saved, loaded and resumed: the result is that of one run."""
     cut = rd.subdivide(rd.load_scene(scene), cells=4)
-    whole = rd.solve(cut, "random-walk", quanta=2_500_000, replicates=2)
+    whole = rd.solve(cut, "random-walk", quanta=QUANTA, replicates=2)
     part, stops = None, 0
     while True:
         calls = []
@@ -244,7 +247,7 @@ def test_an_interrupted_run_goes_on_to_the_same_bits(scene, tmp_path):
             if len(calls) >= 3 and (progress.stage >= 1 or not first):
                 os.kill(os.getpid(), signal.SIGINT)
 
-        part = rd.solve(cut, "random-walk", quanta=2_500_000, replicates=2, progress=listen if stops < 4 else None, resume=part)
+        part = rd.solve(cut, "random-walk", quanta=QUANTA, replicates=2, progress=listen if stops < 4 else None, resume=part)
         part.save(tmp_path / "part.npz")
         part = rd.load_solution(tmp_path / "part.npz")
         if part.status == "complete":

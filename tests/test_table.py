@@ -7,9 +7,11 @@ of a test together, so that a false alarm among its some hundred cases has a cha
 
 import numpy as np
 import pytest
+from iterations import VARIANTS
 from members import varied
 from methods import COMBINATIONS, METHODS, critical
 from replicates import difference, powers
+from test_global_solutions import METHODS as GLOBAL
 
 import radiosity as rd
 from radiosity.lab import cases
@@ -52,11 +54,18 @@ SLOW = pytest.mark.slow
 # combinations that test_axis_estimator.py puts into closed scenes of its own
 VARIED = {method for axis in ("estimator", "absorption") for value in CHOICES[axis] for method in varied(axis, value)}
 ELSEWHERE = {name for name, method in COMBINATIONS.items() if method in VARIED}
-SOME = pytest.mark.parametrize("name", [pytest.param(name, marks=SLOW) if name in ELSEWHERE else name for name in METHODS])
+# methods whose own tests solve the same furnace, and look at each patch
+FURNACES = {*GLOBAL, *(rd.Method(**choices) for choices in VARIANTS.values())}
+ALONE = {name for name, method in METHODS.items() if method in FURNACES}
+
+
+def but(elsewhere):
+    """Parametrise a test by the name of each method; those that are tested elsewhere run with the slow tests alone."""
+    return pytest.mark.parametrize("name", [pytest.param(name, marks=SLOW) if name in elsewhere else name for name in METHODS])
 
 
 @pytest.mark.parametrize("mean_reflectance", [pytest.param(0.1, marks=SLOW), pytest.param(0.5, marks=SLOW), 0.9])
-@SOME
+@but(ELSEWHERE | ALONE)
 def test_furnace(name, mean_reflectance):
     patches = rd.subdivide(rd.load_scene(f"labyrinth-{mean_reflectance}"), cells=1)
     solution = rd.solve(patches, METHODS[name], rays=RAYS, replicates=REPLICATES)
@@ -67,7 +76,7 @@ def test_furnace(name, mean_reflectance):
     assert np.average(np.abs(solution.radiosity[:, 0] - 1), weights=patches.area) < 0.1
 
 
-@SOME
+@but(ELSEWHERE)
 def test_room(name, room, reference):
     compare(METHODS[name], room, reference("room", METHODS[name].equation))
 
