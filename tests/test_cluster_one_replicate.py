@@ -10,7 +10,7 @@ from test_merge import FIRST, INCREMENTAL, PARTS, TOGETHER, assert_same
 import radiosity as rd
 from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.run import budget
-from radiosity.tracing import lanes, parts
+from radiosity.tracing import lanes
 
 distributed = pytest.importorskip("distributed", reason="distributed is not installed")
 from radiosity.cluster import barrier, post, room, steps, wavefronts  # noqa: E402
@@ -57,7 +57,7 @@ def test_one_replicate_on_two_workers(client, name, monkeypatch):
     scene, choices, options = CUT[name]
     cut_small(monkeypatch, rows=10_000)  # each wavefront ends with a barrier
     if name == "colours in parts":
-        monkeypatch.setitem(parts.MOST, "cpu", (512, 512))
+        monkeypatch.setitem(wavefronts.EACH, "cpu", 256)
     patches, units = rd.subdivide(rd.load_scene(scene), cells=2), []
     submit = barrier.Barrier._submit
     monkeypatch.setattr(barrier.Barrier, "_submit", lambda *of: (units.append(of[1]), submit(*of)))
@@ -124,7 +124,7 @@ OTHERS = {"gather": rd.PRESETS["gather"].method, "sorted": rd.Method(equation="c
 def test_steps_of_one_replicate_on_two_workers(client, coloured, name, monkeypatch):
     method = (PARTS | TOGETHER | INCREMENTAL | OTHERS)[name.removesuffix(" in parts")]
     if name != name.removesuffix(" in parts"):
-        monkeypatch.setitem(parts.MOST, "cpu", (512, 512))
+        monkeypatch.setitem(wavefronts.EACH, "cpu", 256)
     monkeypatch.setattr(steps, "FEWEST", 64)
     monkeypatch.setattr(lanes, "CHUNK", 512)
     units, submit = [], barrier.Barrier._submit

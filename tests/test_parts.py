@@ -65,7 +65,7 @@ def test_parts_bring_what_the_whole_does_wherever_it_is_stopped(coloured, tmp_pa
     kept[0].save(tmp_path / "b.npz")  # as a file has it
     at = len(between) // 2
     between[at].save(tmp_path / "c.npz")
-    for stopped in (*between[:: max(len(between) // 3, 1)], rd.load_solution(tmp_path / "c.npz")):
+    for stopped in (*between[:: max(len(between) // 3, 1)], between[-1], rd.load_solution(tmp_path / "c.npz")):
         assert stopped.status == "interrupted"
         assert_same(rd.solve(coloured, method, resume=stopped, **options), whole)
     most(monkeypatch, 1 << 26)  # parts of another size, or none

@@ -184,12 +184,12 @@ def test_wide_counters_give_the_integers_of_narrow_ones(monkeypatch):
 def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
     """A wavefront of very many lines is fired in parts, so that runs can be stopped in between."""
     from radiosity.algorithms.firing.orders import breadth_first
-    from radiosity.tracing.parts import MOST
+    from radiosity.tracing import parts
 
     patches, told = rd.subdivide(rd.load_scene("room"), cells=2), []
     monkeypatch.setitem(breadth_first.TAILS, "cpu", 0)
     whole = rd.solve(patches, rd.Method(), quanta=20_000, replicates=2)
-    monkeypatch.setitem(MOST, "cpu", (3_000, 3_000))
+    monkeypatch.setitem(parts.MOST, "cpu", (3_000, 3_000))
     fire = breadth_first.fire
 
     def remembered(counters, wavefront, largest):
@@ -197,21 +197,21 @@ def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
         fire(counters, wavefront, largest)
 
     monkeypatch.setattr(breadth_first, "fire", remembered)
-    parts_of_it = rd.solve(patches, rd.Method(), quanta=20_000, replicates=2)
-    assert all(np.array_equal(whole.state[name], parts_of_it.state[name]) for name in whole.state)
+    parted = rd.solve(patches, rd.Method(), quanta=20_000, replicates=2)
+    assert all(np.array_equal(whole.state[name], parted.state[name]) for name in whole.state)
     assert max(told) < 3_400
     assert len(told) > 20
 
 
 @pytest.mark.parametrize(
-    ("rows", "others", "most"), [(5, None, 1 << 24), (1 << 21, None, 1 << 25), (1 << 30, None, 1 << 26), (5, 1 << 28, 1 << 28)]
+    ("rows", "firer", "most"),
+    [(5, None, 1 << 24), (3 << 20, None, 3 << 23), (1 << 30, None, 1 << 25), (5, SimpleNamespace(most=7), 7)],
 )
-def test_wavefronts_that_others_fire_are_as_long_as_they_say(rows, others, most):
-    """Those fired here are short, but for many rows, since each costs a pass over all of them."""
+def test_wavefronts_last_some_seconds(rows, firer, most):
+    """Those fired here are short, but for many rows, since each costs a pass over all of them. Others say what they can do."""
     from radiosity.algorithms.firing import due
 
     tracer = SimpleNamespace(geometry=SimpleNamespace(device=SimpleNamespace(name="cpu")))
-    firer = None if others is None else SimpleNamespace(most=others, least=1 << 18)
     assert due._most(SimpleNamespace(tracer=tracer, firer=firer, total=rows)) == most
 
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from ..algorithms.firing.elsewhere import Begun, Due, Firer, Hits, Lines, cut
 from ..algorithms.firing.own_rows import OwnRows, dealt
-from ..tracing.parts import MOST
 from . import post
 from .barrier import Barrier
 from .crew import DaskCrew
@@ -16,6 +15,7 @@ from .worker import fire, fire_all, fire_own_rows
 
 FEWEST = 1 << 17  # lines of a unit: smaller ones are given to fewer workers, and wavefronts of fewer than two are fired here
 LEAST = 1 << 17  # lines of own rows, for each worker that is told of their hits, that must be due before a worker fires them
+EACH = {"cpu": 1 << 26, "cuda": 1 << 32}  # lines of a worker between two barriers at most: some seconds
 SECONDS = 10.0  # after which workers that fire together come back: what all of them lose where one is killed
 ROWS = 64  # of a worker at least, where they have rows of their own: so that each has about as much to fire
 
@@ -68,8 +68,8 @@ class DaskFirer(Firer):
 
 
 def most_lines(barrier: Barrier) -> int:
-    """Return the most lines between two barriers: for each worker as many as one machine fires at most, some seconds."""
-    return MOST[barrier.crew.job.device][1] * max(len(barrier.workers()), 1)
+    """Return the most lines between two barriers."""
+    return EACH[barrier.crew.job.device] * max(len(barrier.workers()), 1)
 
 
 def tasks(lines: Lines, begun: Begun, rates: list[float]) -> list[OwnRows]:

@@ -8,8 +8,8 @@ from typing import Any
 import drjit as dr
 
 # Most lines of a part, in small scenes and in large ones: a few seconds.
-MOST = {"cpu": (1 << 24, 1 << 26), "cuda": (1 << 32, 1 << 32)}
-A_ROW = 16  # lines for each row, from which passes over all rows take little of the time
+MOST = {"cpu": (1 << 24, 1 << 25), "cuda": (1 << 32, 1 << 32)}
+A_ROW = 8  # lines for each row, from which passes over all rows take little of the time
 
 
 def most_lines(device: str, rows: int) -> int:
