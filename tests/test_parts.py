@@ -90,15 +90,55 @@ def test_lines_are_told_once(coloured, tmp_path, monkeypatch, name):
     assert again[1] < told[-1]
 
 
-def test_a_step_that_is_not_the_one_it_was_begun_for_is_refused(coloured, tmp_path, monkeypatch):
-    most(monkeypatch, 1 << 11)
-    monkeypatch.setattr(checkpoints, "TIMES", 0)
-    options = {"quanta": 1 << 15, "replicates": 2}
-    _, kept = states(coloured, "stochastic-jacobi", tmp_path / "a.npz", **options)
-    stopped = next(solution for solution in kept if "shot_done" in solution.state)
-    wrong = replace(stopped, state=stopped.state | {"shot_done": stopped.state["shot_done"] + np.uint32(1 << 20)})
-    with pytest.raises(rd.MethodError, match="lines of another step"):
-        rd.solve(coloured, "stochastic-jacobi", resume=wrong, **options)
+REFINED = {"refine_lines": 1e-3}
+DAMAGE = {
+    "no weights of lines": ("random-walk", {}, {"wavefront_weights": None}),
+    "no hits before them": ("random-walk", {}, {"wavefront_arrivals": None}),
+    "no wavefront": ("random-walk", {}, {"wavefront_weights": None, "wavefront_arrivals": None}),
+    "a wavefront of no stage": ("random-walk", {}, {"within": None}),
+    "other weights": ("random-walk", {}, {"wavefront_weights": lambda value: value + np.uint32(1)}),
+    "later hits": ("random-walk", {}, {"wavefront_arrivals": lambda value: value + np.uint32(1000)}),
+    "real numbers": ("random-walk", {}, {"arrivals": lambda value: value.astype(float)}),
+    "lines that did not end": ("random-walk", {}, {"fired": lambda value: value + np.uint32(1 << 20)}),
+    "lines of a step that did not end": ("stochastic-jacobi", {}, {"fired": lambda value: value * np.uint32(2)}),
+    "no lines of a step": ("stochastic-jacobi", {}, {"shot_done": None}),
+    "nothing that they brought": ("stochastic-jacobi", {}, {"shot_received": None}),
+    "less of it": ("stochastic-jacobi", {}, {"shot_received": lambda value: value[:-3]}),
+    "more lines": ("stochastic-jacobi", {}, {"shot_done": lambda value: value + np.uint32(1 << 20)}),
+    "no blur": ("stochastic-jacobi", REFINED, {"shot_moved": None}),
+    "a step after the end": ("stochastic-jacobi", {}, {"progress": lambda value: np.where(np.arange(7) == 1, 1 << 20, value)}),
+}
+
+
+@pytest.fixture(scope="module")
+def stopped(coloured, tmp_path_factory):
+    """A solution that was stopped within a wavefront or a step, by its method."""
+    found = {}
+
+    def of(method, options):
+        if str((method, options)) not in found:
+            with pytest.MonkeyPatch.context() as patched:
+                most(patched, 1 << 10)
+                patched.setattr(checkpoints, "TIMES", 0)
+                folder = tmp_path_factory.mktemp("parts")
+                _, kept = states(coloured, method, folder / "a.npz", quanta=1 << 14, replicates=2, **options)
+            found[str((method, options))] = [solution for solution in kept if within(solution)][-1]
+        return found[str((method, options))]
+
+    return of
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_parts_that_do_not_belong_together_are_refused(coloured, stopped, damage):
+    """No run goes on from a state that lacks some of its arrays, or has others: neither to wrong numbers nor for ever."""
+    method, options, changes = DAMAGE[damage]
+    state = dict(stopped(method, options).state)
+    for name, change in changes.items():
+        value = state.pop(name)
+        if change is not None:
+            state[name] = change(value)
+    with pytest.raises(rd.MethodError, match=r"solution to go on from (lacks|has|is not whole).*(start anew|earlier checkpoint)"):
+        rd.solve(coloured, method, resume=replace(stopped(method, options), state=state), quanta=1 << 14, replicates=2, **options)
 
 
 def test_parts_of_a_run_are_fired_in_parts(coloured, tmp_path, monkeypatch):

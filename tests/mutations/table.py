@@ -3389,6 +3389,20 @@ MISTAKES = (
         "eight workers that die within days end a run",
     ),
     Mistake(
+        "algorithms/firing/powers_sent.py",
+        "fired += exact_sum(",
+        "fired = exact_sum(",
+        ("test_parts.py",),
+        "runs go on from no state within a wavefront that is fired in parts",
+    ),
+    Mistake(
+        "tally/shooter.py",
+        "if begun.sizes != (size, moved) or",
+        "if",
+        ("test_parts.py",),
+        "a step goes on with less than its lines brought, beyond the end of the array",
+    ),
+    Mistake(
         "algorithms/firing/due.py",
         "return counters.firer.most",
         "return counters.firer.least",

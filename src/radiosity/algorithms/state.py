@@ -16,6 +16,7 @@ from ..solution.books import exact_sum, exact_totals
 
 Arrays = Mapping[str, np.ndarray]
 KINDS = {int: "iu", float: "fiu", bool: "b", np.ndarray: "biuf"}  # of arrays that fields are made of
+COUNTS, WHOLE = "u", "i"  # kinds of arrays of counts and of signed whole numbers
 UPPER = "_upper"  # end of the names of optional arrays that hold the upper words of others, which are modulo 2^64
 
 
@@ -64,13 +65,22 @@ class Layout:
 Rule = Callable[[Layout | None, list, list[Any]], Any]  # layout, values of all states, and the records that have them
 
 
-def array(*axes: str | int, flat: bool = False, optional: bool = False, merged: Rule | None = None, zeros: bool = False) -> Any:
+def array(
+    *axes: str | int,
+    flat: bool = False,
+    optional: bool = False,
+    merged: Rule | None = None,
+    zeros: bool = False,
+    kinds: str = KINDS[np.ndarray],
+) -> Any:
     """Return a field that holds an array. Without a rule, states are joined along the replicates.
 
     Args:
         zeros: where the array is left out, all of it is zero.
+        kinds: of numbers, as numpy names them.
     """
-    return field(**_default(optional), metadata={"layout": Layout(axes, flat), "merged": merged, "zeros": zeros})
+    facts = {"layout": Layout(axes, flat), "merged": merged, "zeros": zeros, "kinds": kinds}
+    return field(**_default(optional), metadata=facts)
 
 
 def number(kind: type, *, optional: bool = False, merged: Rule | None = None) -> Any:
@@ -140,9 +150,9 @@ class Record:
 
     @classmethod
     def lacking(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> str:
-        """Return what is missing, "other sizes" where arrays have other shapes, or "" where `read` finds all."""
+        """Return what is missing, "other sizes or types" where arrays have other ones, or "" where `read` finds all."""
         missing = cls.missing(arrays, wanted, prefix)
-        return ", ".join(missing) or ("" if cls.fits(arrays, sizes, wanted, prefix) else "other sizes")
+        return ", ".join(missing) or ("" if cls.fits(arrays, sizes, wanted, prefix) else "other sizes or types")
 
     @classmethod
     def missing(cls, arrays: Arrays, wanted: Collection[str] = (), prefix: str = "") -> list[str]:
@@ -158,7 +168,7 @@ class Record:
 
     @classmethod
     def fits(cls, arrays: Arrays, sizes: Sizes, wanted: Collection[str] = (), prefix: str = "") -> bool:
-        """Return whether all arrays that are there have their shape, and hold numbers."""
+        """Return whether all arrays that are there have their shape, and hold numbers of their kind."""
         for one in fields(cls)[1:]:
             facts = one.metadata
             if not _taken(one, arrays, wanted, prefix):
@@ -167,7 +177,7 @@ class Record:
                 if not facts["record"].fits(arrays, sizes, prefix=prefix + facts["prefix"]):
                     return False
                 continue
-            value, kinds = np.asarray(arrays[prefix + one.name]), KINDS[facts.get("kind", np.ndarray)]
+            value, kinds = np.asarray(arrays[prefix + one.name]), facts["kinds"] if "kinds" in facts else KINDS[facts["kind"]]
             if value.dtype.kind not in kinds or not facts.get("layout", Layout(())).fits(value, sizes):
                 return False
         return True

@@ -79,6 +79,11 @@ class Begun:
     received: Any
     moved: Any = None
 
+    @property
+    def sizes(self) -> tuple[int, int]:
+        """The numbers of entries of ``received`` and ``moved``."""
+        return dr.width(self.received), 0 if self.moved is None else dr.width(self.moved)
+
 
 class Shooter:
     """Counters of lines of patches, and of lights without area after them, and the kernel that fires them.
@@ -166,16 +171,18 @@ class Shooter:
             receivers: what receives, where it is not what lines hit; without polynomials.
         """
         total, left, begun = 0, counts, self.begun
+        groups = self.groups if ends is None or ends.groups is None else ends.groups
+        size = (self.slots if receivers is None else receivers.size) * groups * self.basis.size
+        moved = self.slots * groups if receivers else 0
         if begun is not None:
+            if begun.sizes != (size, moved) or dr.any(begun.done > counts):
+                other = "the solution to go on from has lines of another step"
+                raise MethodError(f"{other}; take an earlier checkpoint, or start anew")
             self.received, self.moved, left = begun.received, begun.moved, counts - begun.done
             (total,) = sums(self.types, begun.done)
-            if dr.any(begun.done > counts):
-                raise MethodError("the solution to go on from has lines of another step; start anew")
         elif self.groups:
-            groups = self.groups if ends is None or ends.groups is None else ends.groups
-            size = self.slots if receivers is None else receivers.size
-            self.received = dr.opaque(self.types.Int64, 0, size * groups * self.basis.size)
-            self.moved = dr.opaque(self.types.Int64, 0, self.slots * groups) if receivers else None
+            self.received = dr.opaque(self.types.Int64, 0, size)
+            self.moved = dr.opaque(self.types.Int64, 0, moved) if receivers else None
         while left is not None:
             lines, left = self._shoot(left, weights, ends, pairs, receivers)
             total += lines

@@ -103,6 +103,10 @@ class FiringCounters:
             return lines
         return lines + (sums(self.types, self.fired_upper.upper(self.fired))[0] << 32)
 
+    def rows(self):
+        """Return the numbers of all rows."""
+        return dr.arange(self.types.UInt32, self.total)
+
     def blocks(self, numbers):
         """Return the blocks of the lines that row numbers fire next; in a kernel."""
         u32, fired = self.types.UInt32, self.targets.read(self.fired, numbers)

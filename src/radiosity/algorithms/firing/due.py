@@ -111,7 +111,7 @@ def _left(counters: FiringCounters) -> tuple[Wavefront | None, int]:
     """
     types, bands = counters.types, counters.bands
     assert bands is not None
-    targets = counters.target_counts_before(dr.arange(types.UInt32, counters.total))
+    targets = counters.target_counts_before(counters.rows())
     counts, largest = targets - counters.targets.read(counters.fired, None), dr.max(targets)
     dr.eval(counts, largest)
     (lines,), most = sums(types, counts), _most(counters)

@@ -8,8 +8,10 @@ import numpy as np
 from ...device.backend import frozen, upload
 from ...errors import MethodError
 from ...tally.bands import BandTally
-from ..state import AbstractState, Arrays, Record, Sizes, array, number, part
+from ..consistent import check_ends
+from ..state import COUNTS, AbstractState, Arrays, Record, Sizes, array, number, part
 from .counters import FiringCounters
+from .powers_sent import check_sent
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -27,17 +29,17 @@ class BandState(Record):
             that is fired in parts: the hit counts when it began, and what its lines carry.
     """
 
-    received: np.ndarray = array("replicates", "rows", "groups")
-    received_missed: np.ndarray = array(2, "replicates", "groups")
-    sent: np.ndarray = array("replicates", "rows", "groups")
-    fired_power: np.ndarray = array("groups", "replicates")
-    received_upper: np.ndarray | None = array("replicates", "rows", "groups", optional=True, zeros=True)
-    received_missed_upper: np.ndarray | None = array(2, "replicates", "groups", optional=True, zeros=True)
-    sent_upper: np.ndarray | None = array("replicates", "rows", "groups", optional=True, zeros=True)
-    fired_power_upper: np.ndarray | None = array("groups", "replicates", optional=True, zeros=True)
+    received: np.ndarray = array("replicates", "rows", "groups", kinds=COUNTS)
+    received_missed: np.ndarray = array(2, "replicates", "groups", kinds=COUNTS)
+    sent: np.ndarray = array("replicates", "rows", "groups", kinds=COUNTS)
+    fired_power: np.ndarray = array("groups", "replicates", kinds=COUNTS)
+    received_upper: np.ndarray | None = array("replicates", "rows", "groups", optional=True, zeros=True, kinds=COUNTS)
+    received_missed_upper: np.ndarray | None = array(2, "replicates", "groups", optional=True, zeros=True, kinds=COUNTS)
+    sent_upper: np.ndarray | None = array("replicates", "rows", "groups", optional=True, zeros=True, kinds=COUNTS)
+    fired_power_upper: np.ndarray | None = array("groups", "replicates", optional=True, zeros=True, kinds=COUNTS)
     within: bool | None = number(bool, optional=True)
-    wavefront_arrivals: np.ndarray | None = array("replicates", "rows", optional=True)
-    wavefront_weights: np.ndarray | None = array("replicates", "rows", "groups", optional=True)
+    wavefront_arrivals: np.ndarray | None = array("replicates", "rows", optional=True, kinds=COUNTS)
+    wavefront_weights: np.ndarray | None = array("replicates", "rows", "groups", optional=True, kinds=COUNTS)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -52,9 +54,9 @@ class FiringState(AbstractState):
 
     splits_within = True
 
-    arrivals: np.ndarray = array("replicates", "rows")
-    fired: np.ndarray = array("replicates", "rows")
-    missed: np.ndarray = array(2, "replicates")
+    arrivals: np.ndarray = array("replicates", "rows", kinds=COUNTS)
+    fired: np.ndarray = array("replicates", "rows", kinds=COUNTS)
+    missed: np.ndarray = array(2, "replicates", kinds=COUNTS)
     bands: BandState | None = part(BandState, optional=True)
 
     @property
@@ -99,11 +101,17 @@ def read(arrays: Arrays, sizes: Sizes, weighed: bool) -> FiringState:
     lacking = FiringState.lacking(arrays, sizes, wanted)
     if lacking:
         raise MethodError(f"the solution to go on from lacks the integers of its run ({lacking}); start anew")
-    return FiringState.read(arrays, sizes, wanted)
+    state = FiringState.read(arrays, sizes, wanted)
+    check_ends(state.arrivals, state.fired, state.missed)
+    return state
 
 
 def restore(counters: FiringCounters, state: FiringState) -> None:
-    """Set the counters to those of a state, at its number of quanta."""
+    """Set the counters to those of a state, at its number of quanta.
+
+    Raises:
+        MethodError: powers of bands and lines of the state do not belong together.
+    """
     types, bands = counters.types, counters.bands
     counters.hits.write(state.arrivals, state.missed)
     counters.fired = upload(types.UInt32, counters.fired_upper.of(state.fired))
@@ -121,3 +129,5 @@ def restore(counters: FiringCounters, state: FiringState) -> None:
             bands.arrivals_before = upload(types.UInt32, np.ravel(before))
             bands.weights = upload(types.UInt32, np.ravel(weights))
     counters.set_quanta(state.quanta)
+    if state.bands is not None:
+        check_sent(counters, state.bands)

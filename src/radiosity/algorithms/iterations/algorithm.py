@@ -72,6 +72,8 @@ class Iteration(AbstractAlgorithm[IterationState]):
 
         self.exchange.shooter.told = of_part
         self.scheme.advance(quanta, of_step)
+        if self.exchange.shooter.begun is not None:
+            raise MethodError("the solution to go on from has lines of a step, and none is left; take an earlier checkpoint")
 
     def capture(self) -> IterationState:
         scheme = self.scheme.capture()
@@ -107,6 +109,7 @@ class Iteration(AbstractAlgorithm[IterationState]):
         if not IterationState.lacking(arrays, sizes, wanted):
             state = IterationState.read(arrays, sizes, wanted)
             if state.fits_turns(self.exchange.turns, self.exchange.shooter.sequences):
+                state.check_counts()
                 return state
         raise MethodError("the solution to go on from lacks the counters of its iterations, or has other sizes; start anew")
 

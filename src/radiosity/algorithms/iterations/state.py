@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import MethodError
+from ..consistent import check_ends
 from ..merge_rules import alike
-from ..state import AbstractState, Record, array, number, part
+from ..state import COUNTS, WHOLE, AbstractState, Record, array, number, part
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -119,24 +120,36 @@ class IterationState(AbstractState):
             step, see `tally.shooter.Begun`. All else is then as before the step, but for the counts of lines.
     """
 
-    arrivals: np.ndarray = array("replicates", "rows")
-    fired: np.ndarray = array("replicates", "rows")
-    missed: np.ndarray = array(2, "replicates")
-    fired_apart: np.ndarray | None = array("any", "replicates", "rows", optional=True)
+    arrivals: np.ndarray = array("replicates", "rows", kinds=COUNTS)
+    fired: np.ndarray = array("replicates", "rows", kinds=COUNTS)
+    missed: np.ndarray = array(2, "replicates", kinds=COUNTS)
+    fired_apart: np.ndarray | None = array("any", "replicates", "rows", optional=True, kinds=COUNTS)
     step: int = number(int, merged=_steps)
     importance: np.ndarray | None = array("rows", optional=True, merged=alike)
     regular: RegularState | None = part(RegularState, optional=True)
     incremental: IncrementalState | None = part(IncrementalState, optional=True)
     control: ControlState | None = part(ControlState, optional=True)
-    shot_done: np.ndarray | None = array("replicates", "rows", optional=True)
-    shot_received: np.ndarray | None = array("any", optional=True)
-    shot_moved: np.ndarray | None = array("any", optional=True)
+    shot_done: np.ndarray | None = array("replicates", "rows", optional=True, kinds=COUNTS)
+    shot_received: np.ndarray | None = array("any", optional=True, kinds=WHOLE)
+    shot_moved: np.ndarray | None = array("any", optional=True, kinds=WHOLE)
 
     def fits_turns(self, turns: int, sequences: int) -> bool:
         """There is a source for each turn, and a count for each sequence."""
         each = self.sizes.replicates * self.sizes.rows * self.sizes.groups
         fits_source = self.regular is None or self.regular.source.size == turns * each
         return fits_source and (self.fired_apart is None or len(self.fired_apart) == sequences)
+
+    def check_counts(self) -> None:
+        """Refuse counts of lines that do not belong together.
+
+        Raises:
+            MethodError: lines were fired that did not end, or arrays of a step in parts are missing, or have other lines.
+        """
+        check_ends(self.arrivals, self.fired, self.missed)
+        if (self.shot_done is None) != (self.shot_received is None) or (self.shot_moved is not None and self.shot_done is None):
+            raise MethodError("the solution to go on from lacks a part of its step; take an earlier checkpoint, or start anew")
+        if self.shot_done is not None and (self.shot_done > self.fired).any():
+            raise MethodError("the solution to go on from has lines of another step; take an earlier checkpoint, or start anew")
 
     @property
     def scheme(self) -> RegularState | IncrementalState:
