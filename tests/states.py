@@ -14,7 +14,7 @@ import radiosity as rd
 from radiosity.algorithms.base import AbstractAlgorithm, Interrupted
 from radiosity.algorithms.state import AbstractState
 from radiosity.algorithms.table import make
-from radiosity.device.backend import choose
+from radiosity.device.backend import choose, threads
 from radiosity.problem.model import Problem
 from radiosity.tracing.geometry import Geometry
 
@@ -70,6 +70,13 @@ def whole(method: rd.Method, stages=STAGES, seed: int = 4) -> AbstractState:
     for quanta in stages:
         algorithm.advance(quanta, lambda lines: None)
     return algorithm.capture()
+
+
+@cache
+def once(method: rd.Method) -> AbstractState:
+    """The state after `STAGES`, which no test changes: on one thread, with launches of the usual size."""
+    with threads(1):
+        return whole(method)
 
 
 def filed(state: AbstractState) -> dict[str, np.ndarray]:

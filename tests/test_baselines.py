@@ -50,7 +50,7 @@ def error(solution: rd.Solution, reference: rd.Solution) -> float:
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("factors", FACTORS)
-@pytest.mark.parametrize("mean_reflectance", ["0.1", "0.5", "0.9"])
+@pytest.mark.parametrize("mean_reflectance", [pytest.param("0.1", marks=pytest.mark.slow), "0.5", "0.9"])
 def test_furnace(scheme, factors, mean_reflectance):
     """Rows of lines and hemicubes sum to one, so B = 1 whatever they are, but for what progressive refinement leaves unshot
     (1e-4 of the emitted power, over 1 - rho); polygons' rows are off by what 16 lines a pair leave open."""
@@ -104,7 +104,7 @@ def test_full_matrix_of_lines_agrees_with_the_random_walk_within_errors(scene, r
         (rd.Baseline(samples=64), 0.015),  # 64 lines a half hidden pair
         (rd.Baseline("progressive", samples=64), 0.015),
         (rd.Baseline("progressive", factors="lines"), 0.06),
-        (rd.Baseline("progressive", factors="hemicube", resolution=128), 0.08),  # near patches seen from the middle alone
+        (rd.Baseline("progressive", factors="hemicube", resolution=64), 0.08),  # near patches seen from the middle alone
     ],
     ids=str,
 )
@@ -369,7 +369,7 @@ def cove():
 
 @pytest.mark.parametrize("name", ["hierarchical", "hierarchical-error-control", "full-matrix"])
 def test_a_lamp_close_to_the_ceiling(cove, name):
-    assert error(rd.solve(cove[0], name, samples=64), cove[1]) < 0.02
+    assert error(rd.solve(cove[0], name), cove[1]) < 0.02
 
 
 def test_hemicubes_are_blind_for_it_and_say_so(cove):

@@ -163,7 +163,11 @@ def appears(path: Path, process: subprocess.Popen) -> None:
 
 @pytest.mark.parametrize(
     ("number", "status", "method"),
-    [(signal.SIGTERM, 143, "random-walk"), (signal.SIGINT, 130, "random-walk"), (signal.SIGINT, 130, "auto")],
+    [
+        (signal.SIGTERM, 143, "random-walk"),
+        (signal.SIGINT, 130, "auto"),
+        pytest.param(signal.SIGINT, 130, "random-walk", marks=pytest.mark.slow),  # each half of it is above
+    ],
 )
 def test_signals_leave_the_state(tmp_path, number, status, method):
     kept, output = tmp_path / "room.checkpoint.npz", tmp_path / "room.csv"

@@ -101,7 +101,8 @@ def run(forks, folder: Path, scene: str, commands, files: dict[str, dict[str, st
     return found
 
 
-LONGER = ("lines of one, passes", "lines of plates")  # other lines are counted in the cases beside them
+# other lines are counted, and other heat is exchanged, in the cases beside them
+LONGER = ("lines of one, passes", "lines of plates", "lines of coloured", "heat of one, absorbs")
 
 
 @pytest.mark.parametrize("case", [pytest.param(case, marks=pytest.mark.slow) if case in LONGER else case for case in CASES])

@@ -17,9 +17,9 @@ SEEDS = 3
 
 @pytest.fixture(scope="module")
 def room():
-    """The patches of a room, and what they receive, from fifty times as many lines."""
+    """The patches of a room, and what they receive, from 24 times as many lines."""
     patches = rd.subdivide(rd.load_scene("room"), cells=12)
-    return patches, rd.solve(patches, "gather", rays=24_000_000, seed=50)
+    return patches, rd.solve(patches, "gather", rays=12_000_000, seed=50)
 
 
 @pytest.fixture(scope="module")

@@ -108,10 +108,13 @@ def references():
     return solved
 
 
-ELSEWHERE = {  # multipath: its room is in test_table.py, too; with a first shot: backs that pass are the harder ones
+TWINS = [rd.Method(lines=lines, order=order) for lines in ("global", "spans") for order in ("multipath", "regular")]
+# multipath: its room is in test_table.py, too; with a first shot: backs that pass are the harder ones; and the twins go one way
+# through a back below
+ELSEWHERE = {
     "room": [method for method in METHODS if method.order == "multipath"],
     "RADIATES": [method for method in METHODS if method.first_shot],
-    "PASSES": [],
+    "PASSES": TWINS,
 }
 CASES = [
     pytest.param(method, name, marks=[pytest.mark.slow] if method in elsewhere else [], id=f"{shown(method)}-{name}")
@@ -130,9 +133,8 @@ def test_light_goes_one_way_through_a_back_that_lets_it_pass():
     """The receiver sees the sheet's front, and gets the emitter's light through the sheet."""
     patches = rd.subdivide(stack(rd.Back.PASSES), cells=3)
     reference = rd.solve(patches, "random-walk", rays=2_000_000, replicates=16, seed=9)
-    for lines in ("global", "spans"):
-        for order in ("multipath", "regular"):
-            same(rd.solve(patches, rd.Method(lines=lines, order=order), rays=1_000_000, replicates=16), reference)
+    for method in TWINS:
+        same(rd.solve(patches, method, rays=1_000_000, replicates=16), reference)
 
 
 def test_exchange_is_what_whole_numbers_say(random):

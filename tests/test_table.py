@@ -39,7 +39,7 @@ def reference(room, plates):
 
     def get(name, equation):
         if (name, equation) not in known:
-            solution = rd.solve(scenes[name], REFERENCES[equation], rays=8_000_000, replicates=REPLICATES, seed=77)
+            solution = rd.solve(scenes[name], REFERENCES[equation], rays=4_000_000, replicates=REPLICATES, seed=77)
             known[name, equation] = powers(solution)
         return known[name, equation]
 
