@@ -204,13 +204,23 @@ def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("rows", "firer", "most"),
-    [(5, None, 1 << 24), (3 << 20, None, 3 << 23), (1 << 30, None, 1 << 25), (5, SimpleNamespace(most=7), 7)],
+    ("rows", "threads", "firer", "most"),
+    [
+        (5, 2, None, 1 << 24),
+        (5, 16, None, 1 << 24),
+        (5, 1, None, 1 << 23),
+        (3 << 20, 2, None, 3 << 23),
+        (1 << 30, 2, None, 1 << 25),
+        (1 << 30, 1, None, 1 << 24),
+        (5, 1, SimpleNamespace(most=7), 7),
+    ],
 )
-def test_wavefronts_last_some_seconds(rows, firer, most):
+def test_wavefronts_last_some_seconds(rows, threads, firer, most, monkeypatch):
     """Those fired here are short, but for many rows, since each costs a pass over all of them. Others say what they can do."""
     from radiosity.algorithms.firing import due
+    from radiosity.tracing import parts
 
+    monkeypatch.setattr(parts, "dr", SimpleNamespace(thread_count=lambda: threads))
     tracer = SimpleNamespace(geometry=SimpleNamespace(device=SimpleNamespace(name="cpu")))
     assert due._most(SimpleNamespace(tracer=tracer, firer=firer, total=rows)) == most
 

@@ -7,14 +7,17 @@ from typing import Any
 
 import drjit as dr
 
-# Most lines of a part, in small scenes and in large ones: a few seconds.
+# Most lines of a part, in small scenes and in large ones: a few seconds of a GPU, or of so many threads.
 MOST = {"cpu": (1 << 24, 1 << 25), "cuda": (1 << 32, 1 << 32)}
+THREADS = 2
 A_ROW = 8  # lines for each row, from which passes over all rows take little of the time
 
 
 def most_lines(device: str, rows: int) -> int:
     """Return the most lines of a part."""
     small, large = MOST[device]
+    if device == "cpu" and dr.thread_count() < THREADS:
+        small, large = small // THREADS, large // THREADS
     return min(max(A_ROW * rows, small), large)
 
 

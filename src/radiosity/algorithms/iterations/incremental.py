@@ -109,6 +109,7 @@ class Incremental:
         if exchange.basis.size > 1:
             unsent, expected = end_of_polynomials(exchange, unsent, self.quanta)
         lines, fired = exchange.send(unsent, expected, float(self.begun) * exchange.unit)
+        del unsent, expected  # frees their memory
         self.fired += 0 if fired is None or not self.exact else fired()
         self.received += type(self.received)(exchange.shooter.received)
         self.unsent = dr.round(exchange.scattered(types.Float64(exchange.patches(exchange.shooter.received))))
