@@ -207,9 +207,11 @@ class Shooter:
         if self.elsewhere is not None and pairs is None and receivers is None and self.upper.halves is None:
             (lines,) = sums(types, now)
             if lines >= self.elsewhere.least:
-                some = self._some(now, self.elsewhere.most)
-                left = None if some is None else counts - self._spread(some, rows)
-                lines = shoot_elsewhere(self, self.elsewhere, rows, now if some is None else some, weights, ends)
+                left = None
+                if self.told is not None and lines > self.elsewhere.most:
+                    now = part(types, now, self.elsewhere.most / lines)
+                    left = counts - self._spread(now, rows)
+                lines = shoot_elsewhere(self, self.elsewhere, rows, now, weights, ends)
                 dr.eval(left)
                 self._look()
                 return lines, left
@@ -220,10 +222,13 @@ class Shooter:
             now = dr.minimum(now, dr.select(first == 0, types.UInt32(PERIOD), dr.minimum(0 - first, PERIOD)))
             left, largest = counts - self._spread(now, rows), dr.full(types.UInt32, BLOCK - 1, 2)
             tracer.blocks.prepare(self.upper.largest + 1)
-        some = self._some(now, most_lines(tracer.geometry.device.name, self.total))
-        if some is not None:
-            now, left = some, counts - self._spread(some, rows)
         batch = Batch.of(types, rows, now, fired, tracer.record, blocks=blocks)
+        most = most_lines(tracer.geometry.device.name, self.total)
+        if self.told is not None and batch.total > most:  # to add lines up before the batch took 60 bytes more a row
+            now = part(types, now, most / batch.total)
+            left = counts - self._spread(now, rows)
+            del batch
+            batch = Batch.of(types, rows, now, fired, tracer.record, blocks=blocks)
         # read after the batch, whose size the host has waited for; batches of few lines share one kernel, whatever their indices
         bits = tracer.numbers.bits_for(int(largest[0]))
         mode = dr.ReduceMode.Expand if batch.total > DENSE * self.total else dr.ReduceMode.Direct
@@ -235,13 +240,6 @@ class Shooter:
         dr.scatter(self.fired, batch.fired + batch.counts, batch.numbers, active=batch.counts > 0)
         dr.eval(self.fired, left)
         return batch.total, left if left is not None and dr.any(left > 0) else None
-
-    def _some(self, counts, most: int):
-        """Return counts of a part of the lines; None where they are fired whole."""
-        if self.told is None:
-            return None
-        (lines,) = sums(self.types, counts)
-        return part(self.types, counts, most / lines) if lines > most else None
 
     def _spread(self, values, rows):
         """Return values of some patch numbers as an array of all."""
