@@ -8,7 +8,7 @@ from kills import assert_same
 
 import radiosity as rd
 from radiosity.algorithms.firing import due
-from radiosity.algorithms.firing.orders import FIRED
+from radiosity.algorithms.firing.orders import FIRED, depth_first
 from radiosity.run import checkpoint as checkpoints
 from radiosity.tally import shooter
 from radiosity.tracing import parts
@@ -162,6 +162,15 @@ def test_walks_are_followed_from_all_lines_that_are_due(monkeypatch, order):
     whole = rd.solve(patches, rd.Method(order=order), **options)
     most(monkeypatch, 1 << 11)
     assert_same(rd.solve(patches, rd.Method(order=order), **options), whole)
+
+
+def test_lines_that_are_left_out_do_not_pass(monkeypatch):
+    """Half of all walks would give half of the light: rounding cannot have taken that."""
+    room = rd.subdivide(rd.load_scene("room"), cells=2)
+    most(monkeypatch, 1 << 11)
+    monkeypatch.setattr(depth_first, "more_is_due", lambda counters: False)
+    with pytest.raises(rd.DeviceError, match="the energy balance does not close"):
+        rd.solve(room, "random-walk", order="depth-first", quanta=1 << 15, replicates=2)
 
 
 @pytest.mark.parametrize("kind", ["walks", "steps"])

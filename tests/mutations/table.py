@@ -3577,4 +3577,11 @@ MISTAKES = (
         ("test_cluster.py::test_units_last_by_the_quickest_sending_and_tell_their_age",),
         "a busy machine makes units last a minute",
     ),
+    Mistake(
+        "solution/books.py",
+        "return possible and self.emitted",
+        "return self.emitted",
+        ("test_parts.py::test_lines_that_are_left_out_do_not_pass",),
+        "lines that were left out pass as rounding",
+    ),
 )

@@ -22,7 +22,7 @@ from .snapshot import Snapshot
 LOST_HITS = (
     "the energy balance does not close: hits were lost while another thread of this process ran kernels of Dr.Jit or Mitsuba "
     "(runs of radiosity wait for each other). Solve again while nothing else uses them, or in a process of its own; a checkpoint "
-    "of this run is of no use"
+    "of this run is of no use. If it happens again, lines were left out by a fault of radiosity: report it, please"
 )
 
 

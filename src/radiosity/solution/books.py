@@ -17,6 +17,7 @@ class Books:
         fired: power that left patches along lines, summed from the lines' side.
         reflected: power that patches must send for the hits that they received.
         watts: W or lm of one unit, for the mean over replicates.
+        most_rounding: what rounding cannot exceed, where that is known.
     """
 
     emitted: int
@@ -26,6 +27,7 @@ class Books:
     escaped: int
     lost: int
     watts: float
+    most_rounding: int | None = None
 
     COLUMNS: ClassVar = ("emitted", "rounding", "absorbed", "escaped", "lost")
 
@@ -36,8 +38,9 @@ class Books:
 
     @property
     def closes(self) -> bool:
-        """True where both sides are equal."""
-        return self.emitted + self.rounding == self.absorbed + self.escaped + self.lost
+        """True where both sides are equal, and rounding to whole lines can have added what it has: else lines were not fired."""
+        possible = self.most_rounding is None or abs(self.rounding) <= self.most_rounding
+        return possible and self.emitted + self.rounding == self.absorbed + self.escaped + self.lost
 
     def powers(self) -> dict:
         """The columns in W or lm, and ``closes``."""

@@ -121,4 +121,5 @@ class Arrivals(AbstractTally[FiringState]):
         escaped, lost = (count * unit + int(y.sum()) << 32 for count, y in zip(missed, sent.missed[..., group], strict=True))
         fired = fired * unit + sent.fired[group]
         watts = source.power / quanta / QUANTUM / 2**32 / replicates
-        return Books(emitted, fired << 32, reflected, (arrived << 32) - reflected, escaped, lost, watts).powers()
+        most = replicates * len(rows.area) * QUANTUM << 32  # a line of each row; with the residue sent on it is far less
+        return Books(emitted, fired << 32, reflected, (arrived << 32) - reflected, escaped, lost, watts, most).powers()
