@@ -20,6 +20,7 @@ from radiosity.run.solve import prepared
 from radiosity.sensors import pixels
 
 distributed = pytest.importorskip("distributed", reason="distributed is not installed")
+dask = pytest.importorskip("dask", reason="dask is not installed")
 from radiosity.cluster import connect, crew, sensing, worker  # noqa: E402
 from radiosity.cluster.job import Job  # noqa: E402
 from radiosity.cluster.plugin import JobPlugin  # noqa: E402
@@ -205,9 +206,12 @@ def test_errors_of_workers_are_those_of_one_machine(client, monkeypatch):
     ],
 )
 def test_what_is_no_cluster(grey, cluster, error, message, monkeypatch):
+    """It leaves Dask as it was: else what other programs of the process compute with it would fail, such as xarray's files."""
     monkeypatch.setattr(connect, "TIMEOUT", 0.2)
-    with pytest.raises(error, match=message):
-        solved(grey, "random-walk", cluster=cluster)
+    with dask.config.set(scheduler=None):
+        with pytest.raises(error, match=message):
+            solved(grey, "random-walk", cluster=cluster)
+        assert dask.config.get("scheduler") is None
 
 
 def test_without_the_extra(grey, monkeypatch):

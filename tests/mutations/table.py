@@ -3584,4 +3584,11 @@ MISTAKES = (
         ("test_parts.py::test_lines_that_are_left_out_do_not_pass",),
         "lines that were left out pass as rounding",
     ),
+    Mistake(
+        "cluster/connect.py",
+        '"set_as_default": False',
+        '"set_as_default": True',
+        ("test_cluster.py::test_what_is_no_cluster",),
+        "a cluster that does not answer stays what Dask computes on",
+    ),
 )

@@ -21,6 +21,8 @@ QUIET = {  # what Dask does for its pages, which nobody looks at: 3 % of each co
     "distributed.admin.system-monitor.interval": "2s",
 }
 TIMEOUT = 15.0  # seconds to reach a scheduler
+# Other programs of the process do not compute on our clients. Dask would let them, and leave that so where no scheduler answers.
+OWN = {"set_as_default": False}
 GUARD = (
     "Processes on this machine import the script that starts them: its own work must stand under `if __name__ == '__main__':` "
     "(docs/cluster.md)"
@@ -92,7 +94,7 @@ def _local(workers: int) -> Iterator[Any]:
             cluster = LocalCluster(n_workers=workers, threads_per_worker=threads, worker_class=_started(workers), **options)
         except RuntimeError as error:
             raise DeviceError(f"cluster 'local:{workers}': its processes do not start ({_why(error)}). {GUARD}") from None
-        with cluster, Client(cluster) as client:
+        with cluster, Client(cluster, **OWN) as client:
             yield client
 
 
@@ -118,7 +120,7 @@ def _remote(address: str) -> Iterator[Any]:
     from distributed import Client
 
     try:
-        client = Client(address, timeout=TIMEOUT)
+        client = Client(address, timeout=TIMEOUT, **OWN)
     except (OSError, ValueError, TypeError) as error:  # refused, no such host, another protocol, certificates
         raise DeviceError(
             f"cluster '{address}': no scheduler answers ({_why(error)}); is it running (`dask scheduler`), and is the address "
