@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from typing import Any
 
+from ..device.turn import turn
 from ..errors import DeviceError, MethodError, installing
 from .gpus import environments
 from .scenes import forget_scenes
@@ -41,10 +42,16 @@ def connected(cluster: Any) -> Iterator[Any]:
         DeviceError: 'distributed' is not installed, or no scheduler answers. MethodError: it is none of these.
     """
     with _client(cluster) as client:
+        import drjit as dr
+
+        before = dr.thread_count()
         try:
             yield client
         finally:
             forget_scenes(client)
+            if dr.thread_count() != before:  # workers that are threads of this process have left theirs
+                with turn():
+                    dr.set_thread_count(before)
 
 
 @contextmanager

@@ -139,14 +139,14 @@ def fire_own_rows(key: str, unit: tuple[OwnRows, str, list[str]]) -> Brought:
 
     job = job_of(key)
     (address, count), seconds, (task, work, addresses) = _here(), 0.0, unit
-    with turn(), threads(count):
+    with turn(), threads(count, back=False):
         counters = _counters(job, task.replicate)
         phase = frozen(counters.targets.phase).copy()
 
     def fire_some(lines: Lines) -> Hits:
         nonlocal seconds
         begun = time.perf_counter()
-        with turn(), threads(count):  # and not while it waits: workers may be threads of one process
+        with turn(), threads(count, back=False):  # and not while it waits: workers may be threads of one process
             hits = fire_here(counters, lines)
         seconds += time.perf_counter() - begun
         return hits
@@ -174,7 +174,7 @@ def bring(key: str, act: Callable[[Any], list]) -> Brought:
     """
     begun, job = time.perf_counter(), job_of(key)
     address, count = _here()
-    with turn(), threads(count):
+    with turn(), threads(count, back=False):
         what = act(job)
     return Brought(what, time.perf_counter() - begun, address, facts())
 
@@ -241,7 +241,7 @@ def advance(unit: Unit, arrays: Mapping[str, np.ndarray] | None) -> Outcome:
             raise _Enough
 
     address, count = _here()
-    with turn(), threads(count), warnings.catch_warnings(record=True) as told:
+    with turn(), threads(count, back=False), warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         algorithm = _ready(job, unit, arrays)
         done, ended = False, ""

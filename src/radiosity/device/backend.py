@@ -145,16 +145,23 @@ def give_back_memory() -> None:
 
 
 @contextmanager
-def threads(count: int):
-    """Set Dr.Jit's number of threads for a block."""
+def threads(count: int, *, back: bool = True):
+    """Set Dr.Jit's number of threads for a block.
+
+    Args:
+        back: set it back afterwards. Where this is done often, leave it: Dr.Jit takes threads away by waiting for their end, and
+            once in some thousand times waits for ever, since a thread that sleeps is not woken (1.5.0).
+    """
     import drjit as dr
 
     before = dr.thread_count()
-    dr.set_thread_count(count)
+    if count != before:
+        dr.set_thread_count(count)
     try:
         yield
     finally:
-        dr.set_thread_count(before)
+        if back and count != before:
+            dr.set_thread_count(before)
 
 
 @contextmanager
