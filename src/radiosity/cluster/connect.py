@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from typing import Any
 
-from ..device.turn import turn
+from ..device.backend import same_threads
 from ..errors import DeviceError, MethodError, installing
 from .gpus import environments
 from .scenes import forget_scenes
@@ -41,17 +41,11 @@ def connected(cluster: Any) -> Iterator[Any]:
     Raises:
         DeviceError: 'distributed' is not installed, or no scheduler answers. MethodError: it is none of these.
     """
-    with _client(cluster) as client:
-        import drjit as dr
-
-        before = dr.thread_count()
+    with _client(cluster) as client, same_threads():  # workers that are threads of this process leave theirs
         try:
             yield client
         finally:
             forget_scenes(client)
-            if dr.thread_count() != before:  # workers that are threads of this process have left theirs
-                with turn():
-                    dr.set_thread_count(before)
 
 
 @contextmanager

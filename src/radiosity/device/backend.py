@@ -165,6 +165,20 @@ def threads(count: int, *, back: bool = True):
 
 
 @contextmanager
+def same_threads():
+    """Set Dr.Jit's number of threads back after a block that may leave another one."""
+    import drjit as dr
+
+    before = dr.thread_count()
+    try:
+        yield
+    finally:
+        if dr.thread_count() != before:
+            with turn():
+                dr.set_thread_count(before)
+
+
+@contextmanager
 def bitmaps():
     """Give Dr.Jit two threads or more for a block that reads or writes EXR files by Mitsuba's `Bitmap`.
 
