@@ -126,7 +126,7 @@ def test_lines_carry_the_polynomial_of_where_they_begin(estimator):
     power = upload(exchange.types.Float64, power.ravel() * LINE * 1000)
     expected = exchange.types.UInt64(exchange.largest(power)) + dr.opaque(exchange.types.UInt64, 500 * LINE)
     exchange.send(power, expected, 1.0)
-    got = np.array(exchange.patches(exchange.shooter.received)).reshape(replicates, 6, 3) / LINE / 1000
+    got = np.array(exchange.patches(exchange.shooter.scores.received)).reshape(replicates, 6, 3) / LINE / 1000
     a, b, w = gauss(8)
     basis, (one, other) = BASES["linear"], (points_of(patches, row, a, b) for row in (0, 1))
     way = other[None] - one[:, None]

@@ -20,7 +20,8 @@ from some_cases import some
 
 import radiosity as rd
 from radiosity.algorithms.iterations.exchange import LINE, Exchange
-from radiosity.tally.shooter import Ends, Shooter
+from radiosity.tally.scores import Ends
+from radiosity.tally.shooter import Shooter
 
 RUNS, SOME_RUNS, LONG_RUNS, SHORT_RUNS, ALPHA = 2048, 512, 512, 768, 1e-3
 UNBIASED = ("incremental", "incremental, both ends", "incremental, control variate", "regular, warm-up")
@@ -81,9 +82,10 @@ def test_restarted_indices_are_rejected(lit, monkeypatch):
     shoot = Shooter.shoot
 
     def again(self, *arguments, **named):
-        before, self.fired = self.fired, dr.opaque(self.types.UInt32, 0, self.total)
+        sequences = self.sequences
+        before, sequences.fired = sequences.fired, dr.opaque(self.types.UInt32, 0, self.total)
         result = shoot(self, *arguments, **named)
-        self.fired = self.fired + before  # all are counted, or the state would be refused
+        sequences.fired = sequences.fired + before  # all are counted, or the state would be refused
         return result
 
     monkeypatch.setattr(Shooter, "shoot", again)

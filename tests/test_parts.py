@@ -192,9 +192,9 @@ def test_wrong_parts_are_noticed(coloured, monkeypatch, kind):
         shoot = shooter.Shooter._shoot
 
         def once_more(self, *given):
-            before = type(self.fired)(self.fired)
+            before = type(self.sequences.fired)(self.sequences.fired)
             lines, more = shoot(self, *given)
-            self.fired = before if more is not None else self.fired
+            self.sequences.fired = before if more is not None else self.sequences.fired
             return lines, more
 
         monkeypatch.setattr(shooter.Shooter, "_shoot", once_more)

@@ -360,7 +360,7 @@ def test_iterations_fire_lines_beyond_the_border(geometry):
     n, types = len(geometry.patches), geometry.device.types
     fired = np.full((1, n), 2**32 - 11, np.uint64)
     fired[0, 1] = 2**34 - 3
-    shooter.begin_after(fired)
+    shooter.sequences.begin_after(fired)
     counts = np.arange(n, dtype=np.uint32) * 5
     assert shooter.shoot(upload(types.UInt32, counts), upload(types.Int, np.full(n, 3, np.int32))) == counts.sum()
     arrivals, after, missed, _ = shooter.read()
@@ -370,7 +370,7 @@ def test_iterations_fire_lines_beyond_the_border(geometry):
         for block, begin, more in parts(fired[:, row], counts[row : row + 1]):
             expected += traced(shooter.tracer, row, (int(begin[0]) + 1) % BLOCK, int(more[0]), block)
     assert np.array_equal(np.append(arrivals[0], missed[:, 0]), expected)
-    assert np.array_equal(frozen(shooter.received)[:n], 3 * arrivals[0])
+    assert np.array_equal(frozen(shooter.scores.received)[:n], 3 * arrivals[0])
 
 
 @pytest.mark.slow

@@ -1881,7 +1881,7 @@ MISTAKES = (
     ),
     Mistake(
         "factors/line_rows.py",
-        "            self.shooter.fired = upload(types.UInt32, np.zeros(total, np.uint32))",
+        "            self.shooter.sequences.fired = upload(types.UInt32, np.zeros(total, np.uint32))",
         "            pass",
         ("test_baselines.py::test_rows_that_are_forgotten_change_nothing",),
         "rows made again have other lines",
@@ -2396,7 +2396,7 @@ MISTAKES = (
         "a few far vertices decide that nothing lies beyond a face",
     ),
     Mistake(
-        "tally/shooter.py",
+        "tally/sequences.py",
         "upper.of(x)) for upper, x in zip(self._upper, columns, strict=True)]",
         "upper.of(fired)) for upper, x in zip(self._upper, columns, strict=True)]",
         ("test_iteration_bits.py", "test_iteration.py"),
@@ -3397,7 +3397,7 @@ MISTAKES = (
     ),
     Mistake(
         "tally/shooter.py",
-        "if begun.sizes != (size, moved) or",
+        "if begun.sizes != self.scores.sizes(load) or",
         "if",
         ("test_parts.py",),
         "a step goes on with less than its lines brought, beyond the end of the array",

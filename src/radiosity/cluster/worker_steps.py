@@ -6,7 +6,6 @@ import numpy as np
 
 from ..algorithms.gather.elsewhere import GatherLines, Sums, trace_here
 from ..algorithms.walks.launches import Chunks
-from ..tally.shooter import Ends
 from ..tally.shots import Landed, Shot, shoot_here
 from .job import Job
 from .worker import Brought, bring, keep, made, owned, taken
@@ -34,7 +33,7 @@ def shot_of(job: Job, unit: tuple[int, Shot]) -> Landed:
     replicates, shot = unit
     place = (job.key, ALL, replicates)
     algorithm = taken(place) or made(job, 0, replicates)
-    landed = shoot_here(algorithm.exchange.shooter, shot, Ends)
+    landed = shoot_here(algorithm.exchange.shooter, shot)
     keep(place, "", algorithm)
     return landed
 

@@ -42,7 +42,7 @@ class LineRows(AbstractRows):
             counts = np.zeros(total, np.uint32)
             counts[replicate * self.n + some] = self.lines
             types = self.shooter.types
-            self.shooter.fired = upload(types.UInt32, np.zeros(total, np.uint32))  # each row begins with its first line
+            self.shooter.sequences.fired = upload(types.UInt32, np.zeros(total, np.uint32))  # each row begins with its first line
             self.shooter.shoot(upload(types.UInt32, counts), pairs=pairs)
             swept(len(some) * self.lines)
         keys, counts = np.unique(np.concatenate(found) if found else np.zeros(0, np.int64), return_counts=True)

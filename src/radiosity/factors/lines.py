@@ -58,7 +58,7 @@ class LocalLines:
 
     def resume(self, reached: int) -> None:
         """Prepare to go on from N = ``reached``."""
-        self.shooter.begin_after(self.targets(reached))
+        self.shooter.sequences.begin_after(self.targets(reached))
 
 
 class GlobalLines:

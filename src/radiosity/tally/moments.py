@@ -45,7 +45,7 @@ class Moments:
             self._add(self._value(weights, number, group, here), landed, group, there, add)
 
     def both(self, ends, number, landed, begin: Spot, end: Spot, add: Add) -> None:
-        """Add what lines bring to both their ends; see `tally.shooter.Ends`, whose ``carried`` has K coefficients a group."""
+        """Add what lines bring to both their ends; see `tally.scores.Ends`, whose ``carried`` has K coefficients a group."""
         Float = self.types.Float
         here, there = self._functions(begin), self._functions(end)
         both = dr.gather(Float, ends.density, number) + dr.gather(Float, ends.density, landed)

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..device.backend import frozen, upload
 from .elsewhere import AbstractElsewhere
+from .scores import Ends, Load
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,43 +63,40 @@ def between(counts: np.ndarray, low: int, high: int) -> tuple[np.ndarray, np.nda
     return some, (first - begins)[some], (end - first)[some]
 
 
-def shoot_elsewhere(shooter: Any, shots: Shots, numbers, counts, weights, ends) -> int:
+def shoot_elsewhere(shooter: Any, shots: Shots, numbers, counts, load: Load) -> int:
     """Fire lines of a `Shooter` elsewhere, and add what they bring.
 
     Args:
         numbers, counts: of the patch numbers that fire, UInt32 each.
-        weights, ends: as of `Shooter.shoot`.
+        load: what the lines carry; without receivers.
     """
     types, rows, now = shooter.types, frozen(numbers), frozen(counts)
-    carried = None if weights is None else frozen(weights).reshape(shooter.total, -1)[rows]
-    fired = frozen(shooter.fired).copy()
-    shot = Shot(shooter.sequence, rows.copy(), fired[rows], now.copy(), carried)
-    if ends is not None:
+    carried = None if load.weights is None else frozen(load.weights).reshape(shooter.total, -1)[rows]
+    fired = frozen(shooter.sequences.fired).copy()
+    shot = Shot(shooter.sequences.taken, rows.copy(), fired[rows], now.copy(), carried)
+    if load.ends is not None:
+        ends = load.ends
         shot = replace(shot, density=frozen(ends.density), carried=frozen(ends.carried), groups=ends.groups)
-    received = frozen(shooter.received).copy()
+    received = frozen(shooter.scores.received).copy()
     arrivals, missed = (column.astype(np.uint64) for column in shooter.hits.read())
     for landed in shots.trace(shot):
         received += landed.received
         arrivals += landed.arrivals
         missed += landed.missed
     fired[rows] += now
-    shooter.received, shooter.fired = upload(types.Int64, received), upload(types.UInt32, fired)
+    shooter.scores.received, shooter.sequences.fired = upload(types.Int64, received), upload(types.UInt32, fired)
     shooter.hits.write(arrivals, missed)
     return shot.total
 
 
-def shoot_here(shooter: Any, shot: Shot, ends_of: Any) -> Landed:
-    """Fire lines with a `Shooter` that is of use for nothing else.
-
-    Args:
-        ends_of: makes `Ends`.
-    """
+def shoot_here(shooter: Any, shot: Shot) -> Landed:
+    """Fire lines with a `Shooter` that is of use for nothing else."""
     types, tracer = shooter.types, shooter.tracer
-    shooter.take(shot.sequence)
+    shooter.sequences.take(shot.sequence)
     fired, counts = np.zeros(shooter.total, np.uint32), np.zeros(shooter.total, np.uint32)
     fired[shot.numbers], counts[shot.numbers] = shot.fired, shot.counts
     shooter.hits.write(np.zeros((tracer.replicates, tracer.n), np.uint32), np.zeros((2, tracer.replicates), np.uint32))
-    shooter.fired = upload(types.UInt32, fired)
+    shooter.sequences.fired = upload(types.UInt32, fired)
     weights: Any = None
     ends: Any = None
     if shot.weights is not None:
@@ -106,7 +104,7 @@ def shoot_here(shooter: Any, shot: Shot, ends_of: Any) -> Landed:
         every[shot.numbers] = shot.weights
         weights = upload({"i4": types.Int, "i8": types.Int64, "f4": types.Float}[every.dtype.str[1:]], every)
     if shot.density is not None and shot.carried is not None:
-        ends = ends_of(*(upload(types.Float, column) for column in (shot.density, shot.carried)), shot.groups)
+        ends = Ends(upload(types.Float, shot.density), upload(types.Float, shot.carried), shot.groups)
     shooter.shoot(upload(types.UInt32, counts), weights, ends)
     arrivals, missed = shooter.hits.read()
-    return Landed(arrivals.copy(), missed.copy(), frozen(shooter.received).copy())
+    return Landed(arrivals.copy(), missed.copy(), frozen(shooter.scores.received).copy())

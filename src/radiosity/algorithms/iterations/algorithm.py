@@ -108,7 +108,7 @@ class Iteration(AbstractAlgorithm[IterationState]):
         wanted |= {"control"} if self.control is not None else set()
         if not IterationState.lacking(arrays, sizes, wanted):
             state = IterationState.read(arrays, sizes, wanted)
-            if state.fits_turns(self.exchange.turns, self.exchange.shooter.sequences):
+            if state.fits_turns(self.exchange.turns, len(self.exchange.shooter.sequences)):
                 state.check_counts()
                 return state
         raise MethodError("the solution to go on from lacks the counters of its iterations, or has other sizes; start anew")

@@ -12,7 +12,7 @@ import drjit as dr
 import numpy as np
 
 from ...device.backend import upload
-from ...tally.shooter import Ends
+from ...tally.scores import Ends
 from .exchange import BITS, LINE, Exchange
 from .state import ControlState
 
@@ -57,7 +57,7 @@ class Control:
         carried[-2 * replicates : -replicates], carried[-replicates:] = 1, LINE
         ends = Ends(dr.opaque(types.Float, 0.5, slots), upload(types.Float, carried))
         fired = exchange.shoot(counts, ends=ends)
-        seen = np.array(exchange.patches(exchange.shooter.received)).reshape(replicates, exchange.n, groups)[..., 0]
+        seen = np.array(exchange.patches(exchange.shooter.scores.received)).reshape(replicates, exchange.n, groups)[..., 0]
         self.missed += [seen % LINE, seen >> BITS]
         return fired
 
@@ -69,7 +69,7 @@ class Control:
         carried[-2 * replicates : -replicates, 0, 0], carried[-replicates:, 1, 0] = UNIT, UNIT
         ends = Ends(dr.opaque(types.Float, 0.5, slots), upload(types.Float, carried), groups=2)
         fired = exchange.shoot(counts, ends=ends)
-        seen = np.array(exchange.shooter.received)[: exchange.total * 2 * size].reshape(replicates, exchange.n, 2, size)
+        seen = np.array(exchange.shooter.scores.received)[: exchange.total * 2 * size].reshape(replicates, exchange.n, 2, size)
         self.missed += np.moveaxis(seen[..., 0], 2, 0) // UNIT
         self.moments += seen[..., 1:].sum(axis=2)
         return fired

@@ -21,7 +21,8 @@ from ...patches.bases import BASES
 from ...problem.model import Problem
 from ...problem.quanta import Source
 from ...sampling.streams import Purpose, Seed, stream
-from ...tally.shooter import Ends, Receivers, Shooter
+from ...tally.scores import Ends, Receivers
+from ...tally.shooter import Shooter
 from ...tracing.geometry import Geometry
 from ..state import Sizes
 from .elements import Elements
@@ -215,7 +216,7 @@ class Exchange:
 
     def shoot(self, counts, weights=None, ends: Ends | None = None, receivers: Receivers | None = None) -> int:
         """Fire the lines of a step, see `Shooter.shoot`."""
-        self.shooter.take(self.first + self.turn)
+        self.shooter.sequences.take(self.first + self.turn)
         lines = self.shooter.shoot(counts, weights, ends, receivers=receivers)
         self.step += 1  # last: where the shot is stopped between two parts, the state is that before the step
         return lines
@@ -230,10 +231,10 @@ class Exchange:
         self.refinement.begin(self.largest(power) / self.by_replicate(np.broadcast_to(whole, self.replicates)))
         elements = self.refinement.elements
         lines = self.shoot(counts, weights, ends, Receivers(elements.size, self.refinement.receiver))
-        received, types = self.shooter.received, self.types
-        self.shooter.received = elements.pushed(received, self.columns)
+        received, types = self.shooter.scores.received, self.types
+        self.shooter.scores.received = elements.pushed(received, self.columns)
         on_patches = dr.gather(types.Int64, received, dr.arange(types.UInt32, self.shooter.slots * self.columns))
-        self.blurred = self.shooter.received - on_patches - self.shooter.moved
+        self.blurred = self.shooter.scores.received - on_patches - self.shooter.scores.moved
         dr.eval(self.blurred)
         return lines
 

@@ -111,8 +111,8 @@ class Incremental:
         lines, fired = exchange.send(unsent, expected, float(self.begun) * exchange.unit)
         del unsent, expected  # frees their memory
         self.fired += 0 if fired is None or not self.exact else fired()
-        self.received += type(self.received)(exchange.shooter.received)
-        self.unsent = dr.round(exchange.scattered(types.Float64(exchange.patches(exchange.shooter.received))))
+        self.received += type(self.received)(exchange.shooter.scores.received)
+        self.unsent = dr.round(exchange.scattered(types.Float64(exchange.patches(exchange.shooter.scores.received))))
         if self.blurred is not None:
             self.blurred += type(self.blurred)(exchange.blurred)
         dr.eval(self.received, self.unsent, self.blurred)

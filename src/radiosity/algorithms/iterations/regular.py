@@ -133,7 +133,7 @@ class Regular:
         expected = types.UInt64(types.Float64(largest) * exchange.by_replicate(lines * LINE / (sent * self.total)))
         whole = lines * UNIT / sent
         fired, _ = exchange.send(power * exchange.by_patch(exchange.by_replicate(whole)), expected, whole)
-        arrived = types.Float64(exchange.shooter.received) * exchange.by_slot(sent / (lines * UNIT))
+        arrived = types.Float64(exchange.shooter.scores.received) * exchange.by_slot(sent / (lines * UNIT))
         dr.eval(arrived)
         weight = np.ones(exchange.replicates)
         if self.plan.count_iteration(lines):
