@@ -21,7 +21,7 @@ from .names import numbered, repeated
 COMMENT = re.compile(r"(?:^|(?<=[\s,]))!")
 SURFACES = {"S": "surface", "M": "mask", "N": "null surface", "O": "obstruction"}
 OBSTRUCTION = "obstruction"  # name of what only obstructs
-COLUMNS = "number v1 v2 v3 v4 base cmb emissivity name"
+COLUMNS = "number v1 v2 v3 v4 base cmb emissivity name (v4 is 0 in triangles)"
 
 
 @dataclass(frozen=True)
