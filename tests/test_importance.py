@@ -3,6 +3,8 @@
 Statistical tests take alpha = 1e-3, shared out among surfaces (Bonferroni); seeds are fixed.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from enclosures import cube, cube_irradiance
@@ -212,13 +214,26 @@ def test_sensors_and_cameras_see_by_closed_forms():
     assert shares_seen(geometry, patches, origins, ways)[5] == pytest.approx(1)
 
 
+def test_cameras_count_from_0_as_those_of_pictures_do():
+    from radiosity.sensors.sight import sight
+
+    rooms = rd.load_scene("rooms")
+    first, second = rooms.cameras[0], rd.Camera((1.0, 1.0, 1.5), (2.0, 1.0, 1.0))
+    two = replace(rooms, cameras=(first, second))
+    for given, camera in (("camera", first), ("camera:0", first), ("camera:1", second)):
+        _, origins, ways = sight(two, given)
+        _, wanted, towards = sight(two, camera)
+        assert (origins == wanted).all()
+        assert (ways == towards).all()
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [
         ({"importance": "surface:no such"}, "no surface is called"),
         ({"importance": "walls"}, "surface:NAME"),
         ({"importance": 3}, "int"),
-        ({"importance": "camera:2"}, r"camera 2; the scene has 1 \(counted from 1\)"),
+        ({"importance": "camera:1"}, r"camera 1; the scene has 1 \(counted from 0\)"),
         ({"importance": "sensors"}, "asks for no sensors"),
         ({"importance": "surface:desk", "method": "gather"}, "incremental"),
         ({"importance": "surface:desk", "order": "incremental", "estimator": "bidirectional"}, "estimator"),

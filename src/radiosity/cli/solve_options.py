@@ -29,9 +29,10 @@ class Budget:
             4 billion lines a replicate where so many do not tell it.
         error_of: What --error is the error of: surface:NAME (RMS over its patches), or mean:NAME (its mean irradiance, the ± of
             the report). NAME may be a pattern. Default: RMS over all patches.
-        importance: Share lines out for one result: surface:NAME (its mean irradiance; NAME may be a pattern), camera or camera:2
-            (what the scene's first or second camera sees), or sensors (those of the scene's file). --error is then the error
-            of this result, and other patches have larger ones (docs/importance.md). Default: all patches count.
+        importance: Share lines out for one result: surface:NAME (its mean irradiance; NAME may be a pattern), camera or camera:1
+            (what the scene's first or second camera sees; they count from 0), or sensors (those of the scene's file). --error
+            is then the error of this result, and other patches have larger ones (docs/importance.md). Default: all patches
+            count.
         quanta: Reproduce a run: energy packets (quanta) of each replicate, as its report says.
     """
 

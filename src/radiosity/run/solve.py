@@ -91,9 +91,10 @@ def solve(
             their stages (several bands by counts, fractional absorption, iterations, a first shot) go on from an interruption, or
             from a stage that is a power of two.
         importance: share lines out for one result, without a bias: "surface:NAME" (or a pattern; the mean irradiance over it),
-            "camera" or "camera:2" of the scene, "sensors" of the scene's file, a `Camera` or `Sensors` (the mean radiosity that
-            they see). ``error`` then is that of this result, unless error_of says another. Other patches have larger errors.
-            Lights are surfaces, luminaires, suns and a sky. For incremental iterations, which "auto" takes (docs/importance.md).
+            "camera" or "camera:1" (the second) of the scene, "sensors" of the scene's file, a `Camera` or `Sensors` (the mean
+            radiosity that they see). ``error`` then is that of this result, unless error_of says another. Other patches have
+            larger errors. Lights are surfaces, luminaires, suns and a sky. For incremental iterations, which "auto" takes
+            (docs/importance.md).
         adaptive: True, or a number of patches: the scene is cut first where light varies, by `adapt` with the same seed, and
             then solved. The pilots that find the mesh come on top of the budget. To go on from its solution (``resume``), leave
             it out: the mesh is kept.

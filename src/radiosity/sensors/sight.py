@@ -18,7 +18,8 @@ def sight(scene: Scene, given) -> tuple[str, np.ndarray, np.ndarray]:
     """Return what sees, in words, and origins and unit directions of rays, (m, 3) each.
 
     Args:
-        given: "camera" or "camera:2" of the scene, "sensors" of the scene's file, a `Camera`, or `Sensors`.
+        given: "camera" (the first) or "camera:1" (the second) of the scene, "sensors" of the scene's file, a `Camera`, or
+            `Sensors`.
 
     Raises:
         MethodError: something else. SceneError: the scene has no such camera or sensors.
@@ -26,7 +27,7 @@ def sight(scene: Scene, given) -> tuple[str, np.ndarray, np.ndarray]:
     if isinstance(given, str):
         kind, _, number = given.partition(":")
         if kind == "camera" and (not number or number.isdigit()):
-            return _of_camera(f"camera {number or 1}", _camera(scene, int(number or 1)), scene)
+            return _of_camera(f"camera {number or 0}", _camera(scene, int(number or 0)), scene)
         if given == "sensors":
             return _of_sensors("the scene's sensors", Sensors.of_scene(scene))
     if isinstance(given, Camera):
@@ -35,16 +36,16 @@ def sight(scene: Scene, given) -> tuple[str, np.ndarray, np.ndarray]:
         return _of_sensors("sensors", given)
     shown = f"'{given}'" if isinstance(given, str) else type(given).__name__
     raise MethodError(
-        f"importance is {shown}; give surface:NAME, camera, camera:2 (the scene's second), sensors (those of the scene's "
+        f"importance is {shown}; give surface:NAME, camera, camera:1 (the scene's second), sensors (those of the scene's "
         "file), a Camera or Sensors"
     )
 
 
 def _camera(scene: Scene, number: int) -> Camera:
-    if not 1 <= number <= len(scene.cameras):
+    if number >= len(scene.cameras):
         there = len(scene.cameras)
-        raise MethodError(f"{scene.source}: importance is for camera {number}; the scene has {there} (counted from 1)")
-    return scene.cameras[number - 1]
+        raise MethodError(f"{scene.source}: importance is for camera {number}; the scene has {there} (counted from 0)")
+    return scene.cameras[number]
 
 
 def _numbers(count: int) -> np.ndarray:
