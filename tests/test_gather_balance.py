@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+import radiosity as rd
+from radiosity.algorithms.gather import tally
 from radiosity.algorithms.gather.balance import factors
 from radiosity.patches.scatter import Scatter
 
@@ -44,6 +46,40 @@ def test_a_lamp_whose_lines_all_miss_knows_nothing_of_what_arrives():
     missed, lines = np.array([50_000, 0]), np.array([50_000.0, 4000.0])
     received = np.array([[0.0, 2e-8]]) * np.linspace(0.99, 1.01, 8)[:, None]
     assert balanced(missed, lines, received)[:, 1] == pytest.approx(received[:, 1], rel=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5])
+def test_light_that_varies_over_a_patch_may_leave_where_it_is_bright(share):
+    """What misses is then known too badly to say what arrives; where nothing misses, all is known."""
+    lines, received = np.array([1e9, 1e9]), RECEIVED / (1 + share)
+    missed = np.broadcast_to([0, share * 1e9], received.shape)
+    even = factors(OWN, Scatter(REFLECTANCE), received, missed, lines)
+    varied = factors(OWN, Scatter(REFLECTANCE), received, missed, lines, varies=received.mean(axis=0))
+    assert np.abs(even - 1).max() > 0.01
+    if share == 0:
+        assert (varied == even).all()
+    else:
+        assert np.abs(varied - 1).max() < 0.05 * np.abs(even - 1).max()
+
+
+def test_balanced_polynomials_are_no_worse_where_light_escapes(monkeypatch):
+    """A tube whose floor shines: lines escape from the upper end of its walls, where light is dim."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 2)], float)
+    faces = [[0, 4, 6, 2], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+    emission, names = [1, 0, 0, 0, 0], ["lamp", *"abcd"]
+    scene = rd.Scene.from_arrays(corners, faces, [0, *[0.8] * 4], emission, surface=range(5), names=names)
+    patches = rd.subdivide(scene, cells=1)
+
+    def walls() -> np.ndarray:
+        runs = [rd.solve(patches, "gather", basis="linear", rays=20_000, replicates=8, seed=seed) for seed in range(16)]
+        return np.array([run.irradiance[1:, 0] for run in runs])
+
+    with_balance = walls()
+    monkeypatch.setattr(tally, "factors", lambda own, scatter, received, *rest: np.ones_like(received))
+    without = walls()
+    assert (with_balance != without).any()
+    mean = without.mean()  # by symmetry of all walls
+    assert np.sqrt(np.mean((with_balance / mean - 1) ** 2)) < 1.1 * np.sqrt(np.mean((without / mean - 1) ** 2))
 
 
 def patches_of_two_kinds(even: float, alone: np.ndarray, seed: int = 1) -> np.ndarray:

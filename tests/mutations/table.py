@@ -2396,6 +2396,13 @@ MISTAKES = (
         "a few far vertices decide that nothing lies beyond a face",
     ),
     Mistake(
+        "algorithms/gather/tally.py",
+        "varies = self._variation(problem, state, group) if missed.any() else 0.0",
+        "varies = 0.0",
+        ("test_gather_balance.py",),
+        "the balance takes lines that miss for even light, where they leave from the dim end of a patch",
+    ),
+    Mistake(
         "tally/sequences.py",
         "upper.of(x)) for upper, x in zip(self._upper, columns, strict=True)]",
         "upper.of(fired)) for upper, x in zip(self._upper, columns, strict=True)]",

@@ -5,7 +5,8 @@ emit. The imbalance of a replicate has three causes, whose sizes are told apart 
 
 - errors of the even part of the light, which all lines read alike: they make all patches too bright or too dark together;
 - errors of each patch by itself, which it has alone;
-- errors of the share of lines that miss all patches, which say nothing of what patches receive.
+- errors of what misses all patches, which say nothing of what patches receive. The share of lines is known with an error; and
+  where light varies over a patch, the lines that miss may leave from where it is bright, or from where it is dark.
 
 So the imbalance goes to all patches in proportion to their power, to each patch in proportion to its variance (the least-squares
 adjustment under one condition), and what the third cause explains is left. So is an imbalance that all replicates have alike, if
@@ -27,6 +28,7 @@ def factors(
     missed: np.ndarray,
     lines: np.ndarray,
     bias: np.ndarray | float = 0.0,
+    varies: np.ndarray | float = 0.0,
 ) -> np.ndarray:
     """Return what to multiply received powers by, (replicates, n_patches), so that the power of each replicate balances.
 
@@ -37,6 +39,7 @@ def factors(
         missed: (replicates, n_patches) how many lines of each patch missed all others.
         lines: (n_patches,) how many lines each patch fired.
         bias: (n_patches,) the size of the bias of received power.
+        varies: (n_patches,) the standard deviation of received power over the places of each patch.
     """
     received, missed = np.ascontiguousarray(received), np.ascontiguousarray(missed)  # sums depend on how arrays lie in memory
     if len(received) < 2:  # nothing tells what causes its imbalance
@@ -55,6 +58,8 @@ def factors(
     variance = np.minimum(received.var(axis=0, ddof=1), mean**2)
     alone = float((reaches**2 * variance).sum())
     of_missed = float((sent**2 * (likely * (1 - likely) / lines)).sum()) / len(received)
+    # the covariance of light and misses over a patch, at most (Cauchy and Schwarz)
+    of_missed += float((scatter.of(np.broadcast_to(varies, mean.shape)) * np.sqrt(usual * (1 - usual))).sum()) ** 2
     whole = max(float((imbalance**2).mean()), alone + of_missed)
     if whole == 0:
         return np.ones_like(received)

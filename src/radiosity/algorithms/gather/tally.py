@@ -50,7 +50,9 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         if unit > 0 and problem.lights is None:  # what lights without area send past all patches is not known
             own = problem.groups.emission[:, group] * problem.patches.area / unit
             bias = self._bias_of_stored(problem, state, group)
-            factor = factors(own, problem.groups.scatter.column(group), brought + met, state.missed.sum(axis=0), lines, bias)
+            scatter, missed = problem.groups.scatter.column(group), state.missed.sum(axis=0)
+            varies = self._variation(problem, state, group) if missed.any() else 0.0
+            factor = factors(own, scatter, brought + met, missed, lines, bias, varies)
             brought, met = brought * factor, met * factor
         return brought, met, unit
 
@@ -60,6 +62,16 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         rays, lines = (np.maximum(count, 1).astype(np.float64) for count in (state.rays, state.cosine))
         brought = state.about("brought", (..., column)) * (area / (rays * unit))
         return brought, state.about("met", (..., column)) * (area * most_read(problem) / (lines * unit))
+
+    def _variation(self, problem: Problem, state: GatherState, group: int) -> np.ndarray:
+        """Return the standard deviation of received power over the places of each patch, (n_patches,), less that of noise."""
+        square = np.zeros(state.sizes.rows)
+        for function in range(1, self.basis.size):
+            brought, met = self._measured(problem, state, group, function)
+            moment = brought + met
+            noise = moment.var(axis=0, ddof=1) / len(moment) if len(moment) > 1 else 0.0
+            square += np.maximum(moment.mean(axis=0) ** 2 - noise, 0.0)
+        return np.sqrt(square)
 
     def irradiance(self, problem: Problem, state: GatherState, group: int) -> tuple[np.ndarray, float]:
         brought, met, unit = self.parts(problem, state, group)
