@@ -139,10 +139,11 @@ class Snapshot:
     def side_bias(self) -> np.ndarray | None:
         """The biases of what sides of surfaces receive, see `Solution.side_bias`."""
         patches, tally = self.problem.patches, self.tally
-        if tally.basis.size == 1 or not isinstance(tally, AbstractBiasedTally):
+        if not isinstance(tally, AbstractBiasedTally):
             return None
         key = 2 * patches.surface.astype(np.int64) + patches.is_back
-        return self._biases(tally, lambda bias: np.bincount(key, bias, 2 * len(patches.scene.names)))
+        found = self._biases(tally, lambda bias: np.bincount(key, bias, 2 * len(patches.scene.names)))
+        return found if np.isfinite(found).all() else None  # unknown with one replicate, as intervals are then
 
     def sums(self, key: np.ndarray, count: int) -> np.ndarray:
         """Return the power that patches of an equal key receive and reflect, (2, replicates, count, n_bands), W or lm.

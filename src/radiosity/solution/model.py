@@ -48,7 +48,7 @@ class Solution:
             mean of its polynomial on each patch, where the method's basis has K functions (`basis`); else None.
         irradiance_coefficients_standard_error: the same shape; NaN (unknown) without replicates.
         side_bias: (2 n_surfaces, n_bands) float64, W or lm: by how much what the front and the back of each surface receive may
-            be off in all replicates alike, which they do not show. Of gathers with a basis; else None.
+            be off in all replicates alike, which they do not show. None where the method states no bias.
 
     Example:
         >>> solution = rd.solve(rd.subdivide(rd.load_scene("room"), cells=2), rays=10_000)
