@@ -34,6 +34,8 @@ PARTS = {
     "multipath": rd.Method(lines="global", order="multipath"),
     "first shot": rd.Method(lines="spans", order="multipath", first_shot=0.3),
     "local matrix": rd.Method(order="matrix"),
+    "gather": rd.Method(order="gather"),
+    "gather, linear": rd.Method(order="gather", basis="linear"),
     "global matrix": rd.Method(lines="spans", order="matrix"),
 }
 MATRICES = {
@@ -53,7 +55,15 @@ TOGETHER = {
     "progressive": rd.Baseline("progressive"),
     "hierarchical": rd.Baseline("hierarchical"),
 }
-FIELDS = ("irradiance", "irradiance_standard_error", "arrivals", "surface_power", "side_power")
+FIELDS = (
+    "irradiance",
+    "irradiance_standard_error",
+    "arrivals",
+    "surface_power",
+    "side_power",
+    "side_bias",
+    "irradiance_coefficients",
+)
 pytestmark = pytest.mark.filterwarnings("ignore::radiosity.errors.RadiosityWarning")  # of few lines
 
 
@@ -103,7 +113,9 @@ def test_parts_are_the_whole(grey, short, name):
     assert_same(rd.merge(halves(grey, PARTS[name], quanta=SEVERAL)), whole)
 
 
-@pytest.mark.parametrize("name", ["firing", "continuous", "fractional", "gathering", "regular", "first shot", "local matrix"])
+@pytest.mark.parametrize(
+    "name", ["firing", "continuous", "fractional", "gathering", "regular", "first shot", "local matrix", "gather, linear"]
+)
 def test_parts_are_the_whole_in_colour(coloured, short, name):
     whole = solved(coloured, PARTS[name], quanta=SEVERAL)
     assert_same(rd.merge(halves(coloured, PARTS[name], quanta=SEVERAL)), whole)

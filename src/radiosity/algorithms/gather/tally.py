@@ -68,7 +68,7 @@ class GatherTally(AbstractBiasedTally[GatherState]):
         square = np.zeros(state.sizes.rows)
         for function in range(1, self.basis.size):
             brought, met = self._measured(problem, state, group, function)
-            moment = brought + met
+            moment = np.ascontiguousarray(brought + met)  # sums depend on how arrays lie in memory
             noise = moment.var(axis=0, ddof=1) / len(moment) if len(moment) > 1 else 0.0
             square += np.maximum(moment.mean(axis=0) ** 2 - noise, 0.0)
         return np.sqrt(square)
