@@ -28,9 +28,9 @@ KNOWN = np.array(
 )
 
 
-def solved() -> list[rd.Solution]:
+def solved(seeds: int = 6) -> list[rd.Solution]:
     patches = rd.subdivide(rd.load_scene("cornell-box"), cells=3)
-    return [rd.solve(patches, "gather", basis="linear", rays=LINES, seed=seed) for seed in range(6)]
+    return [rd.solve(patches, "gather", basis="linear", rays=LINES, seed=seed) for seed in range(seeds)]
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def test_intervals_hold_what_is_known(runs):
 def test_a_balance_that_takes_light_for_even_is_rejected(monkeypatch):
     """As if what leaves the box through its front were as bright as the mean over the walls."""
     monkeypatch.setattr(GatherTally, "_variation", lambda self, problem, state, group: np.zeros(state.sizes.rows))
-    assert held(unbiased(solved())) < 0.85  # 0.82 of 24
+    assert held(unbiased(solved(3))) < 0.85  # 0.82 of 24
 
 
 def test_the_bias_is_in_rows_surfaces_and_the_scene_and_is_kept_in_files(runs, tmp_path):
@@ -98,11 +98,11 @@ def test_intervals_by_form_factors_hold_the_light_that_patches_get_back(lines):
     exact = rd.solve(box, "full-matrix").irradiance[:, 0]
     lamp = int(np.argmax(np.bincount(box.surface, box.emission[:, 0])))
     mean = np.average(exact[box.surface == lamp], weights=box.area[box.surface == lamp])
-    runs = [rd.solve(box, order="matrix", lines=lines, rays=20_000, seed=seed) for seed in range(12)]
+    runs = [rd.solve(box, order="matrix", lines=lines, rays=20_000, seed=seed) for seed in range(8)]
 
     def held(solutions) -> int:
         ends = [each.surface_interval() for each in solutions]
         return sum(bool(low[lamp, 0] <= mean <= high[lamp, 0]) for low, high in ends)
 
-    assert held(runs) >= 9  # of 12 right ones fewer than 9 come once in 450
-    assert held(unbiased(runs)) < 9
+    assert held(runs) >= 6  # of 8 right ones fewer than 6 hold once in 170
+    assert held(unbiased(runs)) < 6
