@@ -83,6 +83,16 @@ def test_vertices_of_their_own_are_welded():
     assert scene.is_quad.tolist() == [True]
 
 
+def test_halves_that_follow_a_face_without_area_are_merged():
+    """Other triangles are unlike, so that only those are looked at that are seen to be alike."""
+    random = np.random.Generator(np.random.Philox(3))
+    vertices = np.concatenate([SQUARE, random.normal(size=(18, 3))])
+    faces = [[0, 1, 1], *np.arange(4, 22).reshape(6, 3), *HALVES]
+    with pytest.warns(RadiosityWarning, match="1 face without area"):
+        scene = scene_of(part(vertices, faces))
+    assert scene.is_quad.tolist() == 6 * [False] + [True]
+
+
 @pytest.mark.parametrize("shuffled", [False, True])
 def test_a_grid_becomes_its_squares(shuffled):
     n = 8

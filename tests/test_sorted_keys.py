@@ -12,7 +12,7 @@ from radiosity.scene.measures import measured
 from radiosity.scene.precision import FEW, TIE, weighted_median
 from radiosity.scene.shared_edges import shared_edges
 from radiosity.scene.triangle_edges import ENDS, Triangles
-from radiosity.scene.twins import perhaps_twins
+from radiosity.scene.twins import Cells, mostly_alike, perhaps_twins
 from radiosity.scene.welded import welded
 
 
@@ -28,6 +28,18 @@ def grid(cells: int, seed: int, shuffled: bool = True) -> tuple[np.ndarray, np.n
         faces = faces[random.permutation(len(faces))]
     copies = [faces[:5], faces[5:9, ::-1], faces[9:12, [1, 2, 0]]]
     return np.stack([x, 0.7 * y, np.sin(0.1 * x)], axis=1), np.concatenate([faces, *copies])
+
+
+def cells_of(vertices, faces) -> Cells:
+    """The cells of triangles, (n, 3)."""
+    cells = Cells.empty(len(faces), 2e-6)
+    measured(vertices, with_fourth(faces), cells.put)
+    return cells
+
+
+def with_fourth(faces) -> np.ndarray:
+    """Triangles, (n, 3), as faces, (n, 4)."""
+    return np.column_stack([faces, np.full(len(faces), -1)])
 
 
 def users(faces, surface) -> dict:
@@ -51,7 +63,7 @@ def pairs_by_counting(vertices, faces, surface) -> set:
     return found
 
 
-MANY = {"shared_edges.perhaps_twins": lambda triangles: None}  # twins: edges of all triangles are looked at
+MANY = {"shared_edges.perhaps_twins": lambda triangles, cells: None}  # twins: edges of all triangles are looked at
 WAYS = {
     "some": {},
     "blocks": {**MANY, "shared_edges.BLOCK": 64},
@@ -68,8 +80,8 @@ def test_edges_of_parallelograms(way, order, monkeypatch):
         monkeypatch.setattr(f"radiosity.scene.{name}", value)
     vertices, faces = grid(12, 1, order == "any")
     surface = (np.arange(len(faces)) % 7 == 0).astype(np.int32)
-    full = np.column_stack([faces, np.full(len(faces), -1)])
-    one, two = shared_edges(vertices, faces, surface, measured(vertices, full), 2e-6)
+    measures = measured(vertices, with_fourth(faces))
+    one, two = shared_edges(vertices, faces, surface, measures, 2e-6, cells=cells_of(vertices, faces))
     found = {frozenset(pair) for pair in zip(one.tolist(), two.tolist(), strict=True)}
     wanted = pairs_by_counting(vertices, faces, surface)
     assert len(wanted) > 100
@@ -84,8 +96,8 @@ def test_edges_whose_bits_are_equal_by_chance(monkeypatch):
     monkeypatch.setattr(edges_together, "MIX", np.uint64(0))
     vertices, faces = grid(8, 2)
     surface = np.zeros(len(faces), np.int32)
-    full = np.column_stack([faces, np.full(len(faces), -1)])
-    one, two = shared_edges(vertices, faces, surface, measured(vertices, full), 2e-6)
+    measures = measured(vertices, with_fourth(faces))
+    one, two = shared_edges(vertices, faces, surface, measures, 2e-6, cells=cells_of(vertices, faces))
     assert pairs_by_counting(vertices, faces, surface) <= {frozenset(p) for p in zip(one.tolist(), two.tolist(), strict=True)}
     assert (faces[one >> 2, one & 3] == faces[two >> 2, np.take(ENDS, two & 3)]).all()
 
@@ -153,8 +165,9 @@ def test_triangles_without_a_twin_are_left_out(random):
     corners[: n // 2, 3] += 1.3e-6 * along[: n // 2] * random.choice([-1, 1], (n // 2, 1))  # within the tolerance
     first = 4 * np.arange(n)
     faces = np.concatenate([first[:, None] + [0, 1, 2], first[:, None] + [3, 2, 1]])
-    axes = [np.ascontiguousarray(axis) for axis in corners.reshape(-1, 3).T]
-    kept = perhaps_twins(Triangles(faces, None, np.zeros(2 * n, np.int32), axes, 2e-6))
+    points = corners.reshape(-1, 3)
+    axes = [np.ascontiguousarray(axis) for axis in points.T]
+    kept = perhaps_twins(Triangles(faces, None, np.zeros(2 * n, np.int32), axes, 2e-6), cells_of(points, faces))
     assert kept is not None
     is_half = np.tile(np.arange(n) < n // 2, 2)
     assert np.isin(np.flatnonzero(is_half), kept).all()
@@ -176,8 +189,9 @@ def test_where_few_alike_triangles_have_a_twin_only_those_are_looked_at(shape, t
     a, b, c, d = at[:-1, :-1], at[:-1, 1:], at[1:, :-1], at[1:, 1:]
     faces = np.stack([np.stack([a, c, b], axis=-1), np.stack([b, c, d], axis=-1)], axis=2).reshape(-1, 3)
     axes = [np.ascontiguousarray(axis) for axis in points.T]
-    kept = perhaps_twins(Triangles(faces, None, np.zeros(len(faces), np.int32), axes, 2e-6))
+    kept = perhaps_twins(Triangles(faces, None, np.zeros(len(faces), np.int32), axes, 2e-6), cells_of(points, faces))
     assert (kept is not None) == taken
+    assert mostly_alike(points, with_fourth(faces), 2e-6) == (shape == "flat")
     if shape == "slivers":
         assert kept is not None
         assert twins.MOSTLY < len(kept) / len(faces) < twins.ALIKE

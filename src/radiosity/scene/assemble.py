@@ -12,7 +12,7 @@ from .habits import DEFAULT_REFLECTANCE, settle, warn
 from .model import Camera, Scene
 from .paint_parts import emission_paint, reflectance_paint
 from .parts import Material, Part, ReadOptions
-from .quads import merge_triangles
+from .quads import sound_and_merged
 from .texture_memory import SMALL
 
 PIECE = 1 << 14  # faces at a time
@@ -103,8 +103,7 @@ def assemble(
     for part in parts:
         if np.isfinite(part.patch_size):
             sizes_asked[index[part.name]] = part.patch_size
-    whole = merge_triangles(scene.without_degenerate_faces())
-    return replace(whole, patch_size=sizes_asked, scale=scale, assumed=assumed)
+    return replace(sound_and_merged(scene), patch_size=sizes_asked, scale=scale, assumed=assumed)
 
 
 def joined(arrays: list[np.ndarray]) -> np.ndarray:

@@ -1,5 +1,6 @@
 """The sizes of faces, found piece by piece: coordinates are taken axis by axis, in which NumPy is quickest."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from .precision import weighted_median
 
 SIZE = 1 << 14  # faces of a piece: what is known of them stays in the cache
 Vectors = list[np.ndarray]  # coordinates along each axis, (n,) each
+Also = Callable[[slice, Vectors, np.ndarray], None]  # takes some faces, the cross products of two edges, and `largest_squared`
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +32,8 @@ class Measures:
     bounds: np.ndarray
 
 
-def measured(vertices: np.ndarray, faces: np.ndarray) -> Measures:
-    """Measure faces, (n_faces, 4), whose last corner is -1 for triangles."""
+def measured(vertices: np.ndarray, faces: np.ndarray, also: Also | None = None) -> Measures:
+    """Measure faces, (n_faces, 4), whose last corner is -1 for triangles; each piece of them goes to ``also``, too."""
     axes = [np.ascontiguousarray(vertices[:, axis]) for axis in range(3)]
     area = np.empty(len(faces))
 
@@ -39,7 +41,10 @@ def measured(vertices: np.ndarray, faces: np.ndarray) -> Measures:
         corners, quad = _corners(axes, faces[part])
         lowest = [min(corner[axis].min() for corner in corners) for axis in range(3)]
         highest = [max(corner[axis].max() for corner in corners) for axis in range(3)]
-        doubled, longest = _doubled_and_longest(corners)
+        normal, squared = _normal_and_squared(corners)
+        if also is not None:
+            also(part, normal, squared)
+        doubled, longest = length(normal), np.sqrt(squared, out=squared)
         area[part] = doubled * (0.5 if quad is None else np.where(quad, 1.0, 0.5))
         return lowest, highest, float(longest.max()), float(doubled.min()), float(_height(doubled, longest).min())
 
@@ -51,8 +56,12 @@ def measured(vertices: np.ndarray, faces: np.ndarray) -> Measures:
 def heights(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Return twice the area over the longest of three edges, metres, (n_faces,); of a parallelogram: the ends of two edges."""
     axes = [np.ascontiguousarray(vertices[:, axis]) for axis in range(3)]
-    found = of_pieces(lambda part: _height(*_doubled_and_longest(_corners(axes, faces[part])[0])), len(faces), SIZE)
-    return np.concatenate(found)
+
+    def some(part: slice) -> np.ndarray:
+        normal, squared = _normal_and_squared(_corners(axes, faces[part])[0])
+        return _height(length(normal), np.sqrt(squared))
+
+    return np.concatenate(of_pieces(some, len(faces), SIZE))
 
 
 def median_centre(vertices: np.ndarray, faces: np.ndarray, measures: Measures) -> np.ndarray:
@@ -85,11 +94,10 @@ def _corners(axes: Vectors, faces: np.ndarray) -> tuple[list[Vectors], np.ndarra
     return [[axis.take(column) for axis in axes] for column in (*columns[:3], last)], quad
 
 
-def _doubled_and_longest(corners: list[Vectors]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the areas of parallelograms with two edges of faces, (n,), and the longest of these edges and between their ends."""
+def _normal_and_squared(corners: list[Vectors]) -> tuple[Vectors, np.ndarray]:
+    """Return the cross products of two edges of faces, and `largest_squared` of these."""
     along, up = minus(corners[1], corners[0]), minus(corners[-1], corners[0])
-    longest = largest_squared(along, up)
-    return length(cross(along, up)), np.sqrt(longest, out=longest)
+    return cross(along, up), largest_squared(along, up)
 
 
 def _height(doubled: np.ndarray, longest: np.ndarray) -> np.ndarray:

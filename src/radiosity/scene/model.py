@@ -17,7 +17,7 @@ from .lights.luminaire import Luminaire
 from .lights.model import Lights
 from .lights.sky import Sky
 from .lights.sun import Sun
-from .measures import Measures, measured, median_centre
+from .measures import Also, Measures, measured, median_centre
 from .paint import Paint
 from .sensor_request import SensorRequest
 from .taking import is_cut_of, taken
@@ -216,6 +216,10 @@ class Scene:
     def measures(self) -> Measures:
         """The sizes of the faces."""
         return measured(self.vertices, self.faces)
+
+    def measure(self, also: Also) -> None:
+        """Find `measures`; each piece of the faces goes to ``also``, too."""
+        vars(self)["measures"] = measured(self.vertices, self.faces, also)
 
     @property
     def area(self) -> np.ndarray:

@@ -13,19 +13,30 @@ from .model import Scene
 from .one_row import is_one_row
 from .paint import Paint
 from .shared_edges import shared_edges
+from .twins import Cells, mostly_alike
 from .welded import welded
 
 SIZE = 1 << 14  # pairs at a time
 TURNED = ((0, 1, 2), (1, 2, 0), (2, 0, 1))  # corners: the same, the next, the one after that
 
 
-def merge_triangles(scene: Scene) -> Scene:
+def sound_and_merged(scene: Scene) -> Scene:
+    """Leave faces without area out, see `Scene.without_degenerate_faces`, and join triangles, see `merge_triangles`."""
+    cells = _cells(scene)  # before, since faces are measured for both
+    sound = scene.without_degenerate_faces()
+    return merge_triangles(sound, cells if sound is scene else _cells(sound))
+
+
+def merge_triangles(scene: Scene, cells: Cells | None = None) -> Scene:
     """Join pairs of triangles of one surface, equal in every value, that share the diagonal of a parallelogram.
 
     Pairs that follow each other in the file come first, then those whose diagonal is longest against their edges,
     so that a regular grid becomes rectangles. Only coplanar pairs with equal orientation qualify.
+
+    Args:
+        cells: of the faces, which are used up; None: all edges are looked at.
     """
-    pairs = _pairs(scene)
+    pairs = _pairs(scene, cells)
     if not len(pairs.cost):
         return scene
     one, two, shared = pairs.one >> 2, pairs.two >> 2, (pairs.one & 3, pairs.two & 3)
@@ -63,13 +74,23 @@ class _Pairs:
     cost: np.ndarray
 
 
-def _pairs(scene: Scene) -> _Pairs:
+def _cells(scene: Scene) -> Cells | None:
+    """Return the cells of a scene's faces, and measure these; None where that is not worthwhile."""
+    if not scene.n_faces or mostly_alike(scene.vertices, scene.faces, PARALLEL_TOLERANCE):
+        return None
+    cells = Cells.empty(scene.n_faces, PARALLEL_TOLERANCE)
+    scene.measure(cells.put)
+    return cells
+
+
+def _pairs(scene: Scene, cells: Cells | None) -> _Pairs:
     """Return the pairs of a scene, of one surface and with equal values."""
     triangle = np.flatnonzero(~scene.is_quad) if scene.is_quad.any() else None
     corners, surface = scene.faces[:, :3], scene.surface
     if triangle is not None:
-        corners, surface = corners[triangle], surface[triangle]
-    edges = shared_edges(scene.vertices, corners, surface, scene.measures, PARALLEL_TOLERANCE, welded(scene.vertices))
+        corners, surface, cells = corners[triangle], surface[triangle], cells and cells.take(triangle)
+    place = welded(scene.vertices)
+    edges = shared_edges(scene.vertices, corners, surface, scene.measures, PARALLEL_TOLERANCE, place, cells)
     if triangle is not None:
         edges = tuple(4 * triangle[edge >> 2] + (edge & 3) for edge in edges)
     axes, vertex = [np.ascontiguousarray(axis) for axis in scene.vertices.T], scene.faces.ravel()

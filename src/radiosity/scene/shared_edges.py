@@ -16,7 +16,7 @@ from .edges_together import joined, pairs_together
 from .measures import Measures
 from .one_row import is_one_row
 from .triangle_edges import ACROSS, ENDS, Pairs, Triangles, alone, edges_of, in_larger_runs
-from .twins import perhaps_twins
+from .twins import Cells, perhaps_twins
 
 BLOCK = 1 << 13  # triangles
 NUMBER, PLACE = np.uint64(16), np.uint64(24)  # bits of an edge's number in its block, and of a vertex, from the block's lowest on
@@ -33,6 +33,7 @@ def shared_edges(
     measures: Measures,
     tolerance: float,
     place: np.ndarray | None = None,
+    cells: Cells | None = None,
 ) -> Pairs:
     """Return the edges of pairs of triangles, (m,) int64 each: four times the triangle's row, plus the corner where it begins.
 
@@ -45,9 +46,10 @@ def shared_edges(
         measures: of the faces, those triangles among them.
         tolerance: of parallelograms, of their longest edge.
         place: (n_vertices,) int64, equal for vertices at the same place (`welded`); None: no two are.
+        cells: of the triangles, which are used up; None: all edges are looked at.
     """
     triangles = Triangles(corners, place, surface, [np.ascontiguousarray(axis) for axis in vertices.T], tolerance)
-    if (twins := perhaps_twins(triangles)) is not None:
+    if cells is not None and (twins := perhaps_twins(triangles, cells)) is not None:
         return _of_some(triangles, twins)
     several, share = _of_several(triangles)
     if share > MOSTLY:
