@@ -1294,6 +1294,20 @@ MISTAKES = (
     ),
     Mistake(
         "run/checkpoint.py",
+        "if self._hold.has(self.path) or not held(self.path):",
+        "if True:",
+        ("test_checkpoint.py::test_two_runs_of_one_name_do_not_lose_each_others_checkpoints",),
+        "two runs of one name write over each other's checkpoints",
+    ),
+    Mistake(
+        "cli/checkpoints.py",
+        " and not held(path):",
+        ":",
+        ("test_checkpoint.py::test_two_runs_of_one_name_do_not_lose_each_others_checkpoints",),
+        "a run that ends removes the checkpoint of another one",
+    ),
+    Mistake(
+        "run/checkpoint.py",
         "self._due += expected - self.every",
         "self._due += self.every - expected",
         ("test_checkpoint.py::test_a_large_state_waits_for_its_first_checkpoint",),
