@@ -1293,6 +1293,20 @@ MISTAKES = (
         "bands take no memory",
     ),
     Mistake(
+        "scene/parts.py",
+        "        self.files.append(place)\n",
+        "",
+        ("test_cli_outputs.py::test_what_is_read_is_not_written_over",),
+        "results are written over the files that a scene names",
+    ),
+    Mistake(
+        "cli/outputs.py",
+        "return found.st_dev, found.st_ino",
+        "return hash(str(path)), 0",
+        ("test_cli_outputs.py::test_what_is_read_is_not_written_over",),
+        "a file that is read is known by its name alone",
+    ),
+    Mistake(
         "run/checkpoint.py",
         "if self._hold.has(self.path) or not held(self.path):",
         "if True:",
@@ -1640,6 +1654,13 @@ MISTAKES = (
     ),
     Mistake("cli/amounts.py", "if abs(value) >= limit:", "if abs(value) > limit:", ("test_cli_amounts.py",), "1000 is no 1k"),
     Mistake("lab/slopes.py", "t.ppf(0.975, count - 1)", "t.ppf(0.95, count - 1)", ("test_lab_numbers.py",), "90 % intervals"),
+    Mistake(
+        "lab/run.py",
+        "with whole_file(path) as file:",
+        'with path.open("wb") as file:',
+        ("test_lab.py::test_two_studies_of_one_folder_do_not_meet",),
+        "two studies of one folder write into one file",
+    ),
     Mistake(
         "lab/calibration.py",
         "share.std(ddof=1) / np.sqrt(seeds)",
