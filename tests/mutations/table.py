@@ -1307,6 +1307,13 @@ MISTAKES = (
         "a file that is read is known by its name alone",
     ),
     Mistake(
+        "cluster/plugin.py",
+        "for left in reversed(range(TRIES)):",
+        "for left in (0,):",
+        ("test_cluster.py::test_a_worker_that_dies_while_the_job_is_brought_is_no_error_of_dask",),
+        "a worker that dies while the job is brought ends the run",
+    ),
+    Mistake(
         "run/checkpoint.py",
         "if self._hold.has(self.path) or not held(self.path):",
         "if True:",
