@@ -6,6 +6,7 @@ import subprocess
 import sys
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from kills import assert_same
 import radiosity as rd
 from radiosity.algorithms.global_lines import multipath, pooling
 from radiosity.algorithms.matrix import algorithm
+from radiosity.cli.checkpoints import finish
 from radiosity.run import checkpoint as checkpoints
 from radiosity.run.checkpoint import Checkpoint
 from radiosity.tracing import lanes
@@ -371,3 +373,46 @@ def test_leftovers_of_killed_processes_are_removed(grey, tmp_path):
     assert not left.exists()
     assert other.exists()
     assert alive.exists()
+
+
+METHOD = rd.Method()
+HOLDS = """
+import sys
+from pathlib import Path
+from radiosity.run.held import Hold
+hold = Hold()
+hold.take(Path(sys.argv[1]))
+print(flush=True)
+input()
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="other systems have no such locks")
+def test_two_runs_of_one_name_do_not_lose_each_others_checkpoints(grey, tmp_path):
+    """Another process holds the file from before the first writing of one run, and from before the start of the next.
+
+    Each run keeps its own state, and a run that ends removes none that is held.
+    """
+    place = tmp_path / "a.npz"
+    solution = rd.solve(grey, "random-walk", quanta=10, replicates=1)
+    first = Checkpoint.of(place, 0, METHOD)
+    place.write_bytes(b"of the other run")
+    with subprocess.Popen([sys.executable, "-c", HOLDS, place], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
+        try:
+            assert other.stdout is not None
+            assert other.stdout.readline()
+            with pytest.warns(rd.RadiosityWarning, match=r"goes on in another process; that of this run is .*a-2\.npz"):
+                first.end(replace(solution, status="interrupted"))
+            first.end(replace(solution, status="interrupted"))  # its own
+            with pytest.warns(rd.RadiosityWarning, match=r"a-3\.npz"):
+                second = Checkpoint.of(place, 0, METHOD)
+            assert place.read_bytes() == b"of the other run"
+            assert rd.load_solution(tmp_path / "a-2.npz").state.keys() == solution.state.keys()
+            ended = SimpleNamespace(path=place, written=True)
+            finish(ended, solution, [], named=True, resume=place)
+            assert place.exists()
+        finally:
+            other.kill()
+    assert [keeper.path.name for keeper in (first, second)] == ["a-2.npz", "a-3.npz"]
+    finish(ended, solution, [], named=True, resume=place)
+    assert not place.exists()

@@ -223,7 +223,7 @@ def test_sigterm_outside_of_a_run(tmp_path):
     """While there is nothing to keep: one line, and the status that shells give."""
     code = (
         "import sys, os, signal, time\nimport radiosity as rd\nfrom radiosity.cli import main\n"
-        "rd.load_scene = lambda *_, **__: (os.kill(os.getpid(), signal.SIGTERM), time.sleep(5))\n"
+        "rd.scene.load_with_files = lambda *_, **__: (os.kill(os.getpid(), signal.SIGTERM), time.sleep(5))\n"
         "sys.exit(main(['solve', 'room']))"
     )
     for before in ("", "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n"):  # as in the background of a shell

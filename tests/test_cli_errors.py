@@ -108,7 +108,7 @@ def test_other_failures(capsys, monkeypatch, error, status, text):
     def fail(*_, **__):
         raise error
 
-    monkeypatch.setattr(rd, "load_scene", fail)
+    monkeypatch.setattr(rd.scene, "load_with_files", fail)
     found, _, err = run(capsys, "solve", "room")
     assert found == status
     assert text in err

@@ -52,7 +52,7 @@ def scene_that_imports(monkeypatch, folder, name, code):
         time.sleep(5)  # long enough for the interruption that was put off
         raise AssertionError("not interrupted")
 
-    monkeypatch.setattr(rd, "load_scene", load)
+    monkeypatch.setattr(rd.scene, "load_with_files", load)
     return before
 
 
@@ -79,10 +79,10 @@ def test_an_interruption_that_a_library_swallowed(capsys, monkeypatch, error):
         except KeyboardInterrupt:
             if error is not None:
                 raise error("name '_drjit_ext' is not defined") from None
-        return scene
+        return scene, []
 
     scene = rd.load_scene("room")
-    monkeypatch.setattr(rd, "load_scene", load)
+    monkeypatch.setattr(rd.scene, "load_with_files", load)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         assert main(["solve", "room", "--cells", "1", "--quanta", "10"]) == 130

@@ -5,8 +5,10 @@ import signal
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from command_line import run
+from samples import png
 
 import radiosity as rd
 from radiosity.image import bitmap, still
@@ -126,3 +128,53 @@ def test_a_fault_in_one_picture_is_told_as_one(capsys, tmp_path, monkeypatch):
     status, _, err = run(capsys, "render", solved, "-o", tmp_path / "a.png", "--width", "8")
     assert status == 1
     assert "a fault of the program, not of your input: ZeroDivisionError" in err
+
+
+@pytest.fixture(scope="module")
+def read_files(tmp_path_factory):
+    """A scene of several files, with an image, and what other commands read."""
+    folder = tmp_path_factory.mktemp("read")
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    rd.save_scene(rd.Scene.from_arrays(corners, [[0, 1, 2, 3]], reflectance=0.5, emission=1, names=["a"]), folder / "room.glb")
+    (folder / "grey.png").write_bytes(png(np.full((2, 2, 3), 128)))
+    (folder / "m.mtl").write_text("newmtl m\nmap_Kd grey.png\n")
+    text = "mtllib m.mtl\nv 0 0 1\nv 1 0 1\nv 1 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3\n"
+    (folder / "lid.obj").write_text(text)
+    (folder / "room.toml").write_text('geometry = ["room.glb", "lid.obj"]\n[[surface]]\nname = "a*"\npower = 1\n')
+    (folder / "p.csv").write_text("x,y,z\n0.5,0.5,0.5\n")
+    rd.trace_lines(rd.subdivide(rd.load_scene(folder / "room.toml"), cells=1), quanta=2, replicates=1).save(folder / "lines.npz")
+    (folder / "other.glb").symlink_to(folder / "room.glb")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("command", "output"),
+    [
+        ("solve room.toml", "room.glb"),  # the geometry of the scene, by the name that one would give the result
+        ("solve room.toml", "other.glb"),  # by another name
+        ("solve lid.obj", "grey.png"),  # an image of a material
+        ("solve room.glb --cells 1", "x.csv room.glb"),
+        ("measure room.toml --points p.csv", "p.csv"),
+        ("annual room.toml --points p.csv --epw p.csv", "p.csv"),
+        ("factors lines.npz", "lines.npz"),
+        ("exchange lines.npz", "lines.npz"),
+        ("relight lines.npz", "lines.npz"),
+        ("relight lines.npz x.npz", "m.npz lines.npz"),
+        ("convert room.toml", "lid.obj"),
+        ("convert lid.obj", "m.obj"),  # writes m.mtl beside it
+    ],
+)
+def test_what_is_read_is_not_written_over(capsys, read_files, monkeypatch, command, output):
+    monkeypatch.chdir(read_files)
+    before = {path.name: path.read_bytes() for path in read_files.iterdir()}
+    option = () if command.startswith("convert") else ("-o",)
+    status, _, err = run(capsys, *command.split(), *option, *output.split())
+    assert status == 2
+    assert "is read, and would be written over; choose another name" in err or "(lid.obj is read)" in err
+    assert {path.name: path.read_bytes() for path in read_files.iterdir()} == before
+
+
+def test_a_run_is_gone_on_from_under_its_own_name(capsys, tmp_path):
+    """A file that --resume reads may be written over: what it holds is in the new one."""
+    assert run(capsys, *RUN, "-o", tmp_path / "a.npz")[0] == 0
+    assert run(capsys, *RUN, "-o", tmp_path / "a.npz", "--resume", tmp_path / "a.npz")[0] == 0

@@ -206,7 +206,7 @@ def places(tmp_path):
 @pytest.mark.parametrize("absolute", [False, True])
 def test_one_file_under_two_names_is_refused_before_the_run(capsys, monkeypatch, places, one, other, absolute):
     monkeypatch.chdir(places)
-    monkeypatch.setattr(rd, "load_scene", lambda *_, **__: pytest.fail("it ran"))
+    monkeypatch.setattr(rd.scene, "load_with_files", lambda *_, **__: pytest.fail("it ran"))
     before = sorted(places.rglob("*"))
     second = places / other if absolute else other
     for more in ((), ("c.ply",)):

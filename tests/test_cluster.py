@@ -21,9 +21,9 @@ from radiosity.sensors import pixels
 
 distributed = pytest.importorskip("distributed", reason="distributed is not installed")
 dask = pytest.importorskip("dask", reason="dask is not installed")
-from radiosity.cluster import connect, crew, sensing, worker  # noqa: E402
+from radiosity.cluster import connect, crew, plugin, sensing, worker  # noqa: E402
 from radiosity.cluster.job import Job  # noqa: E402
-from radiosity.cluster.plugin import JobPlugin  # noqa: E402
+from radiosity.cluster.plugin import JobPlugin, bring  # noqa: E402
 
 QUANTA = 3 << 12  # stages at 4096 (of 5 replicates), 8192 and 12288
 GREY = ["firing", "gathering", "regular", "local matrix"]
@@ -242,6 +242,32 @@ def test_a_result_whose_worker_died_before_it_came_is_not_waited_for():
 
     assert crew.fetched(Lost()) is None
     assert crew.fetched(Slow()) == "brought"
+
+
+def test_a_worker_that_dies_while_the_job_is_brought_is_no_error_of_dask(monkeypatch):
+    """Dask gives up for all workers where one goes: they are asked once more. What fails for good is told."""
+    monkeypatch.setattr(plugin, "PAUSE", 0)
+    gone = distributed.comm.CommClosedError("in <TCP (closed)>: Stream is closed")
+
+    def client(*answers, status="running"):
+        left, there = list(answers), []
+
+        def register_plugin(what):
+            if (error := left.pop(0)) is not None:
+                raise error
+            there.append(what.name)
+
+        return SimpleNamespace(status=status, register_plugin=register_plugin, there=there)
+
+    job = SimpleNamespace(key="1")
+    dying = client(gone, gone, None)
+    bring(dying, job)
+    assert dying.there == ["radiosity-1"]
+    with pytest.raises(rd.DeviceError, match=r"cannot be reached .*Stream is closed"):
+        bring(client(*[gone] * 9), job)
+    bring(client(gone, status="closed"), job)  # a lost scheduler, which is told where workers are looked for
+    with pytest.raises(ValueError, match="of its own"):
+        bring(client(ValueError("of its own")), job)
 
 
 def test_units_last_by_the_quickest_sending_and_tell_their_age(grey, monkeypatch):

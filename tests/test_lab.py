@@ -5,6 +5,7 @@ Slopes have five replicates; an interval at alpha = 1e-3 (Student, 4 degrees of 
 """
 
 import csv
+import os
 import shutil
 from dataclasses import replace
 
@@ -19,7 +20,7 @@ from radiosity.lab.discretisation import discretisation
 from radiosity.lab.experiments import EXPERIMENTS, module
 from radiosity.lab.measure import Series
 from radiosity.lab.results import Results
-from radiosity.lab.run import run
+from radiosity.lab.run import _write, run
 from radiosity.lab.start import starts
 from radiosity.lab.study import Arm, Claim, Protocol
 
@@ -318,6 +319,24 @@ def test_parts_that_are_done_are_kept_while_their_figures_are_there(tmp_path):
     assert kept.parts(5, make, short, tmp_path) == ["<p>1</p>"]
     (tmp_path / "experiment-5.svg").unlink()
     assert kept.parts(5, make, short, tmp_path) == ["<p>3</p>"]
+
+
+def test_two_studies_of_one_folder_do_not_meet(tmp_path, monkeypatch):
+    """Another process writes the same series while this one does: both go on, and the file is whole at any time."""
+    path, savez, own = tmp_path / "series-room-1.npz", np.savez, os.getpid()
+
+    def meanwhile(file, lines):
+        savez(file, lines=lines)
+        if os.getpid() == own:
+            monkeypatch.setattr(os, "getpid", lambda: 1)
+            _write(path, {"lines": np.arange(3)})
+            monkeypatch.setattr(os, "getpid", lambda: own)
+            assert np.load(path)["lines"].tolist() == [0, 1, 2]
+
+    monkeypatch.setattr(np, "savez", meanwhile)
+    _write(path, {"lines": np.arange(4)})
+    assert np.load(path)["lines"].tolist() == [0, 1, 2, 3]
+    assert [entry.name for entry in tmp_path.iterdir()] == [path.name]
 
 
 def test_only_the_papers_claims_are_called_so():

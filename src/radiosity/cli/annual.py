@@ -109,7 +109,9 @@ def annual(
     cut = {"size": options.pop("patch_size"), "cells": options.pop("cells")}
     if options["rays"] is not None and options["error"] is not None:
         raise MethodError("give one of --rays and --error, not both")
-    loaded, scene_read = cut_of(scene, cut, reading)
+    tables = [*points.points, *([] if year.occupied is None else [year.occupied])]
+    outputs.spare(tables, output)
+    loaded, scene_read = cut_of(scene, cut, reading, output)
     sensors = sensors_of(scene_read, points)
     north = options.pop("north")
     options["north"] = None if north is None else [float(value) for value in north.split(",")]

@@ -31,7 +31,7 @@ def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None, s
             raise OutputError(f"{path} is named twice; give the checkpoint a name of its own, since it is removed in the end")
         keeper = Checkpoint(path, save=save)
         keeper.check(method)
-        _point_at_earlier(path, resume)
+        _point_at_earlier(keeper.path, resume)
         return keeper
     if off or not outputs or not resumable(method):
         return None
@@ -43,7 +43,7 @@ def chosen(path: Path | None, off: bool, outputs, method, resume: Path | None, s
         keeper.check(method)
     except OutputError:  # nobody asked for it
         return None
-    _point_at_earlier(beside, resume)
+    _point_at_earlier(keeper.path, resume)
     return keeper
 
 
@@ -62,11 +62,13 @@ def finish(keeper, solution, outputs, *, named: bool, resume: Path | None) -> st
     """Remove the checkpoint that is no longer needed, or return the file to continue from; called when outputs are written."""
     if keeper is None:
         return None
+    from ..run.held import held
+
     path, stopped = keeper.path, solution.status in ("interrupted", "not reached")
     elsewhere = not named and any(output.suffix.lower() == ".npz" for output in outputs)
     if stopped and not elsewhere:
         return str(path) if keeper.written else None
-    if keeper.written or (resume is not None and _place(resume) == _place(path)):
+    if (keeper.written or (resume is not None and _place(resume) == _place(path))) and not held(path):
         with suppress(OSError):
             path.unlink()
     return None

@@ -41,12 +41,12 @@ def convert(
 
     if not targets:
         raise OutputError("no output; name a file, such as `radiosity convert room.glb room.toml`")
-    _check(source, targets)
+    written = _check(source, targets)
     unknown = [path for path in targets if path.suffix.lower() not in (*OF_SCENES, *OF_SOLUTIONS)]
     if unknown:
         known = f"scenes: {', '.join(OF_SCENES)}; solutions: {', '.join(OF_SOLUTIONS)}"
         raise OutputError(f"{unknown[0]}: unknown output format '{unknown[0].suffix}'; known are those of {known}")
-    solution, read = _read(source, reading)
+    solution, read = _read(source, reading, written)
     tasks = []
     for path in targets:
         suffix = path.suffix.lower()
@@ -68,8 +68,8 @@ OF_LINES = (
 )
 
 
-def _check(source: str, targets) -> None:
-    """Refuse a target that would be written twice, or that is the source.
+def _check(source: str, targets) -> list[Path]:
+    """Refuse a target that would be written twice, or that is the source, and return the files that may be written.
 
     Raises:
         OutputError: there is one.
@@ -77,7 +77,7 @@ def _check(source: str, targets) -> None:
     from ..conversion.save import files_of as of_scene
     from ..image import files_of as of_solution
 
-    seen = {Path(source).resolve(): f"{source} is read"}
+    seen, written = {Path(source).resolve(): f"{source} is read"}, []
     for path in targets:
         for file in dict.fromkeys((*of_scene(path), *of_solution(path))):
             if file.resolve() in seen:
@@ -85,23 +85,30 @@ def _check(source: str, targets) -> None:
                     f"{path}: {printable(file)} would be written over ({seen[file.resolve()]}); choose another name"
                 )
             seen[file.resolve()] = f"{path} writes it"
+            written.append(file)
+    return written
 
 
-def _read(source: str, reading):
-    """Return the solution of a file, or None, and its scene."""
-    from dataclasses import asdict
+def _read(source: str, reading, written):
+    """Return the solution of a file, or None, and its scene.
 
+    Raises:
+        OutputError: a file that it was read from is among those that may be written.
+    """
     import radiosity as rd
 
     if Path(source).suffix.lower() != ".npz":
-        return None, rd.load_scene(source, **asdict(reading))
+        return None, outputs.scene_of(source, reading, written)
     try:
         solution = rd.load_solution(source)
     except SceneError as error:
         if "line set" not in str(error):
             raise
-        return None, rd.load_lines(source).patches.scene
-    return solution, solution.patches.scene
+        solution, scene = None, rd.load_lines(source).patches.scene
+    else:
+        scene = solution.patches.scene
+    outputs.spare([scene.source], written)
+    return solution, scene
 
 
 def _written(path: Path, write) -> None:

@@ -111,7 +111,8 @@ def exchange(
         changed = [f"--{key.replace('_', '-')}" for key, value in options.items() if value != usual[key]]
         raise MethodError(f"{scene} holds lines that are there already: leave {', '.join(changed)} out, or give the scene")
     cut = {"size": options.pop("patch_size"), "cells": options.pop("cells")}
-    loaded = rd.load_lines(scene) if of_lines else rd.load_scene(scene, **asdict(reading))
+    outputs.spare([scene], written)
+    loaded = rd.load_lines(scene) if of_lines else outputs.scene_of(scene, reading, written)
     asked = any(value is not None for value in cut.values())
     patches = rd.subdivide(loaded, **cut) if isinstance(loaded, rd.Scene) and asked else loaded
     conditions = {

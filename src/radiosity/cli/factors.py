@@ -112,9 +112,10 @@ def factors(
         changed = [f"--{name.replace('_', '-')}" for name, value in asdict(tracing).items() if value != usual[name]]
         if changed:
             raise MethodError(f"{scene} holds lines that are there already: leave {', '.join(changed)} out, or give the scene")
+        outputs.spare([scene], output)
         cut, options = rd.load_lines(scene), {}
     else:
-        cut = rd.load_scene(scene, **asdict(reading))
+        cut = outputs.scene_of(scene, reading, output)
         cut = rd.subdivide(cut, **cells) if any(value is not None for value in cells.values()) else cut
     chosen: str | dict = merged_groups(merge) if merge else group
     with bar() as progress:

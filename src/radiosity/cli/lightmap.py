@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from ..errors import OutputError, printable
+from . import outputs
 from .options import Count, Density, Flag, Seed, Stops
 from .streams import tell
 
@@ -70,7 +71,7 @@ def lightmap(
 
     if output is None:
         raise OutputError("no output; name a file with -o, such as -o room.glb")
-    check(output, errors=texture.errors)
+    written = check(output, errors=texture.errors)
     chosen_scale(Look(exposure=texture.exposure), lambda: 1.0)  # refuses what makes no sense before a line is traced
 
     import radiosity as rd
@@ -78,6 +79,7 @@ def lightmap(
     from .progress import bar
 
     loaded = rd.load_solution(solution)
+    outputs.spare([loaded.patches.scene.source], written)
     with bar() as progress:
         found = rd.bake_lightmap(
             loaded,

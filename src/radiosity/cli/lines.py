@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from cyclopts import Group, Parameter
 
 from ..errors import MethodError, OutputError, printable
-from . import checkpoints, interrupts
+from . import checkpoints, interrupts, outputs
 from .options import Count, Flag, Seconds
 from .solve import DEFAULT_RAYS
 from .solve_options import PATCHES, RUN, Machine, Mesh, SceneOptions, Unset
@@ -112,7 +112,7 @@ def lines(
     if budget == Plain.budget:
         budget = replace(budget, rays=DEFAULT_RAYS)
     method = rd.Method(order="matrix", lines=choices.lines, numbers=choices.numbers)
-    loaded = rd.load_scene(scene, **asdict(reading))
+    loaded = outputs.scene_of(scene, reading, [output])
     before = None if run.resume is None else rd.load_lines(run.resume)
     keeper = checkpoints.chosen(run.checkpoint, run.no_checkpoint, [output], method, run.resume, save_lines)
     try:

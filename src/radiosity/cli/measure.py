@@ -93,7 +93,8 @@ def measure(
     cut = {"size": options.pop("patch_size"), "cells": options.pop("cells")}
     if options["rays"] is not None and options["error"] is not None:
         raise MethodError("give one of --rays and --error, not both")
-    loaded, scene_read = cut_of(scene, cut, reading)
+    outputs.spare(places.points, output)
+    loaded, scene_read = cut_of(scene, cut, reading, output)
     observers = [observer_of(text) for text in places.ugr]
     only_glare = bool(observers) and replace(places, ugr=(), dim=()) == NOWHERE and not scene_read.sensors
     if only_glare:
@@ -120,14 +121,15 @@ def measure(
     return NOT_REACHED if found.status == "not reached" else 0
 
 
-def cut_of(scene: str, cut: dict, reading) -> tuple:
+def cut_of(scene: str, cut: dict, reading, written) -> tuple:
     """Return the scene, patches or solution that a command names, and its scene.
 
     Args:
         cut: size and cells of patches, at most one of which is given.
+        written: the files that the command writes.
 
     Raises:
-        MethodError: both are given, or one for a solution, which has its patches.
+        OutputError: one of them is read. MethodError: both are given, or one for a solution, which has its patches.
     """
     import radiosity as rd
 
@@ -137,9 +139,10 @@ def cut_of(scene: str, cut: dict, reading) -> tuple:
     if Path(scene).suffix.lower() == ".npz":
         if given:
             raise MethodError(f"{scene} holds a solution, whose patches are there already: leave {', '.join(given)} out")
+        outputs.spare([scene], written)
         solution = rd.load_solution(scene)
         return solution, solution.patches.scene
-    read = rd.load_scene(scene, **asdict(reading))
+    read = outputs.scene_of(scene, reading, written)
     return rd.subdivide(read, **cut) if given else read, read
 
 

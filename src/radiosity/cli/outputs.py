@@ -1,8 +1,10 @@
 """Output files: they are refused before the run where they cannot be written, and one that fails does not stop the others."""
 
+import os
 import tempfile
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -30,6 +32,51 @@ def check(paths) -> None:
                 raise OutputError(f"{path} is named twice{also}; give each output its own name")
             seen[place] = path
         check_writable(path)
+
+
+def scene_of(name: str, reading, written: Iterable[Path]):
+    """Read a scene, for a command that writes files.
+
+    Args:
+        name: as `load_scene` takes it.
+        reading: the options of reading it.
+        written: all files that will be written.
+
+    Raises:
+        OutputError: one of them is read: see `spare`.
+    """
+    from ..scene import load_with_files
+
+    scene, files = load_with_files(name, **asdict(reading))
+    spare(files, written)
+    return scene
+
+
+def spare(read: Iterable, written: Iterable[Path]) -> None:
+    """Refuse, before any work, to write over a file that is read: over a scene, its geometry or its images, lines, or points.
+
+    Raises:
+        OutputError: there is one.
+    """
+    files = {what: file for file in read if (what := _identity(file)) is not None}
+    for path in written:
+        if (what := _identity(path)) in files and what is not None:
+            raise OutputError(f"{path}: {printable(files[what])} is read, and would be written over; choose another name")
+
+
+def _identity(path) -> tuple[int, int] | None:
+    """What a file is, under whatever name; None where there is none."""
+    with suppress(OSError, ValueError):
+        found = os.stat(path)
+        return found.st_dev, found.st_ino
+    return None
+
+
+def files_of(paths) -> list[Path]:
+    """Return all files that outputs of a solution are written to."""
+    from ..image import files_of as of_one
+
+    return [file for path in paths for file in of_one(path)]
 
 
 def write(solution, paths, *, exposure: float | None = None, checkpoint: Path | None = None, also: Tasks = ()) -> None:

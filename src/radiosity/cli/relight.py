@@ -46,7 +46,9 @@ def relight(
     outputs.check(files.output)
     import radiosity as rd
 
+    outputs.spare([lines, *more], outputs.files_of(files.output))
     found = reduce(add, [rd.load_lines(path) for path in (lines, *more)])
+    outputs.spare([found.patches.scene.source], outputs.files_of(files.output))
     solution = found.solve(**values, bands=bands or None)
     outputs.write(solution, files.output, exposure=files.exposure, also=[("the report", lambda: tell(solution.report()))])
     return 0

@@ -68,7 +68,7 @@ def solve(
     chosen = rd.method.resolve(method, **(asdict(choices) | asdict(baseline)))
     if not given and not isinstance(chosen, rd.Baseline):
         budget = replace(budget, rays=DEFAULT_RAYS)
-    loaded = rd.load_scene(scene, **asdict(reading))
+    loaded = outputs.scene_of(scene, reading, [*outputs.files_of(output), *tables])
     before = None if run.resume is None else rd.load_solution(run.resume)
     keeper = None if cut.refine_check else checkpoints.chosen(run.checkpoint, run.no_checkpoint, output, chosen, run.resume)
     with bar() as progress:

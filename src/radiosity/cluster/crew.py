@@ -286,9 +286,9 @@ class DaskCrew(AbstractCrew):
 
     def bring(self, job: Any) -> None:
         """Bring a job to all workers, those to come among them."""
-        from .plugin import JobPlugin
+        from .plugin import bring
 
-        self.client.register_plugin(JobPlugin(job))
+        bring(self.client, job)
 
     def release(self) -> None:
         """Take the job off the workers."""

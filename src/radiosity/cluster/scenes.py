@@ -36,14 +36,14 @@ _sent: WeakKeyDictionary[Any, list[SceneJob]] = WeakKeyDictionary()  # by client
 
 def scene_on(client: Any, problem: Problem, device: str) -> SceneJob:
     """Return the scene that the workers of a client have, and bring it to them where they do not have it."""
-    from .plugin import JobPlugin
+    from .plugin import bring
 
     there = _sent.setdefault(client, [])
     found = next((scene for scene in there if scene.problem is problem and scene.device == device), None)
     if found is None:
         tell_of_shared(client, device)
         found = SceneJob(problem, device)
-        client.register_plugin(JobPlugin(found))
+        bring(client, found)
         there.append(found)
     return found
 

@@ -2,11 +2,11 @@
 
 import hashlib
 import json
-import os
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 
+from ..solution.whole import whole_file
 from .study import Protocol
 
 
@@ -30,8 +30,6 @@ def parts(number: int, make: Callable[[Protocol, Path], list[str]], protocol: Pr
             return kept["html"]
     made = make(protocol, folder)
     figures = sorted(file.name for file in folder.glob(f"experiment-{number}*.[ps][nv]g"))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps({"figures": figures, "html": made}), encoding="utf-8")
-    os.replace(part, path)
+    with whole_file(path) as file:
+        file.write(json.dumps({"figures": figures, "html": made}).encode())
     return made

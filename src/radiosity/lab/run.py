@@ -1,12 +1,12 @@
 """Running an experiment: every arm on every scene, each series kept in a file, so that an interrupted study goes on."""
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..solution.whole import whole_file
 from . import cases
 from .experiments import module
 from .kept import digest
@@ -69,7 +69,5 @@ def _kept(folder: Path, kind: str, case: Case, what: str, protocol: Protocol) ->
 
 
 def _write(path: Path, arrays: dict[str, Any]) -> None:
-    part = path.with_suffix(".part")
-    with part.open("wb") as file:
+    with whole_file(path) as file:
         np.savez(file, **arrays)
-    os.replace(part, path)

@@ -12,6 +12,7 @@ from ..errors import MethodError, OutputError, RadiosityWarning
 from ..method import Auto, Baseline, Method
 from ..solution.saving import save
 from ..solution.whole import check_place
+from .held import Hold, free_name, held
 from .result import Result
 
 EVERY = 30.0  # seconds
@@ -38,7 +39,7 @@ class Checkpoint:
     """A checkpoint file, and how often it is written.
 
     Attributes:
-        path: .npz, which `load_solution` reads.
+        path: .npz, which `load_solution` reads. Where a run of another process holds it, another name takes its place.
         every: seconds between two writings; longer where writing takes long.
         save: writes a result to a path.
         written: True where this run has written it.
@@ -55,6 +56,7 @@ class Checkpoint:
     _longest: float = field(init=False, default=0.0)  # seconds of a wavefront since it was written
     _sized: bool = field(init=False, default=False)
     _warned: bool = field(init=False, default=False)
+    _hold: Hold = field(init=False, default_factory=Hold)
 
     @classmethod
     def of(cls, given, every, method: "Method | Baseline", save: Callable[[Any, Path], None] = save_solution) -> "Checkpoint":
@@ -93,6 +95,7 @@ class Checkpoint:
         if self.path.suffix.lower() != ".npz":
             raise OutputError(f"{self.path}: a checkpoint is an .npz file; give it that suffix")
         check_place(self.path)
+        self._make_way()
 
     def due(self, behind: float = 0.0) -> bool:
         """Return whether to write it now; asked after each wavefront.
@@ -132,8 +135,21 @@ class Checkpoint:
         if self.written or solution.status != "complete":
             self._save(solution)
 
+    def _make_way(self) -> None:
+        """Take another name where a run of another process holds the file: each would be lost by the other's next writing."""
+        if self._hold.has(self.path) or not held(self.path):
+            return
+        other = free_name(self.path)
+        warnings.warn(
+            f"{self.path}: the checkpoint of a run that goes on in another process; that of this run is {other}",
+            RadiosityWarning,
+            stacklevel=3,
+        )
+        self.path = other
+
     def _save(self, solution: Result) -> bool:
         """Write the file; False where that failed."""
+        self._make_way()
         try:
             self.save(solution, self.path)
         except OutputError as error:
@@ -143,5 +159,6 @@ class Checkpoint:
                 )
             self._warned = True
             return False
+        self._hold.take(self.path)
         self.written, self._warned = True, False
         return True

@@ -28,12 +28,17 @@ def load_scene(name, *, max_reflectance: float = 0.95, strict: bool = False, all
         >>> scene.bands, scene.n_faces
         (('red', 'green', 'blue'), 21)
     """
+    return load_with_files(name, max_reflectance=max_reflectance, strict=strict, allow_outside=allow_outside)[0]
+
+
+def load_with_files(name, **options) -> tuple[Scene, list[Path]]:
+    """Load a scene as `load_scene` does, and return it with the files that it was read from."""
     from . import builtin, formats
 
     if not isinstance(name, str | os.PathLike):
         raise SceneError(f"load_scene takes a path or the name of a built-in scene, not {type(name).__name__}")
     if str(name) in builtin.SCENES:
-        return builtin.SCENES[str(name)]()
-    root = None if allow_outside else Path(os.path.realpath(Path(name).parent))
-    options = ReadOptions(max_reflectance, strict, root=root)
-    return formats.read(Path(name), options)
+        return builtin.SCENES[str(name)](), []
+    root = None if options.pop("allow_outside", False) else Path(os.path.realpath(Path(name).parent))
+    how = ReadOptions(**options, root=root)
+    return formats.read(Path(name), how), how.files

@@ -97,6 +97,7 @@ class ReadOptions:
         unit: metres, what the user's own .toml takes a length of 1 for.
         textures: how large images may be; it is used up while files are read.
         read: reads another scene file by its suffix, for a file that names some; `scene.formats.read` hands itself over here.
+        files: what has been read, or was to be: the scene file, and all files that it names. Readers add to it.
     """
 
     max_reflectance: float = 0.95
@@ -106,6 +107,7 @@ class ReadOptions:
     unit: float = 1.0
     textures: TextureMemory = field(default_factory=TextureMemory)
     read: Callable[[Path, "ReadOptions"], Any] | None = None
+    files: list[Path] = field(default_factory=list)
 
     def __post_init__(self):
         if not 0 < self.max_reflectance < 1:
@@ -128,4 +130,5 @@ class ReadOptions:
                 f"{source}: asks for '{file}', which lies outside the scene's folder {self.root}; copy it there, or allow it "
                 "with --allow-outside (allow_outside=True)"
             )
+        self.files.append(place)
         return file

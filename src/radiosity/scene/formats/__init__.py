@@ -44,6 +44,7 @@ def read(path: Path, options: ReadOptions) -> Scene:
         if path.stat().st_size == 0:
             raise SceneError(f"{path}: the file is empty")
         check_size(path)
+        options.files.append(path)
         with np.errstate(all="ignore"):  # numbers out of range are found by the checks, with their place
             return import_module(f".{FORMATS[suffix]}", __package__).read(path, replace(options, read=read))
     except (RadiosityError, Warning):
