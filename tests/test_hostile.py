@@ -206,6 +206,7 @@ warnings.simplefilter("ignore")
 from test_hostile import furnace
 import radiosity as rd
 patches = rd.subdivide(furnace(0.999999), cells=2)
+rd.solve(rd.subdivide(furnace(0.5), cells=2), "random-walk", rays=1000, device="cpu")  # imports what a run needs
 print("ready", flush=True)
 try:
     solution = rd.solve(patches, error=0.01, replicates=8, device="cpu")
@@ -227,7 +228,7 @@ def test_reflectance_of_0_999999_can_be_interrupted():
     )
     assert process.stdout is not None
     assert process.stdout.readline() == "ready\n"
-    time.sleep(2)
+    time.sleep(2)  # whenever it comes, the outcome is the same
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert out.strip() == "interrupted"
