@@ -710,6 +710,20 @@ MISTAKES = (
     ),
     Mistake(
         "factors/balance.py",
+        "missed = area * (escaped + lost) if counted else np.zeros(len(area))",
+        "counted, missed = False, np.zeros(len(area))",
+        ("test_balance.py",),
+        "what a small patch finds is lost where a large one missed it",
+    ),
+    Mistake(
+        "exchange/network.py",
+        "scale = scaling(lambda d: d * (exchange @ d + missed), self.area, SCALINGS)",
+        "scale = scaling(lambda d: d * (exchange @ d), self.area - missed, SCALINGS)",
+        ("test_exchange_errors.py",),
+        "a small load gets no heat where no line of a large heater found it",
+    ),
+    Mistake(
+        "factors/balance.py",
         "trust += weight[columns]",
         "trust += weight[rows]",
         ("test_balance.py",),
