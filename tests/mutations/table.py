@@ -603,6 +603,13 @@ MISTAKES = (
         "restored factors without lines have the bound of one direction",
     ),
     Mistake(
+        "exchange/few_shares.py",
+        "np.sqrt(np.maximum(counts, 1)), agreed)",
+        "np.sqrt(counts), agreed)",
+        ("test_gebhart.py",),
+        "conductors between groups that no line joined are known to be nothing",
+    ),
+    Mistake(
         "exchange/gebhart.py",
         "carried = replace(lines.pairs, directed=True)",
         "carried = lines.pairs",
