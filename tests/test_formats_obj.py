@@ -58,6 +58,20 @@ def test_polygons_are_cut_also_concave_ones(load):
     assert (scene.normal == [0, 0, -1]).all()
 
 
+@pytest.mark.parametrize("order", [(3, 4, 5), (4, 3, 5), (5, 4, 3), (3, 3), (4, 4), (4, 3)])
+def test_polygons_of_a_surface_keep_their_order(load, order):
+    """One square metre in front of another along x: its polygon has three, four or five corners."""
+    vertices, faces = "", ""
+    for at, size in enumerate(order):
+        ring = [(0, 0), (1, 0), (1, 1), (0, 1)][:size] + [(-0.5, 0.5)][: size - 4 if size > 4 else 0]
+        faces += "f" + "".join(f" {len(vertices.splitlines()) + i}" for i in range(1, size + 1)) + "\n"
+        vertices += "".join(f"v {at} {y} {z}\n" for y, z in ring)
+    scene = load(vertices + KNOWN + "g all\n" + faces)
+    where = scene.vertices[scene.faces[:, 0], 0]
+    assert (np.diff(where) >= 0).all()
+    assert [scene.area[where == at].sum() for at in range(len(order))] == [{3: 0.5, 4: 1.0, 5: 1.25}[size] for size in order]
+
+
 def test_quads_that_are_no_parallelograms(load):
     scene = load("v 0 0 0\nv 2 0 0\nv 1 1 0\nv 0 1 0\n" + KNOWN + "f 1 2 3 4\n")
     assert scene.is_quad.tolist() == [False, False]

@@ -386,6 +386,27 @@ MISTAKES = (
         "pictures gather diffused light before a pane",
     ),
     Mistake(
+        "scene/formats/radiance/primitives.py",
+        "            self._found = chain(found, self._found)\n",
+        "",
+        ("test_formats_radiance.py",),
+        "numbers before a comment in a Radiance list are lost",
+    ),
+    Mistake(
+        "scene/habits.py",
+        "        if max((*front, *(m.back_reflectance or ()))) <= limit:",
+        "        if max(front) <= limit:",
+        ("test_quads.py",),
+        "a back above the limit of reflectance stays as it is",
+    ),
+    Mistake(
+        "scene/formats/faces.py",
+        "if len(sizes) and sizes[0] in (3, 4) and (sizes == sizes[0]).all():",
+        "if len(sizes) and sizes[0] in (3, 4):",
+        ("test_formats_obj.py",),
+        "all polygons have as many corners as the first one",
+    ),
+    Mistake(
         "scene/formats/radiance/materials.py",
         "kept * share * (1 - straight)",
         "kept * share",

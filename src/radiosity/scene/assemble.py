@@ -52,10 +52,12 @@ def assemble(
     starts = np.cumsum([0] + [len(part.vertices) for part in parts])
     faces = joined([_offset(part, start) for part, start in zip(parts, starts, strict=False)])
     sizes = [len(part.faces) for part in parts]
-    material = [part.material for part in parts]
+    distinct = {id(part.material): part.material for part in parts}
+    material, place = list(distinct.values()), {key: row for row, key in enumerate(distinct)}
+    of_parts = np.array([place[id(part.material)] for part in parts])
 
-    def each(values, dtype: type = np.float64):
-        rows = np.array(values, dtype)
+    def each(values, dtype: type = np.float64, of_parts=of_parts):
+        rows = np.array(values, dtype)[of_parts]
         if (rows == rows[0]).all():  # one row in memory for all faces
             return np.broadcast_to(rows[0], (len(faces), *rows.shape[1:]))
         return np.repeat(rows, sizes, axis=0)
@@ -72,7 +74,7 @@ def assemble(
         faces,
         each([spread(m.reflectance) for m in material]),
         each([spread(m.emission) for m in material]),
-        surface=each([index[part.name] for part in parts], np.int64),
+        surface=each([index[part.name] for part in parts], np.int64, np.arange(len(parts))),
         names=names,
         back=each([m.back for m in material], np.int64),
         back_reflectance=each([spread(m.reflectance if m.back_reflectance is None else m.back_reflectance) for m in material]),

@@ -21,6 +21,8 @@ def straightened(part: Part) -> Part:
         return part
     held = [part.uv if part.emission_uv is None else part.emission_uv] if part.emission_texture is not None else []
     held += [part.uv, part.color] if part.texture is not None and part.uv is not None else []
+    if not held:
+        return part
     quads = faces[:, 3] >= 0
     corners = faces[quads]
     bent = np.zeros(len(corners), bool)

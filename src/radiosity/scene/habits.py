@@ -43,7 +43,7 @@ def settle(parts: list[Part], source: str, options: ReadOptions) -> list[Part]:
             if highest > options.max_reflectance + 1e-12 and not m.given:
                 of_file = bright.setdefault(m.origin or source, {})
                 of_file[part.name] = max(of_file.get(part.name, 0.0), highest)
-        part = replace(part, material=m)
+        part = part if m is part.material else replace(part, material=m)
         result.append(part if m.given else _lower(part, options.max_reflectance * (1 - min(m.transmittance, MOST_CLEAR))))
     if missing:
         warn(f"{source}: no material for {shown(missing)}; reflectance {DEFAULT_REFLECTANCE} taken")
@@ -91,6 +91,8 @@ def _lower(part: Part, limit: float) -> Part:
         )
         return replace(part, material=replace(m, reflectance=front, back_reflectance=back, diffuse_transmittance=through))
     if part.color is None and part.texture is None:
+        if max((*front, *(m.back_reflectance or ()))) <= limit:
+            return part
         back = m.back_reflectance and tuple(min(v, limit) for v in m.back_reflectance)
         return replace(part, material=replace(m, reflectance=tuple(min(v, limit) for v in front), back_reflectance=back))
     if max(front) > limit and _has_white_face(part):

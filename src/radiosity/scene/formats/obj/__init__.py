@@ -103,7 +103,17 @@ def _part(
     corners = np.column_stack([keys // (len(uv) + 1), keys % (len(uv) + 1) - 1])
     numbers = np.where(faces >= 0, index[faces], -1)
     finish = finish or Finish(Material())
-    part = Part(name, vertices[corners[:, 0]], numbers, finish.material)
+    base, emissive = finish.base, finish.emissive
+    part = Part(
+        name,
+        vertices[corners[:, 0]],
+        numbers,
+        finish.material,
+        texture=base and base.image,
+        emission_texture=emissive and emissive.image,
+        sampler=base.sampler if base else DEFAULT_SAMPLER,
+        emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
+    )
     color = decode_srgb(colors[corners[:, 0]])
     if np.isfinite(color).all():
         part = replace(part, color=color)
@@ -111,14 +121,6 @@ def _part(
             part = replace(part, material=replace(finish.material, reflectance=(1.0,)))
     elif np.isfinite(color).any():
         partly.append(name)
-    base, emissive = finish.base, finish.emissive
-    part = replace(
-        part,
-        texture=base and base.image,
-        emission_texture=emissive and emissive.image,
-        sampler=base.sampler if base else DEFAULT_SAMPLER,
-        emission_sampler=emissive.sampler if emissive else DEFAULT_SAMPLER,
-    )
     if (corners[:, 1] >= 0).all():
         own = uv[corners[:, 1]]
         return replace(part, uv=base and base.uv(own), emission_uv=emissive and emissive.uv(own))

@@ -4,6 +4,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain, islice
 
 from ....errors import SceneError
 
@@ -39,7 +40,7 @@ class Words:
     def __init__(self, text: str, source: str):
         self._source = source
         self._text = text
-        self._found = WORD.finditer(text)
+        self._found: Iterator[re.Match[str]] = WORD.finditer(text)
         self._ends: list[int] | None = None
         self.at = 0  # place of the last word
 
@@ -88,6 +89,24 @@ class Words:
             text = f"'{word[:SHOWN]}' stands where a number of {what} is expected; correct the line"
             raise SceneError(f"{self._source}:{self.line()}: {text}") from None
 
+    def numbers(self, count: int, what: str) -> tuple[float, ...]:
+        """The next words as numbers.
+
+        Raises:
+            SceneError: one is none, or the file ends before.
+        """
+        found = list(islice(self._found, count))
+        try:
+            values = tuple([float(match.group()) for match in found])
+        except ValueError:  # a comment, quotes, or no number
+            values = ()
+        if len(values) < count:
+            self._found = chain(found, self._found)
+            return tuple([self.number(what) for _ in range(count)])
+        if found:
+            self.at = found[-1].start()
+        return values
+
     def line(self) -> int:
         """The line of the last word, from 1."""
         if self._ends is None:
@@ -122,5 +141,5 @@ def primitives(text: str, source: str) -> Iterator[Primitive]:
         strings = tuple([words.of(f"a word of {what}") for _ in range(words.count(f"words of {what}"))])
         for _ in range(words.count(f"whole numbers of {what}")):
             words.number(what)
-        numbers = tuple([words.number(what) for _ in range(words.count(f"numbers of {what}"))])
+        numbers = words.numbers(words.count(f"numbers of {what}"), what)
         yield Primitive(modifier, kind, name, strings, numbers, line)
