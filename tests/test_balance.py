@@ -78,14 +78,14 @@ def test_pairs_are_weighted_by_their_rows(random, weighted):
 
 def test_lines_count_at_both_their_ends(random):
     """(n_ij + n_ji) / (n_i / A_i + n_j / A_j) of patches of unequal areas, and lines that are not in proportion to them; rows are
-    scaled to their sums alone."""
+    scaled to their sums alone, and what escapes and is lost with them."""
     n, area = 6, np.array([0.1, 0.5, 1.0, 2.0, 5.0, 0.3])
     lines = random.integers(1, 50, (n, n + 2)) * (np.arange(n + 2) != np.arange(n)[:, None])
     rows, columns = np.nonzero(lines)
     keys, counts = (rows.astype(np.uint64) << WORD) | columns.astype(np.uint64), lines[rows, columns].astype(np.uint32)
     found, fired = of_both_ways(keys, counts, n, area), lines.sum(axis=1)
-    assert found.escaped == pytest.approx(lines[:, n] / fired, rel=1e-14)
-    assert found.lost == pytest.approx(lines[:, n + 1] / fired, rel=1e-14)
+    assert found.escaped * lines[:, n + 1] == pytest.approx(found.lost * lines[:, n], rel=1e-12)
+    assert found.dense().sum(axis=1) + found.escaped + found.lost == pytest.approx(np.ones(n), rel=1e-12)
     exchange = np.zeros((n, n))
     for i in range(n):
         for j in range(n):
@@ -95,7 +95,20 @@ def test_lines_count_at_both_their_ends(random):
     for i, j, k, m in ((0, 1, 2, 3), (1, 4, 3, 5), (2, 5, 0, 4)):
         cross = factors[i, j] * factors[k, m] / (factors[i, m] * factors[k, j])
         assert cross == pytest.approx(exchange[i, j] * exchange[k, m] / (exchange[i, m] * exchange[k, j]), rel=1e-9)
-    assert found.dense().sum(axis=1) == pytest.approx(1 - found.escaped - found.lost, rel=1e-12)
+    # d_i alone, from what escapes: X_01 d_1 and X_12 d_1
+    scale = found.escaped * fired / lines[:, n]
+    assert factors[0, 1] / scale[0] / (factors[1, 2] / scale[2]) == pytest.approx(exchange[0, 1] / exchange[1, 2], rel=1e-3)
+
+
+def test_what_a_small_patch_found_stays_where_a_large_one_missed_it():
+    """All 1 000 lines of a square metre escape, and 70 of 1 000 from a hundredth of one hit it: so do its 0.7 lines' worth."""
+    area, lines = np.array([1.0, 0.01]), np.array([[0, 0, 1000, 0], [70, 0, 930, 0]])
+    rows, columns = np.nonzero(lines)
+    keys = (rows.astype(np.uint64) << WORD) | columns.astype(np.uint64)
+    found = of_both_ways(keys, lines[rows, columns].astype(np.uint32), 2, area)
+    both = 70 / (1000 / 1 + 1000 / 0.01)
+    assert found.dense()[1, 0] == pytest.approx(both / 0.01 / (both / 0.01 + 0.93), rel=1e-3)
+    assert found.dense()[0, 1] == pytest.approx(0.01 * found.dense()[1, 0], rel=1e-5)
 
 
 def test_true_factors_stay_and_what_escapes_is_left_out(random):

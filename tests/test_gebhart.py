@@ -10,6 +10,7 @@ import pytest
 from enclosures import parallel_squares, sphere_in_box
 
 import radiosity as rd
+from radiosity.factors.polygons import exchange
 from radiosity.scene.shapes import box, quad
 from validation.closed_forms.enclosures import box_factors
 from validation.closed_forms.rectangles import parallel, perpendicular
@@ -75,6 +76,22 @@ def test_what_escapes_is_a_conductor_to_the_surroundings(tmp_path):
     assert {r["to"] for r in rows} == {*found.names, "(escaped)"}
     first = next(r for r in rows if (r["from"], r["to"]) == (found.names[0], found.names[1]))
     assert float(first["conductor standard error m²"]) == 0.5 * float(first["standard error"]) > 0
+
+
+def test_a_pair_that_no_line_joined_is_not_known_to_exchange_nothing(tmp_path):
+    """A square of a metre and one of 10 cm 6 m above it: 2 000 lines do not join them, and the error was zero."""
+    low, far = quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), quad((0, 0, 6), (0, 0.1, 0), (0.1, 0, 0))
+    patches = rd.subdivide(scene(("hot", 0.5, 1.0, [low]), ("far", 0.5, 0.0, [far])), cells=1)
+    exact = exchange(patches.corners[:1], patches.corners[1:])[0]
+    found = rd.gebhart_factors(rd.trace_lines(patches, rays=2_000, seed=1), emissivity=1.0)
+    assert found.conductors[0, 1] == 0
+    assert found.standard_error[0, 1] * found.area[0] == pytest.approx(found.standard_error[1, 0] * found.area[1])
+    assert exact < 4 * found.standard_error[0, 1] * found.area[0]
+    found.to_csv(tmp_path / "g.csv")
+    assert "hot,far" in (tmp_path / "g.csv").read_text(encoding="utf-8")
+    away = scene(("up", 0.5, 1.0, [low]), ("down", 0.5, 0.0, [quad((0, 0, -1), (0, 1, 0), (1, 0, 0))]))
+    found = rd.gebhart_factors(rd.trace_lines(rd.subdivide(away, cells=1), rays=2_000), emissivity=0.5)
+    assert not found.standard_error.any()  # they look away from each other
 
 
 @pytest.mark.parametrize("both_ways", [True, False])

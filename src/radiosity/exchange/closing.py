@@ -93,7 +93,7 @@ def closed(measured: Measured) -> tuple[Measured, bool]:
         share = np.divide(area, sums, out=np.ones(n), where=sums > 0)
         values *= share[:, None]
         gone = gone * share
-    left, gone_left = _left(variances, most)
+    left, gone_left = _left(kept, most)  # what is zero may be more, and others of its row then less
     np.copyto(left, kept, where=variances == 0)
     left[own] *= 2
     return Measured(values, left, gone, gone_left, area), good
@@ -124,13 +124,19 @@ def _multipliers(variances: np.ndarray, gone: np.ndarray, lacking: np.ndarray) -
 
 
 def _left(variances: np.ndarray, gone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the variances that are left when rows must close: v (1 - v (share of both rows)), (n, n) and (2, n)."""
+    """Return the variances that are left when rows must close: v (1 - v (share of both rows)), (n, n) and (2, n).
+
+    Args:
+        variances: those of what was measured; of what a group sends to itself half of it.
+        gone: (2, n) of what escapes and is lost.
+    """
     n, slack = len(variances), variances.sum(axis=1, dtype=np.float64) + variances.diagonal() + gone.sum(axis=0)
     if n <= EXACTLY:
         matrix = variances + np.diag(slack - variances.diagonal())
         root = np.sqrt(np.where(slack > 0, slack, 1.0))
         inverse = np.linalg.inv(matrix / root[:, None] / root + REGULAR * np.eye(n)) / root[:, None] / root
         along = inverse.diagonal()[:, None] + inverse.diagonal() + 2 * inverse
+        along[np.diag_indices(n)] /= 2  # what a group sends to itself counts once, by half the variance that it has here
         return np.maximum(variances * (1 - variances * along), 0), np.maximum(gone * (1 - gone * inverse.diagonal()), 0)
     share = np.divide(1, slack, out=np.zeros(n), where=slack > 0)
     left = np.empty_like(variances)

@@ -24,6 +24,7 @@ from ..solution.csv_rows import write_rows
 from ..solution.errors import mean_and_error
 from ..tracing.geometry import Geometry
 from .conditions import by_name
+from .few_shares import least_errors
 from .groups import Groups, groups_of
 from .narrow import warn_of_narrow
 from .panes import of_solid
@@ -43,7 +44,8 @@ class GebhartFactors:
         area: (n,) m², radiating sides alone.
         emissivity: (n,) means over the area of each group.
         values: (n, n + 2) shares; the last two columns are escaped and lost.
-        errors: (n, n + 2) standard errors; NaN: unknown, since there is one replicate.
+        errors: (n, n + 2) standard errors; NaN: unknown, since there is one replicate. Where no line joined two groups it is at
+            least one line's worth, and zero only where they cannot see each other.
         replicates: independent randomised runs.
 
     Example:
@@ -80,10 +82,18 @@ class GebhartFactors:
         """Radiative conductors GR_ij = e_i A_i G_ij, (n, n) m²: the heat from i to j is sigma GR_ij (T_i⁴ - T_j⁴)."""
         return (self.emissivity * self.area)[:, None] * self.matrix
 
-    def to_csv(self, path) -> None:
-        """Write a CSV file with a row for each pair that exchanges heat: shares and conductors (m²), with standard errors.
+    @property
+    def _told(self) -> np.ndarray:
+        """Entries that a file holds, (n, n + 2) bool."""
+        some = self.values != 0
+        some[:, :-2] |= self.errors[:, :-2] > 0
+        return some
 
-        What escapes, or is lost on backs, is a conductor to ``(escaped)`` or ``(lost)``.
+    def to_csv(self, path) -> None:
+        """Write a CSV file with a row for each pair that may exchange heat: shares and conductors (m²), with standard errors.
+
+        A pair that no line joined is there with its error. What escapes, or is lost on backs, is a conductor to ``(escaped)`` or
+        ``(lost)``.
 
         Raises:
             OutputError: the file cannot be written.
@@ -102,7 +112,7 @@ class GebhartFactors:
                 "conductor m²": float(whole[i] * self.values[i, j]),
                 "conductor standard error m²": float(whole[i] * self.errors[i, j]),
             }
-            for i, j in zip(*np.nonzero(self.values), strict=True)
+            for i, j in zip(*np.nonzero(self._told), strict=True)
         ]
         write_rows(rows, path)
 
@@ -162,7 +172,7 @@ def gebhart_factors(lines: LineSet, *, emissivity, group="surface") -> GebhartFa
         area,
         np.bincount(groups.labels, share * patches.area, n) / area,
         mean,
-        np.hypot(error, bias),
+        least_errors(carried, groups, solid, mean, np.hypot(error, bias)),
         replicates,
     )
 

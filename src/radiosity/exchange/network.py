@@ -120,7 +120,7 @@ class Pooled:
         return np.bincount(self._rows[here], counts[here], n) / np.maximum(lines, 1)
 
     def _network(self, counts: np.ndarray) -> Network:
-        """Conductances by both ends of each line, scaled until those of a patch sum to what does not escape."""
+        """Conductances by both ends of each line, scaled until those of a patch, and what escapes, sum to its area."""
         from scipy.sparse import csr_array
 
         n = len(self.area)
@@ -130,7 +130,8 @@ class Pooled:
         joined = np.bincount(self._pair, counts[self._apart], len(trust))
         value = np.divide(joined, trust, out=np.zeros(len(trust)), where=trust > 0)
         exchange = csr_array((value[self._order], self._indices, self._begin), shape=(n, n))
-        scale = scaling(lambda d: d * (exchange @ d), self.area * np.maximum(1 - escaped - lost, 0), SCALINGS)
+        missed = self.area * (escaped + lost)  # counted as well, and scaled as `factors.balance.restored` does
+        scale = scaling(lambda d: d * (exchange @ d + missed), self.area, SCALINGS)
         value *= scale[self._low] * scale[self._high]
         exchange = csr_array((value[self._order], self._indices, self._begin), shape=(n, n))
-        return Network(exchange, self.area * escaped, self.area)
+        return Network(exchange, self.area * escaped * scale, self.area)

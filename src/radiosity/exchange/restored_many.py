@@ -25,6 +25,7 @@ def by_scaling(factors):
         factors.area,
         weight,
         SCALINGS,
+        counted=counted,
     )
     rows, columns, values = new.rows, new.columns, new.values
     for column, share in ((n, new.escaped), (n + 1, new.lost)):

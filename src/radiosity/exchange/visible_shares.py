@@ -1,16 +1,16 @@
 """Visible shares of pairs of patches, unbiased, with variances: few rays a pair, and more where neighbours are seen in part.
 
-Patches are taken in blocks of eight, in order, so a pair is in a block of up to 64 pairs. First each pair gets a ray, or several
-where the work allows. What others of its block say gives its expected variance, and by this, and by its exact factor, the other
-rays are shared out. A pair's own first ray has no say in how many follow. Where several have, they are left out of its mean. So
-the mean has no bias.
+Patches are taken in blocks of eight, in order, so a pair is in a block of up to 64 pairs. First each pair gets a ray, or a
+quarter of all where there are more: where a sixth is hidden, one ray for each of 16 pairs finds nothing in one run of 20. What
+others of its block say gives its expected variance, and by this, and by its exact factor, the other rays are shared out. A pair's
+own first rays have no say in how many follow. Where they have, they are left out of its mean. So the mean has no bias.
 
 A share is c + the mean of (v - c) w, where v is 1 for rays that arrive, w is their weight, whose mean is one, and c is what
 others of the block see. Where nothing is in between it is exactly one. What is hidden or seen of pairs that touch keeps its true
 weight.
 
 The variance of one pair is known badly from its few rays. It is mixed with the mean of a class: of pairs with as many rays, in
-blocks that are seen to about the same share. Some pairs of blocks that agree get rays for that mean alone.
+blocks that are seen to about the same share. That of pairs without more rays follows from their own first rays.
 """
 
 from dataclasses import dataclass
@@ -19,12 +19,12 @@ import numpy as np
 
 from ..sampling.streams import Seed
 from ..tracing.pair_rays import PairRays, Sums
+from .convex import is_convex
 
 BLOCK = 3  # bits: patches of a block are 8
 CLEAR = 16  # pairs of a block that tell, if all arrive, that it is clear
-FIRST, MOST_FIRST = 16, 64  # first rays of a pair, where the work suffices for four times as many; else it is one
+FIRST, MOST_FIRST = 16, 64  # first rays of a pair that tell of it, too, and at most; the work suffices for four times as many
 UNKNOWN = 0.1  # rays: what is believed of a block before the first one
-PROBES, MOST_PROBES = 16, 1 << 14  # of so many pairs without more rays one gets two, which tell the variance of all
 LEVELS = 14  # most doublings of a pair's rays
 PRIOR = 32  # degrees of freedom of the class, against those of the pair's own batches
 KINDS = (0.002, 0.01, 0.04, 0.12, 0.3)  # bounds of classes: the lesser part of a block, seen or hidden
@@ -55,7 +55,7 @@ class Told:
         centre: (k,) share that is seen.
         variance: (k,) expected variance of a ray.
         kind: (k,) class.
-        part: the share of all pairs that are in blocks whose rays do not agree.
+        prior: (k,) variance of a ray that one pair more of the class is believed to have.
     """
 
     first: int
@@ -63,7 +63,7 @@ class Told:
     centre: np.ndarray
     variance: np.ndarray
     kind: np.ndarray
-    part: float
+    prior: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,27 +90,45 @@ def visible_shares(caster: PairRays, pairs: Pairs, rays: int, batches: int, seed
     m, number = len(pairs.one), seed.number_of(0)
     if not m:
         return Shares(np.zeros(0), np.zeros(0), 0)
-    first = 1 if rays < 4 * FIRST * m else min(1 << int(np.log2(rays / (4 * m))), MOST_FIRST)
+    first = min(1 << int(np.log2(max(rays / (4 * m), 1))), MOST_FIRST)
     own = first >= FIRST
     pilot = caster.cast(pairs.one, pairs.other, pairs.values, first, 0, number)
-    hides = pilot.arriving < pilot.weights
+    hides = _hidden(pilot, first)
     code, hidden, met = _blocks(hides, pairs, len(caster.geometry.patches))
     blocked = hidden[code]
     clear = np.zeros(m, bool) if own else _clear(hides, code, hidden, met)
     part = 1 - float(((blocked == 0) | (blocked == met[code])).mean())
-    some, rest = np.flatnonzero(~clear), np.flatnonzero(clear)
-    probes = rest[number % PROBES :: max(PROBES, len(rest) // MOST_PROBES)]
-    chosen = np.concatenate([some, probes])
-    told = _told(pilot.take(chosen), code[chosen], hidden, met, first, own, clear[chosen], part)
-    taken = pairs.take(chosen)
-    more = _more(np.sqrt(taken.weight * told.variance)[: len(some)], rays - first * m - 2 * len(probes), 2 if own else 0)
-    few = np.flatnonzero(more == 0)
-    more[few[number % PROBES :: PROBES]] = 2
-    more = np.concatenate([more, np.full(len(probes), 2)])
-    found, others = _mean(caster, taken, pilot.take(chosen), told, more, batches, number)
-    values, variances = _sum(pilot, 1.0, first) / first, np.full(m, others)
-    values[chosen], variances[chosen] = found.values, found.variances
+    hides_more = part > 0 or not is_convex(caster.geometry.patches)
+    some = np.flatnonzero(~clear)
+    told = _told(pilot.take(some), code[some], hidden, met, first, own, part, hides_more)
+    taken = pairs.take(some)
+    more = _more(np.sqrt(taken.weight * told.variance), rays - first * m, 2 if own else 0)
+    found = _mean(caster, taken, pilot.take(some), told, more, batches, number)
+    values, variances = _sum(pilot, 1.0, first) / first, np.full(m, _of_clear(pilot, pairs.weight, clear, first, hides_more))
+    values[some], variances[some] = found.values, found.variances
     return Shares(values, variances, first * m + found.rays)
+
+
+def _of_clear(pilot: Sums, weight: np.ndarray, clear: np.ndarray, first: int, hides_more: bool) -> float:
+    """Return the variance of the share of a pair whose block looks clear: its own rays had no say in that, and may be hidden.
+
+    Unless nothing can stand in between, one more ray of these pairs may be: that none was found does not mean that none is.
+    """
+    lost = (pilot.squares - pilot.arriving_squares)[clear].astype(np.float64)
+    here = weight[clear]
+    whole = float(here.sum())
+    if not whole > 0:
+        return 0.0
+    one = float(np.median(here))  # a usual pair: those with the largest factors are too near for anything to stand between
+    return (float(here @ lost) + one * hides_more) / (whole + one) / first**2
+
+
+def _hidden(pilot: Sums, first: int) -> np.ndarray:
+    """Return the share of the first rays of each pair that is hidden, (m,) float64; bool where it is one ray."""
+    if first == 1:
+        return pilot.arriving < pilot.weights
+    seen = np.divide(pilot.arriving, pilot.weights, out=np.ones(len(pilot.weights)), where=pilot.weights > 0, dtype=np.float64)
+    return 1 - seen
 
 
 def _blocks(hides: np.ndarray, pairs: Pairs, patches: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -120,7 +138,7 @@ def _blocks(hides: np.ndarray, pairs: Pairs, patches: int) -> tuple[np.ndarray, 
     if wide * wide > 4 * len(code) + 1024:
         code = np.unique(code, return_inverse=True)[1]
     met = np.bincount(code)
-    return code, np.bincount(code[hides], minlength=len(met)), met
+    return code, np.bincount(code[hides], minlength=len(met)) if hides.dtype == bool else np.bincount(code, hides), met
 
 
 def _clear(hides: np.ndarray, code: np.ndarray, hidden: np.ndarray, met: np.ndarray) -> np.ndarray:
@@ -128,17 +146,21 @@ def _clear(hides: np.ndarray, code: np.ndarray, hidden: np.ndarray, met: np.ndar
     return (hidden[code] == hides) & (met[code] >= CLEAR)
 
 
-def _told(pilot: Sums, code, hidden, met, first: int, own: bool, clear: np.ndarray, part: float) -> Told:
+def _told(pilot: Sums, code, hidden, met, first: int, own: bool, part: float, hides_more: bool) -> Told:
     seen = np.divide(pilot.arriving, pilot.weights, out=np.ones(len(code)), where=pilot.weights > 0)
     if own:
         known, share = float(first), seen
     else:
-        known = met[code] - 1.0
-        lost = hidden[code] - (pilot.arriving < pilot.weights)
-        share = 1 - np.divide(lost, known, out=np.zeros(len(code)), where=known > 0)
+        others = met[code] - 1.0
+        lost = hidden[code] - _hidden(pilot, first)
+        share = np.clip(1 - np.divide(lost, others, out=np.zeros(len(code)), where=others > 0), 0, 1)
+        known = first * others
     q = (known * share + UNKNOWN / 2) / (known + UNKNOWN)
-    kind = np.where(clear, 0, 1 + np.searchsorted(KINDS, np.minimum(share, 1 - share), side="right"))
-    return Told(first, own, share, q * (1 - q), kind, part)
+    kind = np.searchsorted(KINDS, np.minimum(share, 1 - share), side="right")
+    prior = max(part, hides_more / max(len(code), 1)) * q * (1 - q)
+    if hides_more:  # one ray more of all of a class may not do as all others did
+        prior = np.where(kind == 0, np.maximum(prior, 1 / first), prior)
+    return Told(first, own, share, q * (1 - q), kind, prior)
 
 
 def _more(need: np.ndarray, rays: float, least: int) -> np.ndarray:
@@ -159,8 +181,8 @@ def _more(need: np.ndarray, rays: float, least: int) -> np.ndarray:
     return best[(4 * below).astype(np.int64)]
 
 
-def _mean(caster: PairRays, pairs: Pairs, pilot: Sums, told: Told, more: np.ndarray, batches: int, seed: int):
-    """Return the shares of some pairs, and the variance of pairs of the first class that got no more rays."""
+def _mean(caster: PairRays, pairs: Pairs, pilot: Sums, told: Told, more: np.ndarray, batches: int, seed: int) -> Shares:
+    """Return the shares of some pairs."""
     first, k = told.first, len(more)
     value, total = _sum(pilot, told.centre, first), np.full(k, float(first))
     variance, of_one, rays = np.zeros(k), np.zeros(k), 0
@@ -170,7 +192,7 @@ def _mean(caster: PairRays, pairs: Pairs, pilot: Sums, told: Told, more: np.ndar
         sets = batches if count >= 2 * batches else 2
         each = count // sets
         mean, of_mean, of_ray = _batches(caster, pairs.take(some), told.centre[some], sets, each, seed)
-        prior, weight, kind = told.part * told.variance[some], pairs.weight[some], told.kind[some]
+        prior, weight, kind = told.prior[some], pairs.weight[some], told.kind[some]
         pooled = _by_class(of_mean, weight, kind, prior / (each * sets))
         of_mean = ((sets - 1) * of_mean + PRIOR * pooled) / (sets - 1 + PRIOR)
         of_one[some] = _by_class(of_ray, weight, kind, prior)
@@ -181,16 +203,16 @@ def _mean(caster: PairRays, pairs: Pairs, pilot: Sums, told: Told, more: np.ndar
             value[some] += follow * mean
             total[some] += follow
             variance[some] = (first * of_one[some] + follow**2 * of_mean) / (first + follow) ** 2
-    few, probed, others = np.flatnonzero(more == 0), np.flatnonzero(more == 2), 0.0
-    for kind in range(len(KINDS) + 2):
-        here, there = few[told.kind[few] == kind], probed[told.kind[probed] == kind]
-        if len(here) or (len(there) and not kind):
-            own = here if len(here) else there
-            square, prior = float(pairs.weight[own].mean()), float(told.part * told.variance[own].mean())
-            mean = (pairs.weight[there] @ of_one[there] + square * prior) / max(pairs.weight[there].sum() + square, 1e-300)
-            variance[here] = mean / first
-            others = others if kind else mean / first
-    return Shares(value / total, variance, rays), others
+    few = np.flatnonzero(more == 0)
+    if len(few):
+        square = _squares(pilot.take(few), told.centre[few]) / first
+        variance[few] = _by_class(square, pairs.weight[few], told.kind[few], told.prior[few]) / first
+    return Shares(value / total, variance, rays)
+
+
+def _squares(sums: Sums, centre: np.ndarray) -> np.ndarray:
+    """Return sums of ((v - c) w)² over rays, (m,)."""
+    return sums.arriving_squares * (1 - 2 * centre) + centre**2 * sums.squares
 
 
 def _batches(caster: PairRays, pairs: Pairs, centre: np.ndarray, sets: int, each: int, seed: int):
@@ -199,7 +221,7 @@ def _batches(caster: PairRays, pairs: Pairs, centre: np.ndarray, sets: int, each
     for batch in range(sets):
         found = caster.cast(pairs.one, pairs.other, pairs.values, each, batch + 1, seed)
         means[batch] = _sum(found, centre, each) / each
-        square += found.arriving_squares * (1 - 2 * centre) + centre**2 * found.squares
+        square += _squares(found, centre)
     mean = means.mean(axis=0)
     of_mean = ((means - mean) ** 2).sum(axis=0) / (sets * (sets - 1))
     return mean, of_mean, np.maximum(square / (each * sets) - (mean - centre) ** 2 + of_mean, 0)

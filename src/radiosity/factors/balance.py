@@ -4,6 +4,9 @@ First both estimates of a pair become one, (w_i A_i F_ij + w_j A_j F_ji) / (w_i 
 lines divided by its area. By Poisson statistics that is the best one, and the pair then counts each line at both its ends.
 Then the symmetric matrix is scaled from both sides, d_i d_j, to the row sums (R. Sinkhorn and P. Knopp, "Concerning nonnegative
 matrices and doubly stochastic matrices", Pacific J. Mathematics 21, 1967). Pairs that are zero stay zero.
+
+Where what escapes was counted, too, it is as uncertain as the rest of its row, and scaled with it. Otherwise a large patch whose
+few lines towards a small one all missed it would take away what the lines of the small one found.
 """
 
 from collections.abc import Callable
@@ -17,8 +20,10 @@ BALANCED = 1e-6  # of the scene's area: scaling ends when the errors of all row 
 SCALINGS = 100  # at most: single rows may never reach their sum
 
 
-def restored(factors: Factors, area: np.ndarray, weight: np.ndarray | None = None, scalings: int = SCALINGS) -> Factors:
-    """Return reciprocal form factors whose rows sum to 1 - escaped - lost.
+def restored(
+    factors: Factors, area: np.ndarray, weight: np.ndarray | None = None, scalings: int = SCALINGS, *, counted: bool = False
+) -> Factors:
+    """Return reciprocal form factors whose rows, with what escapes and is lost, sum to one.
 
     What is left after the scalings is taken out of the rows alone. So sums are exact, and the A_i F_ij - A_j F_ji together
     come to some 1e-6 of the scene's area.
@@ -27,12 +32,14 @@ def restored(factors: Factors, area: np.ndarray, weight: np.ndarray | None = Non
         area: (n,) m².
         weight: (n,) weight of each row, any unit, not negative; by default 1 / area, which is equally many lines a row.
         scalings: largest number of scalings.
+        counted: what escapes and is lost was counted as the factors were, and is scaled with its row. Otherwise it stays.
     """
     weight = 1 / area if weight is None else weight
     rows, columns, exchange = _of_pairs(factors, area, weight)
     escaped, lost = factors.escaped, factors.lost
     del factors  # the entries may be let go
-    wanted = area * np.maximum(1 - escaped - lost, 0)  # a share of all of it may be one and some rounding
+    missed = area * (escaped + lost) if counted else np.zeros(len(area))
+    wanted = area if counted else area * np.maximum(1 - escaped - lost, 0)  # all of it may be one and some rounding
 
     def row_sums(other: np.ndarray | None = None) -> np.ndarray:
         if other is None:
@@ -41,11 +48,14 @@ def restored(factors: Factors, area: np.ndarray, weight: np.ndarray | None = Non
         values *= exchange
         return np.bincount(rows, weights=values, minlength=len(area))
 
-    scale = scaling(lambda d: d * row_sums(d), wanted, scalings)
+    scale = scaling(lambda d: d * (row_sums(d) + missed), wanted, scalings)
     exchange *= scale[rows]
     exchange *= scale[columns]
-    exchange *= _ratio(wanted, row_sums())[rows]
+    share = _ratio(wanted, row_sums() + scale * missed)
+    exchange *= share[rows]
     exchange /= area[rows]
+    if counted:
+        escaped, lost = escaped * scale * share, lost * scale * share
     return Factors(rows, columns, exchange, escaped, lost)
 
 

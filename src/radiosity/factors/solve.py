@@ -28,12 +28,12 @@ def of_rows(keys: np.ndarray, counts: np.ndarray, n: int) -> Factors:
 
 
 def of_both_ways(keys: np.ndarray, counts: np.ndarray, n: int, area: np.ndarray) -> Factors:
-    """Return A_i F_ij = A_j F_ji = (n_ij + n_ji) / (n_i / A_i + n_j / A_j), scaled until rows sum to what did not escape.
+    """Return A_i F_ij = A_j F_ji = (n_ij + n_ji) / (n_i / A_i + n_j / A_j), scaled until rows sum to one with what escapes.
 
     Every line is used at both its ends, see `balance.restored`.
     """
     rows, _ = split(keys)
-    return restored(of_rows(keys, counts, n), area, np.bincount(rows, weights=counts, minlength=n) / area, SCALINGS)
+    return restored(of_rows(keys, counts, n), area, np.bincount(rows, weights=counts, minlength=n) / area, SCALINGS, counted=True)
 
 
 def irradiance(factors: Factors, emission: np.ndarray, scatter: Scatter, filled=lambda received: received) -> np.ndarray:
