@@ -674,13 +674,6 @@ MISTAKES = (
     ),
     Mistake(
         "exchange/visible_shares.py",
-        "hides_more = part > 0 or not is_convex(caster.geometry.patches)",
-        "hides_more = part > 0",
-        ("test_pair_factors.py",),
-        "a small body that no ray met leaves polygons certain",
-    ),
-    Mistake(
-        "exchange/visible_shares.py",
         "lost = hidden[code] - _hidden(pilot, first)",
         "lost = hidden[code]",
         ("test_pair_factors.py",),

@@ -19,7 +19,6 @@ import numpy as np
 
 from ..sampling.streams import Seed
 from ..tracing.pair_rays import PairRays, Sums
-from .convex import is_convex
 
 BLOCK = 3  # bits: patches of a block are 8
 CLEAR = 16  # pairs of a block that tell, if all arrive, that it is clear
@@ -98,7 +97,7 @@ def visible_shares(caster: PairRays, pairs: Pairs, rays: int, batches: int, seed
     blocked = hidden[code]
     clear = np.zeros(m, bool) if own else _clear(hides, code, hidden, met)
     part = 1 - float(((blocked == 0) | (blocked == met[code])).mean())
-    hides_more = part > 0 or not is_convex(caster.geometry.patches)
+    hides_more = part > 0
     some = np.flatnonzero(~clear)
     told = _told(pilot.take(some), code[some], hidden, met, first, own, part, hides_more)
     taken = pairs.take(some)
@@ -112,7 +111,7 @@ def visible_shares(caster: PairRays, pairs: Pairs, rays: int, batches: int, seed
 def _of_clear(pilot: Sums, weight: np.ndarray, clear: np.ndarray, first: int, hides_more: bool) -> float:
     """Return the variance of the share of a pair whose block looks clear: its own rays had no say in that, and may be hidden.
 
-    Unless nothing can stand in between, one more ray of these pairs may be: that none was found does not mean that none is.
+    Where something stands between others, one more ray of these pairs may be: that none was found does not mean that none is.
     """
     lost = (pilot.squares - pilot.arriving_squares)[clear].astype(np.float64)
     here = weight[clear]
