@@ -97,13 +97,12 @@ def visible_shares(caster: PairRays, pairs: Pairs, rays: int, batches: int, seed
     blocked = hidden[code]
     clear = np.zeros(m, bool) if own else _clear(hides, code, hidden, met)
     part = 1 - float(((blocked == 0) | (blocked == met[code])).mean())
-    hides_more = part > 0
     some = np.flatnonzero(~clear)
-    told = _told(pilot.take(some), code[some], hidden, met, first, own, part, hides_more)
+    told = _told(pilot.take(some), code[some], hidden, met, first, own, part)
     taken = pairs.take(some)
     more = _more(np.sqrt(taken.weight * told.variance), rays - first * m, 2 if own else 0)
     found = _mean(caster, taken, pilot.take(some), told, more, batches, number)
-    values, variances = _sum(pilot, 1.0, first) / first, np.full(m, _of_clear(pilot, pairs.weight, clear, first, hides_more))
+    values, variances = _sum(pilot, 1.0, first) / first, np.full(m, _of_clear(pilot, pairs.weight, clear, first, part > 0))
     values[some], variances[some] = found.values, found.variances
     return Shares(values, variances, first * m + found.rays)
 
@@ -145,7 +144,7 @@ def _clear(hides: np.ndarray, code: np.ndarray, hidden: np.ndarray, met: np.ndar
     return (hidden[code] == hides) & (met[code] >= CLEAR)
 
 
-def _told(pilot: Sums, code, hidden, met, first: int, own: bool, part: float, hides_more: bool) -> Told:
+def _told(pilot: Sums, code, hidden, met, first: int, own: bool, part: float) -> Told:
     seen = np.divide(pilot.arriving, pilot.weights, out=np.ones(len(code)), where=pilot.weights > 0)
     if own:
         known, share = float(first), seen
@@ -156,8 +155,8 @@ def _told(pilot: Sums, code, hidden, met, first: int, own: bool, part: float, hi
         known = first * others
     q = (known * share + UNKNOWN / 2) / (known + UNKNOWN)
     kind = np.searchsorted(KINDS, np.minimum(share, 1 - share), side="right")
-    prior = max(part, hides_more / max(len(code), 1)) * q * (1 - q)
-    if hides_more:  # one ray more of all of a class may not do as all others did
+    prior = max(part, (part > 0) / max(len(code), 1)) * q * (1 - q)
+    if part > 0:  # one ray more of all of a class may not do as all others did
         prior = np.where(kind == 0, np.maximum(prior, 1 / first), prior)
     return Told(first, own, share, q * (1 - q), kind, prior)
 
