@@ -133,7 +133,7 @@ def test_a_pairs_first_ray_has_no_say_about_it():
         hidden, met = np.bincount(code[now], minlength=3), np.bincount(code)
         weights = np.ones(60, np.float32)
         clear = shares._clear(now, code, hidden, met)
-        told = shares._told(Sums(weights, weights * ~now, weights, weights * ~now), code, hidden, met, 1, False, 0.1, True)
+        told = shares._told(Sums(weights, weights * ~now, weights, weights * ~now), code, hidden, met, 1, False, 0.1)
         found.append([clear, told.centre, told.variance, told.kind])
     for turned, after in zip((3, 25, 50), found[1:], strict=True):
         others = np.flatnonzero((code == code[turned]) & (np.arange(60) != turned))
