@@ -9,8 +9,7 @@ from radiosity.algorithms.firing.orders import breadth_first
 from radiosity.device.backend import choose, upload
 from radiosity.problem.quanta import Source, phases, target_counts
 from radiosity.run import budget as budgets
-from radiosity.sampling.numbers import strata
-from radiosity.tracing import lanes
+from radiosity.tracing import lanes, rounds
 
 QUANTA = 40_000
 
@@ -85,22 +84,29 @@ def test_quanta_a_little_above_a_rung_are_met(method):
     np.testing.assert_array_equal(again.irradiance, at_once.irradiance)
 
 
-def test_coherent_firing_traces_the_same_lines(monkeypatch):
-    taken = []
+@pytest.mark.parametrize("colored", [False, True])
+def test_coherent_firing_traces_the_same_lines(monkeypatch, colored):
+    """Few other hits, at ties alone; launches may end anywhere, and rounds begin anywhere."""
+    took, of = [], lanes.Batch.of
 
-    def boxes_for(*given):
-        taken.append(lanes.boxes_for(*given))
-        return taken[-1]
+    def batch(*arguments, **choices):
+        took.append(of(*arguments, **choices))
+        return took[-1]
 
-    monkeypatch.setattr(strata, "FULL", 1)  # boxes of a line each, which few lines fill
-    monkeypatch.setattr(firing, "boxes_for", boxes_for)
-    patches = rd.subdivide(rd.load_scene("labyrinth-0.5"), cells=1)
-    plain = rd.solve(patches, "random-walk", quanta=2_000_000, replicates=1)
-    coherent = rd.solve(patches, quanta=2_000_000, replicates=1, coherent="always")
-    difference = np.abs(plain.state["arrivals"].astype(np.int64) - coherent.state["arrivals"].astype(np.int64)).sum()
-    assert difference < 1e-5 * plain.rays  # ties alone
-    assert any(boxes is not None for boxes in taken)
-    assert coherent.provenance["choices"]["coherent"] == "always"
+    patches = rd.subdivide(rd.load_scene("cornell-box" if colored else "labyrinth-0.5"), cells=1)
+    found = {}
+    for coherent in (False, "always"):
+        with monkeypatch.context() as patched:
+            patched.setattr(rounds, "LEAST", 1)
+            patched.setattr(lanes.Batch, "of", batch)
+            method = rd.Method(coherent=coherent)
+            begun = None if colored else rd.solve(patches, method, quanta=300_001, replicates=2)
+            found[coherent] = rd.solve(patches, method, quanta=2_000_000, replicates=2, resume=begun)
+        assert all(book["closes"] for book in found[coherent].books)
+        assert (sum(one.boxes is not None for one in took) > 5) == (coherent == "always")
+    counts = [one.state["arrivals"].astype(np.int64) for one in found.values()]
+    assert np.abs(counts[0] - counts[1]).sum() < 1e-5 * found[False].rays
+    assert found["always"].provenance["choices"]["coherent"] == "always"
 
 
 @pytest.mark.parametrize("colored", [False, True])
@@ -130,8 +136,8 @@ def test_lanes_of_several_lines_end_in_equal_integers(patches, monkeypatch, shif
     cut = rd.subdivide(rd.load_scene("cornell-box"), cells=2) if colored else patches
     took, of = [], lanes.Batch.of
 
-    def batch(*arguments):
-        took.append(of(*arguments))
+    def batch(*arguments, **choices):
+        took.append(of(*arguments, **choices))
         return took[-1]
 
     monkeypatch.setattr(lanes.Batch, "of", batch)

@@ -10,8 +10,7 @@ import radiosity as rd
 from radiosity.cluster.crew import DaskCrew
 from radiosity.cluster.job import facts
 from radiosity.device.instructions import instructions, widest
-from radiosity.sampling.numbers import strata
-from radiosity.tracing import coherent_costs, lanes
+from radiosity.tracing import coherent_costs
 
 ASKED, GATHER = rd.Method(coherent=True), rd.Method(order="gather", coherent=True)
 
@@ -46,7 +45,7 @@ def test_the_instructions_of_this_machine_are_known():
 
 
 @pytest.mark.parametrize(
-    ("name", "firing", "gather"), [("avx2", None, None), ("avx512", 50_000, None), ("neon", None, None), ("unknown", None, None)]
+    ("name", "firing", "gather"), [("avx2", None, None), ("avx512", 2304, None), ("neon", None, None), ("unknown", None, None)]
 )
 def test_the_table_says_who_fires_packets(machine, name, firing, gather):
     machine(name)
@@ -61,7 +60,7 @@ def test_the_table_says_who_fires_packets(machine, name, firing, gather):
 def test_where_packets_lose_a_run_says_so_and_fires_as_without_them(machine, room):
     machine("avx2")
     plain = rd.solve(room, rd.Method(), quanta=1 << 12, replicates=2)
-    with pytest.warns(rd.RadiosityWarning, match="no packets are fired, since with AVX2 packets of lines take longer") as told:
+    with pytest.warns(rd.RadiosityWarning, match="no packets are fired, since with AVX2 nobody has measured") as told:
         asked = rd.solve(room, quanta=1 << 12, replicates=2, coherent=True)
     assert len(told) == 1
     assert np.array_equal(asked.radiosity, plain.radiosity)
@@ -77,24 +76,13 @@ def test_a_run_goes_on_under_the_rule_that_it_began_with(machine, room):
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # nothing to tell where packets pay
         begun = rd.solve(room, quanta=1 << 12, replicates=2, coherent=True)
-    assert begun.provenance["packets"] == "from 50000 lines a patch"
+    assert begun.provenance["packets"] == "from 2304 lines a patch"
     machine("avx2")
-    with pytest.raises(rd.MethodError, match=r"packets \(from 50000 lines a patch then, none now\)"):
+    with pytest.raises(rd.MethodError, match=r"packets \(from 2304 lines a patch then, none now\)"):
         rd.solve(room, quanta=1 << 13, replicates=2, coherent=True, resume=begun)
     always = rd.solve(room, quanta=1 << 12, replicates=2, coherent="always")
     machine("avx512")
     rd.solve(room, quanta=1 << 13, replicates=2, coherent="always", resume=always)
-
-
-def test_boxes_wait_for_the_lines_of_the_table():
-    from radiosity.device.backend import choose, upload
-
-    types = choose("cpu").types
-    filled = strata.lines(*strata.SIZES[0])
-    counts = upload(types.UInt32, np.array([filled, filled + 9, 3], np.uint32))
-    assert lanes.boxes_for(types, counts).count == strata.boxes(*strata.SIZES[0])
-    assert lanes.boxes_for(types, counts, filled) is not None
-    assert lanes.boxes_for(types, counts, filled + 1) is None  # one of two patches fires too few: half of the lines
 
 
 @pytest.mark.parametrize(("coherent", "refused"), [(True, True), ("always", False), (False, False)])

@@ -76,9 +76,7 @@ def test_what_the_lines_of_a_small_plate_find_counts_where_a_large_one_missed_it
     patches = rd.subdivide(scene_of([("hot", [quad((0, 0, 0), (1, 0, 0), (0, 1, 0))]), ("load", [load])]), cells=1)
     exact = exchange(patches.corners[:1], patches.corners[1:])[0] * (black(1000) - black(300))
     for seed in range(6):
-        heat = rd.radiative_exchange(
-            patches, {"hot": 1000, "load": 300}, emissivity=1, surroundings=300, rays=2_000, seed=seed
-        )
+        heat = rd.radiative_exchange(patches, {"hot": 1000, "load": 300}, emissivity=1, surroundings=300, rays=2_000, seed=seed)
         assert abs(heat.exchange[0, 1] - exact) < 7 * heat.exchange_standard_error[0, 1]
         assert heat.exchange_standard_error[0, 1] < 0.2 * exact
 

@@ -9,13 +9,14 @@ from typing import Any
 
 from ..device.instructions import instructions
 from ..errors import RadiosityWarning
+from ..sampling.numbers import strata
 
 ALWAYS = "always"  # in place of True: packets wherever lines fill boxes, on any processor
 NEVER = None
 NAMES = {"avx512": "AVX-512", "avx2": "AVX2", "avx": "AVX", "neon": "NEON", "cuda": "a GPU"}
-# lines that a patch must fire in a wavefront; `NEVER`: packets lose, whatever the number
-FIRING: dict[str, int | None] = {"avx512": 50_000, "avx2": NEVER}
-GATHER: dict[str, int | None] = {"avx2": NEVER}  # packets always have 16 lines there: 0 where they gain
+# lines of a patch in the smallest rounds that are traced in packets (`rounds`); `NEVER`: packets lose, whatever the number
+FIRING: dict[str, int | None] = {"avx512": strata.lines(*strata.SIZES[0])}
+GATHER: dict[str, int | None] = {"avx512": NEVER, "avx2": NEVER}  # packets always have 16 lines there: 0 where they gain
 
 
 def fewest_lines(method: Any, device: str) -> int | None:

@@ -6,14 +6,12 @@ from typing import Any
 
 import drjit as dr
 
-from ..device.backend import upload
-from ..sampling.numbers import strata
+from .boxes import Boxes
 
 CHUNK = 1 << 20  # lanes of one launch on a CPU: enough to keep all cores busy, and little memory to touch
 CORE_CHUNK = 1 << 18  # lanes for each core where cores are many: launches wait for the last one (measured on 4 to 16 cores)
 CUDA_CHUNK = 1 << 24  # lanes of one launch on a GPU, which runs many more lanes at a time, and has memory for them
 PIECE = 1 << 18  # patches of a batch: memory is needed for the patches of one batch, not for all of them at a time
-MOST_LINES = 0.9  # of a batch: so many are of patches that fill the boxes of coherent firing; with the other lines packets lose
 
 
 @dataclass(frozen=True)
@@ -36,10 +34,10 @@ class Wavefront:
     blocks: Callable[[Any], Any] | None = None
 
     def batches(self, types, target_counts, fired, records, shifts: tuple[int, ...] = ()) -> "Iterator[Batch]":
-        """Yield a batch at a time, of 2^shift lines a lane: the largest of ``shifts`` that leaves few lanes half empty, else one
-        line.
+        """Yield a batch at a time, with as many lines a lane as `Batch.filled` chooses.
 
         Args:
+            shifts: what it chooses from.
             target_counts: gives the target counts of patch numbers. fired: UInt32, the fired count of each patch.
             records: gives two words for patch numbers.
 
@@ -57,13 +55,13 @@ class Wavefront:
             counts = target_counts(numbers) - before if self.counts is None else dr.gather(types.UInt32, self.counts, at)
             counts = dr.select(inside, counts, 0)
             dr.schedule(counts, before)
-            whole = self.size <= PIECE and not shifts  # then the number of lines is known: the host does not wait for it
-            lines, *lanes = (self.total,) if whole else sums(types, counts, *(lanes_of(counts, shift) for shift in shifts))
-            if not lines:
-                continue
-            shift, total = fullest(lines, {0: lines, **dict(zip(shifts, lanes, strict=True))})
             blocks = None if self.blocks is None else self.blocks(numbers)
-            yield Batch.of(types, numbers, counts, before, records, first, shift, total, blocks)
+            if self.size <= PIECE and not shifts:  # then the number of lines is known: the host does not wait for it
+                yield Batch.of(types, numbers, counts, before, records, first, total=self.total, blocks=blocks)
+                continue
+            batch = Batch.filled(types, numbers, counts, before, records, first, shifts, blocks)
+            if batch is not None:
+                yield batch
 
 
 @dataclass(frozen=True)
@@ -83,6 +81,7 @@ class Batch:
         total: lanes of all patches.
         each: lines of a lane; the last lane of a patch takes what is left. 1, or UInt32, which gives one kernel for all sizes.
         blocks: UInt32, the block that holds all the lines which each patch fires now; None where that is the first.
+        boxes: the order of the lines of each patch, which are whole rounds, traced in packets (`rounds`); None: as counted.
     """
 
     numbers: Any
@@ -95,10 +94,20 @@ class Batch:
     total: int
     each: Any
     blocks: Any = None
+    boxes: Boxes | None = None
 
     @staticmethod
     def of(
-        types, numbers, counts, fired, records, start=0, shift: int = 0, total: int | None = None, blocks: Any = None
+        types,
+        numbers,
+        counts,
+        fired,
+        records,
+        start=0,
+        shift: int = 0,
+        total: int | None = None,
+        blocks: Any = None,
+        boxes: Boxes | None = None,
     ) -> "Batch":
         """Make a batch of one or more patches.
 
@@ -107,6 +116,7 @@ class Batch:
             records: gives two words for patch numbers.
             shift: a lane has 2^shift lines.
             total: lanes of all patches, where it is known.
+            boxes: an order of lines; only where there are two or more patches.
         """
         if dr.width(numbers) == 1:
             both = paired(types, dr.arange(types.UInt32, 1))
@@ -122,16 +132,26 @@ class Batch:
         dr.eval(begins, entries)
         last = dr.width(counts) - 1
         total = int(begins[last]) + int(lanes[last]) if total is None else total
-        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each, blocks)
+        return Batch(numbers, counts, lanes, begins, fired, entries, start, total, each, blocks, boxes)
+
+    @staticmethod
+    def filled(
+        types, numbers, counts, fired, records, start=0, shifts: tuple[int, ...] = (), blocks: Any = None
+    ) -> "Batch | None":
+        """Make a batch of 2^shift lines a lane: the largest of ``shifts`` that leaves few lanes half empty, else one line.
+
+        It returns None where there are no lines. Other arguments: see `of`.
+        """
+        lines, *lanes = sums(types, counts, *(lanes_of(counts, shift) for shift in shifts))
+        if not lines:
+            return None
+        shift, total = fullest(lines, {0: lines, **dict(zip(shifts, lanes, strict=True))})
+        return Batch.of(types, numbers, counts, fired, records, start, shift, total, blocks)
 
     @property
     def several(self) -> bool:
         """True where a lane has more than one line."""
         return not isinstance(self.each, int)
-
-    def one_by_one(self, types, records) -> "Batch":
-        """Return a batch of the same lines with one line a lane, as boxes need them."""
-        return Batch.of(types, self.numbers, self.counts, self.fired, records, self.start, blocks=self.blocks)
 
     def launches(self, types, begin: int = 0, end: int | None = None, limit: int | None = None) -> "Iterator[Launch]":
         """Yield launches of a bounded number of lanes: a multiple of `chunk`, whatever the number of threads.
@@ -205,22 +225,15 @@ class Launch:
         """Return a mask of the lanes that hold lines."""
         return types.UInt64(dr.arange(types.UInt32, self.width)) + self.first < self.end
 
-    def read(self, types, boxes: "Boxes | None" = None):
+    def read(self, types):
         """Return patch number, index of the first line, and patch record of each lane; called in a kernel of this width.
 
         Indices are counted from 1 on, modulo 2^32, see `block`.
-
-        Args:
-            boxes: an order of lines for coherent firing; only where lanes have one line.
         """
         batch = self.batch
         number, ahead, face, place = dr.gather(types.Array4u, batch.entries, self.rank)
         index = (dr.arange(types.UInt32, self.width) + types.UInt32(self.first)) * batch.each + ahead
-        if boxes is None:
-            return number, index, (face, place)
-        base = dr.gather(types.UInt32, batch.fired, self.rank) + 1
-        count = dr.gather(types.UInt32, batch.counts, self.rank)
-        return number, base + by_boxes(types, base, index - base, count, boxes), (face, place)
+        return number, index, (face, place)
 
     def block(self, types):
         """Return the block of each lane's lines; None where all are in the first one. Called in a kernel."""
@@ -237,41 +250,6 @@ class Launch:
         return dr.select(self.mask(types), lines, 0)
 
 
-@dataclass(frozen=True)
-class Boxes:
-    """Boxes of like directions, see `sampling.numbers.strata`.
-
-    Attributes:
-        count: how many there are.
-        walk: UInt32, the order in which lines take them.
-    """
-
-    count: int
-    walk: Any
-
-
-def by_boxes(types, base, within, count, boxes: Boxes):
-    """Return which of a patch's ``count`` lines from ``base`` on is fired as the ``within``-th, when lines go box by box.
-
-    As many whole cycles of the boxes as fit are permuted. The rest, less than a cycle, keeps its order.
-    """
-    n = boxes.count
-    cycles = count // n
-    box = _quotient(types, within, cycles)
-    whole = within < cycles * n
-    offset = dr.gather(types.UInt32, boxes.walk, box, whole) + n - base % n
-    offset = dr.select(offset >= n, offset - n, offset)
-    return dr.select(whole, offset + (within - box * cycles) * n, within)
-
-
-def _quotient(types, dividend, divisor):
-    """Return a quotient of 32-bit numbers, exact while it is below 2^20: a single precision guess, at most one off, is mended."""
-    guess = types.UInt32(types.Float(dividend) / types.Float(divisor))
-    rest = types.Int(dividend - guess * divisor)
-    guess = dr.select(rest < 0, guess - 1, guess)
-    return dr.select(rest >= types.Int(divisor), guess + 1, guess)
-
-
 def few_sizes(size: int) -> int:
     """Round a size up to one of four sizes an octave, since Dr.Jit gives freed memory to arrays of the same size alone."""
     step = 1 << max((size - 1).bit_length() - 3, 1)
@@ -285,16 +263,3 @@ def sums(types, *columns) -> tuple[int, ...]:
         dr.scatter_add(total, types.UInt64(column), dr.full(types.UInt32, i, dr.width(column)), mode=dr.ReduceMode.Expand)
     dr.eval(total)
     return tuple(int(total[i]) for i in range(len(columns)))
-
-
-def boxes_for(types, counts, fewest: int = 0) -> Boxes | None:
-    """Return the finest boxes of coherent firing that the patches of most lines fill; None where boxes would not pay.
-
-    Args:
-        counts: UInt32, lines of each patch.
-        fewest: lines that a patch must fire at least, see `coherent_costs`.
-    """
-    filling = [dr.select(counts >= max(strata.lines(*size), fewest), counts, 0) for size in strata.SIZES]
-    total, *filled = sums(types, counts, *filling)
-    fitting = [size for size, lines in zip(strata.SIZES, filled, strict=True) if total and lines >= MOST_LINES * total]
-    return Boxes(strata.boxes(*fitting[-1]), upload(types.UInt32, strata.walk(*fitting[-1]))) if fitting else None

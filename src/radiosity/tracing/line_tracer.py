@@ -125,9 +125,14 @@ class LineTracer:
     def _magic(self):
         return dr.opaque(self.types.UInt32, (2**32 - 1) // self.n)
 
+    @property
+    def own_lines(self) -> int:
+        """How many lines of a row take a randomisation of its own, in the first block."""
+        return own_lines(self.n) if self.by_patch else 0
+
     @cached_property
     def _own_lines(self):
-        return dr.opaque(self.types.UInt32, own_lines(self.n))
+        return dr.opaque(self.types.UInt32, self.own_lines)
 
     @cached_property
     def _records(self):
@@ -187,6 +192,10 @@ class LineTracer:
     def points_in_turn(self, first, number, replicate, record, bits: int, turns: int, block: Any = None):
         """Return the numbers of ``turns`` lines of each row from the ``first``-th on, see `AbstractNumbers.in_turn`."""
         return self.numbers.in_turn(first, *self._stream(number, replicate, record, block), bits, turns)
+
+    def points_at(self, index, number, replicate, record, bits: int, block: Any, turn):
+        """Return the numbers of the line of each row whose index the function ``index`` gives for this turn."""
+        return self.points(number, index(turn), replicate, record, bits, block)
 
     def trace(self, number, index, record, bits: int, block: Any = None):
         """Return the slot in which the ``index``-th line (from 1) of each row ends, in its block (see `points`)."""

@@ -101,7 +101,7 @@ def _most(counters: FiringCounters) -> int:
 
 def _can_be_parted(counters: FiringCounters, numbers) -> bool:
     """Return whether a wavefront with bands may be fired in parts: one of all rows, that is neither wide nor coherent."""
-    return numbers is None and not counters.wide and counters.packets_from is None
+    return numbers is None and not counters.wide and not counters.rounds
 
 
 def _left(counters: FiringCounters) -> tuple[Wavefront | None, int]:

@@ -1,6 +1,7 @@
 """Firing: the lines of a wavefront are traced, and their hits counted."""
 
 from collections.abc import Iterator
+from functools import partial
 
 import drjit as dr
 import numpy as np
@@ -10,7 +11,8 @@ from ...device.launches import shared
 from ...device.recorded import loop
 from ...tally.hit_tally import AbstractHitTally, hit_tally
 from ...tally.wraps import PERIOD
-from ...tracing.lanes import Batch, Launch, Wavefront, boxes_for
+from ...tracing.lanes import Batch, Launch, Wavefront
+from ...tracing.rounds import split
 from ..base import Interrupted
 from .counters import FiringCounters
 from .elsewhere import fire_elsewhere
@@ -36,20 +38,17 @@ def fire(counters: FiringCounters, wavefront: Wavefront, largest: int) -> None:
         if firer.over:
             raise Interrupted("interrupted")
         return
-    types = counters.types
     bits = counters.tracer.numbers.bits_for(largest)
     few = wavefront.total <= FEW and wavefront.blocks is None and not counters.parted
     everywhere = wavefront.blocks is not None or counters.parted or (not few and MANY * wavefront.total >= counters.total)
     tally, landed = hit_tally(counters.hits, wavefront.total, flags=not few and not everywhere), []
-    for batch in batches(counters, wavefront, () if few else _shifts(counters, wavefront)):
-        boxes = None if counters.packets_from is None else boxes_for(types, batch.counts, counters.packets_from)
-        if boxes is not None and batch.several:
-            batch = batch.one_by_one(types, counters.tracer.record)
-        for launch in batch.launches(types):
-            places = _fire(counters, launch, 32 if few else bits, boxes, few, tally)
+    shifts = () if few else _shifts(counters, wavefront)
+    for batch in batches(counters, wavefront, shifts):
+        for launch in _launches(counters, batch, shifts):
+            places = _fire(counters, launch, 32 if few else bits, few, tally)
             if few:
                 landed.append(frozen(places)[: launch.lanes])
-            counters.unseen += launch.lanes << (max(SHIFTS) if batch.several else 0)
+            counters.unseen += launch.lanes << (max(SHIFTS) if launch.batch.several else 0)
             if counters.unseen > PERIOD:
                 tally.settle()
                 counters.look()
@@ -69,6 +68,15 @@ def batches(counters: FiringCounters, wavefront: Wavefront, shifts: tuple[int, .
     return wavefront.batches(counters.types, counters.target_counts_before, counters.fired, tracer.record, shifts)
 
 
+def _launches(counters: FiringCounters, batch: Batch, shifts: tuple[int, ...]) -> Iterator[Launch]:
+    """Yield the launches of a batch, those of packets first."""
+    types, tracer, parts = counters.types, counters.tracer, [batch]
+    if counters.rounds:
+        parts = split(types, batch, tracer.record, shifts, counters.rounds, tracer.own_lines)
+    for part in parts:
+        yield from part.launches(types)
+
+
 def _shifts(counters: FiringCounters, wavefront: Wavefront) -> tuple[int, ...]:
     """Return the binary logarithms of the lines of a lane; () for one line a lane.
 
@@ -80,14 +88,14 @@ def _shifts(counters: FiringCounters, wavefront: Wavefront) -> tuple[int, ...]:
     return SHIFTS if many else ()
 
 
-def _fire(counters: FiringCounters, launch: Launch, bits: int, boxes, few: bool, tally: AbstractHitTally):
+def _fire(counters: FiringCounters, launch: Launch, bits: int, few: bool, tally: AbstractHitTally):
     """Trace the lines of one launch. Return the slots that they hit where there are few lines."""
     types, tracer, bands = counters.types, counters.tracer, counters.bands
-    number, first, record = launch.read(types, boxes)
+    number, first, record = launch.read(types)
     replicate = tracer.replicate_or_none(number)
     lines = tracer.leave(record)
     powers = [] if bands is None else bands.carried(types, launch)
-    block = launch.block(types)
+    block, boxes = launch.block(types), launch.batch.boxes
 
     def trace(numbers, active):
         landed = tracer.land_in(lines(numbers), replicate, boxes is not None, active)
@@ -102,7 +110,12 @@ def _fire(counters: FiringCounters, launch: Launch, bits: int, boxes, few: bool,
     if not launch.batch.several:
         landed = trace(tracer.points(number, first, replicate, record, bits, block), launch.mask(types, always=few))
     else:
-        points = tracer.points_in_turn(first, number, replicate, record, bits, 1 << max(SHIFTS), block)
+        if boxes is None:
+            points = tracer.points_in_turn(first, number, replicate, record, bits, 1 << max(SHIFTS), block)
+        else:
+            index = boxes.turns(types, first, launch.rank, launch.batch.each)
+            points = partial(tracer.points_at, index, number, replicate, record, bits, block)
+        tracer.geometry.prepare_hits()  # nothing can be made in a loop
         count = launch.lines(types, first)
         loop((types.UInt32(0),), lambda turn: turn < count, turn_by_turn)
     if few:
