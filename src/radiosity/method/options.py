@@ -101,14 +101,14 @@ METHOD = table(
     ),
     Option(
         "coherent",
-        "Trace similar lines together where a table of measured costs says that it pays: with AVX-512, where patches fire 50 000 "
+        "Trace similar lines together where a table of measured costs says that it pays: with AVX-512, where patches fire 2304 "
         "lines or more in a wavefront. Bits may differ where a line meets two faces in one point.",
         kind="flag",
         values={"always": "on any processor, wherever patches fire enough lines"},
         tuning=True,
         details="It sets Embree's coherent flag: at an exact tie of two faces the winner then depends on the packet of lines. "
-        "Where it does not pay, as with AVX2, a warning says so, and lines are traced as without it. In Python 'always' does it "
-        "on any processor.",
+        "Where it does not pay, or nobody has measured that it does, as with AVX2, a warning says so, and lines are traced as "
+        "without it. In Python 'always' does it on any processor.",
     ),
 )
 
