@@ -8,6 +8,8 @@ import drjit as dr
 from ..device.backend import upload
 from ..sampling.numbers import strata
 
+SHIFT = 3  # 8 lines a lane, of neighbouring boxes: what the lines of a patch have in common is found once for them
+
 
 @dataclass(frozen=True)
 class Boxes:
@@ -35,18 +37,18 @@ class Boxes:
         dr.eval(entries)
         return Boxes(dr.opaque(types.UInt32, count), upload(types.UInt32, strata.walk(*size)), entries)
 
-    def turns(self, types, index, rank, each):
+    def turns(self, types, index, rank):
         """Return a function from the turn of a lane to the index of its line then, when lines go box by box; called in a kernel.
 
-        A lane takes a line of ``each`` boxes in a row, 8 at most, and the lanes of a packet those of the same boxes.
+        A lane takes a line of 2^`SHIFT` boxes in a row, and the lanes of a packet those of the same boxes.
 
         Args:
             index: of the lane's first line, as they are counted. rank: of its patch.
         """
         first, lines, ahead, _ = dr.gather(types.Array4u, self.entries, rank)
-        lane = _quotient(types, index - first, each)
+        lane = (index - first) >> SHIFT
         row = _quotient(types, lane, lines)
-        box, start = row * each, first + (lane - row * lines) * self.count
+        box, start = row << SHIFT, first + (lane - row * lines) * self.count
 
         def turned(turn):
             offset = dr.gather(types.UInt32, self.walk, box + turn) + ahead
@@ -56,7 +58,7 @@ class Boxes:
 
 
 def _quotient(types, dividend, divisor):
-    """Return a quotient of 32-bit numbers, exact while it is below 2^20: a single precision guess, at most one off, is mended."""
+    """Return a quotient of 32-bit numbers; it must be below 2^20. A single precision guess, at most one off, is mended."""
     guess = types.UInt32(types.Float(dividend) / types.Float(divisor))
     rest = types.Int(dividend - guess * divisor)
     guess = dr.select(rest < 0, guess - 1, guess)

@@ -13,10 +13,10 @@ THREADS = 2
 A_ROW = 8  # lines for each row, from which passes over all rows take little of the time
 
 
-def most_lines(device: str, rows: int) -> int:
-    """Return the most lines of a part."""
+def most_lines(device: str, rows: int, even: bool = False) -> int:
+    """Return the most lines of a part; where it is to be even, the same on any number of threads, as packets need it."""
     small, large = MOST[device]
-    if device == "cpu" and dr.thread_count() < THREADS:
+    if device == "cpu" and not even and dr.thread_count() < THREADS:
         small, large = small // THREADS, large // THREADS
     return min(max(A_ROW * rows, small), large)
 

@@ -9,68 +9,85 @@ lies on one side of that border. Rounds before it begin with the first line, and
 left are consecutive lines.
 """
 
+from dataclasses import dataclass
+from typing import Any
+
 import drjit as dr
+import numpy as np
 
-from ..patches.model import Patches
+from ..device.backend import upload
 from ..sampling.numbers import strata
-from .boxes import Boxes
+from .boxes import SHIFT, Boxes
 from .lanes import Batch, sums
+from .line_tracer import LineTracer
 
-Size = tuple[int, int]  # of `strata.SIZES`
 LEAST = 1 << 16  # lines in rounds of one size: fewer gain less than their launches take
 FACES = 75  # in one box, in the mean: more of them, and lines that go the same way meet too many of them (measured)
-SHIFT = 3  # 8 lines a lane, of neighbouring boxes: what the lines of a patch have in common is found once for them
+BESIDE = 64  # faces that parallel lines from all of a patch may pass: more of them, and the lines of a packet part (measured)
 
 
-def sizes_for(patches: Patches, fewest: int) -> tuple[Size, ...]:
-    """Return the sizes of boxes whose rounds pay in a scene, the coarsest first.
+@dataclass(frozen=True)
+class Rounds:
+    """The rounds that pay in a scene.
 
-    Faces count by their area: ``sum(area)**2 / sum(area**2)`` of them are as many as there are where all are equal, and few where
-    walls are large and things small.
-
-    Args:
-        fewest: lines of the smallest rounds, see `coherent_costs`.
+    Attributes:
+        sizes: of boxes, from `strata.SIZES`, the coarsest first.
+        small: Bool of each row, that it is small enough; None: all are.
     """
-    area = patches.scene.area
-    faces = area.sum() ** 2 / (area**2).sum()
-    return tuple(size for size in strata.SIZES if strata.lines(*size) >= fewest and faces <= FACES * strata.boxes(*size))
 
+    sizes: tuple[tuple[int, int], ...]
+    small: Any = None
 
-def split(types, batch: Batch, records, shifts: tuple[int, ...], sizes: tuple[Size, ...], own: int) -> list[Batch]:
-    """Return batches of the same lines: rounds of each size, then what is left.
+    @staticmethod
+    def of(tracer: LineTracer, fewest: int) -> "Rounds | None":
+        """Return the rounds for a tracer's scene; None where none pay.
 
-    Args:
-        batch: lines of patches; its lanes are not used.
-        records, shifts: see `Batch.filled`, of what is left.
-        sizes: those that pay, see `sizes_for`.
-        own: how many lines of a patch take its own randomisation; of the first block alone.
-    """
-    least = strata.lines(*sizes[0]) if sizes else 0
-    if not sizes or sums(types, dr.select(batch.counts >= least, batch.counts, 0))[0] < LEAST:
-        return [batch]
-    before = dr.select(batch.fired < own, own - batch.fired, 0)
-    if batch.blocks is not None:
-        before = dr.select(batch.blocks == 0, before, 0)
-    before = dr.minimum(batch.counts, before)
-    left, ends = [before, batch.counts - before], [batch.fired, batch.fired + batch.counts]
-    result = []
+        In a box there are faces by their area: ``sum(area)**2 / sum(area**2)`` are as many as there are where all are equal, and
+        few where walls are large and things small. Beside the lines of a patch there are as many as its share of the area of all.
 
-    def take(size: Size, side: int, counts) -> None:
-        start = ends[side] if side == 0 else ends[side] - counts
-        left[side] = left[side] - counts
-        ends[side] = start + counts if side == 0 else start
-        dr.eval(start, counts, left[side], ends[side])
-        boxes = Boxes.of(types, size, start, counts)
-        result.append(
-            Batch.of(types, batch.numbers, counts, start, records, batch.start, SHIFT, blocks=batch.blocks, boxes=boxes)
-        )
+        Args:
+            fewest: lines of the smallest rounds, see `coherent_costs`.
+        """
+        patches = tracer.geometry.patches
+        area = patches.scene.area
+        faces = area.sum() ** 2 / (area**2).sum()
+        sizes = tuple(size for size in strata.SIZES if strata.lines(*size) >= fewest and faces <= FACES * strata.boxes(*size))
+        small = np.ones(tracer.n, bool)  # lights, too
+        small[: len(patches)] = patches.area * len(area) <= BESIDE * area.sum()
+        if not sizes or not small.any():
+            return None
+        return Rounds(sizes, None if small.all() else upload(tracer.types.Bool, small))
 
-    for size in reversed(sizes):
-        lines = strata.lines(*size)
-        rounds = [some // lines * lines for some in left]
-        dr.schedule(*rounds)
-        for side, total in enumerate(sums(types, *rounds)):
-            if total >= LEAST:
-                take(size, side, rounds[side])
-    rest = Batch.filled(types, batch.numbers, left[0] + left[1], ends[0], records, batch.start, shifts, batch.blocks)
-    return result if rest is None else [*result, rest]
+    def split(self, tracer: LineTracer, batch: Batch, shifts: tuple[int, ...]) -> list[Batch]:
+        """Return batches of the same lines: rounds of each size, then what is left, with ``shifts`` as in `Batch.filled`."""
+        types, counts, least = tracer.types, batch.counts, strata.lines(*self.sizes[0])
+        if self.small is not None:
+            row = batch.numbers - tracer.replicate(batch.numbers) * tracer.n_opaque
+            counts = dr.select(dr.gather(types.Bool, self.small, row), counts, 0)
+        if sums(types, dr.select(counts >= least, counts, 0))[0] < LEAST:
+            return [batch]
+        before = dr.select(batch.fired < tracer.own_lines, tracer.own_lines - batch.fired, 0)
+        if batch.blocks is not None:
+            before = dr.select(batch.blocks == 0, before, 0)
+        before = dr.minimum(counts, before)
+        left, ends = [before, counts - before], [batch.fired, batch.fired + counts]
+        result = []
+
+        def take(size: tuple[int, int], side: int, counts) -> None:
+            start = ends[side] if side == 0 else ends[side] - counts
+            left[side] = left[side] - counts
+            ends[side] = start + counts if side == 0 else start
+            dr.eval(start, counts, left[side], ends[side])
+            given = {"blocks": batch.blocks, "boxes": Boxes.of(types, size, start, counts)}
+            result.append(Batch.of(types, batch.numbers, counts, start, tracer.record, batch.start, SHIFT, **given))
+
+        for size in reversed(self.sizes):
+            lines = strata.lines(*size)
+            rounds = [some // lines * lines for some in left]
+            dr.schedule(*rounds)
+            for side, total in enumerate(sums(types, *rounds)):
+                if total >= LEAST:
+                    take(size, side, rounds[side])
+        rest = left[0] + left[1] + (batch.counts - counts)
+        rest = Batch.filled(types, batch.numbers, rest, ends[0], tracer.record, batch.start, shifts, batch.blocks)
+        return result if rest is None else [*result, rest]

@@ -24,7 +24,7 @@ from ...tracing.coherent_costs import fewest_lines
 from ...tracing.geometry import Geometry
 from ...tracing.lanes import sums
 from ...tracing.line_tracer import LineTracer
-from ...tracing.rounds import sizes_for
+from ...tracing.rounds import Rounds
 from .elsewhere import Firer
 from .targets import TargetCounts
 
@@ -46,15 +46,15 @@ class FiringCounters:
         parted: True where the last wavefront has a part of the lines that were due, or of those of a wavefront with bands.
         wide: True where 32 bits may be too few for the next wavefront.
         swept: lines of the wavefronts so far.
-        rounds: sizes of boxes whose rounds are traced in packets; () without packets.
+        rounds: which lines are traced in packets; None: none.
         unseen: at least the number of lines since counters were looked at.
     """
 
     def __init__(self, geometry: Geometry, problem: Problem, method: Method, seed: Seed | int, replicates: int):
         self.problem, self.source = problem, problem.source
-        fewest = fewest_lines(method, geometry.device.name)
-        self.rounds = () if fewest is None else sizes_for(geometry.patches, fewest)
         self.tracer = LineTracer.of(geometry, method.points, method.randomisation, seed, replicates, problem.lights)
+        fewest = fewest_lines(method, geometry.device.name)
+        self.rounds = None if fewest is None else Rounds.of(self.tracer, fewest)
         self.types, self.total = self.tracer.types, self.tracer.total
         self.targets = TargetCounts(self.tracer, self.source, phases(seed, replicates, self.tracer.n))
         self.fired, self.fired_upper = dr.opaque(self.types.UInt32, 0, self.total), Wraps(self.types)

@@ -96,12 +96,12 @@ def _most(counters: FiringCounters) -> int:
     """Return the most lines of a wavefront; where others fire it, each gets a part of it."""
     if counters.firer is not None:
         return counters.firer.most
-    return most_lines(counters.tracer.geometry.device.name, counters.total)
+    return most_lines(counters.tracer.geometry.device.name, counters.total, even=counters.rounds is not None)
 
 
 def _can_be_parted(counters: FiringCounters, numbers) -> bool:
     """Return whether a wavefront with bands may be fired in parts: one of all rows, that is neither wide nor coherent."""
-    return numbers is None and not counters.wide and not counters.rounds
+    return numbers is None and not counters.wide and counters.rounds is None
 
 
 def _left(counters: FiringCounters) -> tuple[Wavefront | None, int]:

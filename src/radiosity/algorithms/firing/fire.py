@@ -12,7 +12,6 @@ from ...device.recorded import loop
 from ...tally.hit_tally import AbstractHitTally, hit_tally
 from ...tally.wraps import PERIOD
 from ...tracing.lanes import Batch, Launch, Wavefront
-from ...tracing.rounds import split
 from ..base import Interrupted
 from .counters import FiringCounters
 from .elsewhere import fire_elsewhere
@@ -70,11 +69,9 @@ def batches(counters: FiringCounters, wavefront: Wavefront, shifts: tuple[int, .
 
 def _launches(counters: FiringCounters, batch: Batch, shifts: tuple[int, ...]) -> Iterator[Launch]:
     """Yield the launches of a batch, those of packets first."""
-    types, tracer, parts = counters.types, counters.tracer, [batch]
-    if counters.rounds:
-        parts = split(types, batch, tracer.record, shifts, counters.rounds, tracer.own_lines)
-    for part in parts:
-        yield from part.launches(types)
+    rounds = counters.rounds
+    for part in [batch] if rounds is None else rounds.split(counters.tracer, batch, shifts):
+        yield from part.launches(counters.types)
 
 
 def _shifts(counters: FiringCounters, wavefront: Wavefront) -> tuple[int, ...]:
@@ -113,7 +110,7 @@ def _fire(counters: FiringCounters, launch: Launch, bits: int, few: bool, tally:
         if boxes is None:
             points = tracer.points_in_turn(first, number, replicate, record, bits, 1 << max(SHIFTS), block)
         else:
-            index = boxes.turns(types, first, launch.rank, launch.batch.each)
+            index = boxes.turns(types, first, launch.rank)
             points = partial(tracer.points_at, index, number, replicate, record, bits, block)
         tracer.geometry.prepare_hits()  # nothing can be made in a loop
         count = launch.lines(types, first)
