@@ -8,7 +8,7 @@ import pytest
 import radiosity as rd
 from radiosity.device.backend import choose, upload
 from radiosity.sampling.numbers import strata
-from radiosity.tracing import lanes, parts, rounds
+from radiosity.tracing import lanes, rounds
 from radiosity.tracing.geometry import Geometry
 from radiosity.tracing.line_tracer import LineTracer
 
@@ -141,11 +141,3 @@ def test_boxes_that_see_too_many_faces_do_not_pay():
     assert found(patches(floor), 50_000).sizes == ((7, 3), (8, 3), (8, 4))
     assert large.small is None
     assert np.array_equal(np.flatnonzero(~np.asarray(small.small)), [0])  # its lines pass beside all the tiles
-
-
-def test_parts_of_a_wavefront_are_the_same_on_one_thread(monkeypatch):
-    """Where they end decides which lines make up packets, and that decides exact ties."""
-    two = parts.most_lines("cpu", 10, even=True)
-    monkeypatch.setattr(parts.dr, "thread_count", lambda: 1)
-    assert parts.most_lines("cpu", 10, even=True) == two
-    assert parts.most_lines("cpu", 10) < two

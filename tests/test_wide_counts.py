@@ -204,25 +204,26 @@ def test_wavefronts_in_parts_give_the_same_integers(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("rows", "threads", "firer", "most"),
+    ("rows", "threads", "firer", "rounds", "most"),
     [
-        (5, 2, None, 1 << 24),
-        (5, 16, None, 1 << 24),
-        (5, 1, None, 1 << 23),
-        (3 << 20, 2, None, 3 << 23),
-        (1 << 30, 2, None, 1 << 25),
-        (1 << 30, 1, None, 1 << 24),
-        (5, 1, SimpleNamespace(most=7), 7),
+        (5, 2, None, None, 1 << 24),
+        (5, 16, None, None, 1 << 24),
+        (5, 1, None, None, 1 << 23),
+        (5, 1, None, "some", 1 << 24),  # where a part ends decides which lines make up packets, and so exact ties
+        (3 << 20, 2, None, None, 3 << 23),
+        (1 << 30, 2, None, None, 1 << 25),
+        (1 << 30, 1, None, None, 1 << 24),
+        (5, 1, SimpleNamespace(most=7), None, 7),
     ],
 )
-def test_wavefronts_last_some_seconds(rows, threads, firer, most, monkeypatch):
+def test_wavefronts_last_some_seconds(rows, threads, firer, rounds, most, monkeypatch):
     """Those fired here are short, but for many rows, since each costs a pass over all of them. Others say what they can do."""
     from radiosity.algorithms.firing import due
     from radiosity.tracing import parts
 
     monkeypatch.setattr(parts, "dr", SimpleNamespace(thread_count=lambda: threads))
     tracer = SimpleNamespace(geometry=SimpleNamespace(device=SimpleNamespace(name="cpu")))
-    assert due._most(SimpleNamespace(tracer=tracer, firer=firer, total=rows)) == most
+    assert due._most(SimpleNamespace(tracer=tracer, firer=firer, rounds=rounds, total=rows)) == most
 
 
 def test_powers_of_bands_go_on_beyond_64_bits(geometry):
