@@ -23,8 +23,8 @@ MISTAKES = (
     ),
     Mistake(
         "tracing/rounds.py",
-        "ends[side] = start + counts if side == 0 else start",
-        "ends[side] = start + counts",
+        "ends[side] = start + lines if side == 0 else start",
+        "ends[side] = start + lines",
         ("test_rounds.py",),
         "rounds behind the border take the same lines again",
     ),

@@ -61,6 +61,8 @@ class Rounds:
     def split(self, tracer: LineTracer, batch: Batch, shifts: tuple[int, ...]) -> list[Batch]:
         """Return batches of the same lines: rounds of each size, then what is left, with ``shifts`` as in `Batch.filled`."""
         types, counts, least = tracer.types, batch.counts, strata.lines(*self.sizes[0])
+        if batch.total << SHIFT < LEAST:  # lanes have no more lines than that; to count them the host would wait
+            return [batch]
         if self.small is not None:
             row = batch.numbers - tracer.replicate(batch.numbers) * tracer.n_opaque
             counts = dr.select(dr.gather(types.Bool, self.small, row), counts, 0)
@@ -73,17 +75,17 @@ class Rounds:
         left, ends = [before, counts - before], [batch.fired, batch.fired + counts]
         result = []
 
-        def take(size: tuple[int, int], side: int, counts) -> None:
-            start = ends[side] if side == 0 else ends[side] - counts
-            left[side] = left[side] - counts
-            ends[side] = start + counts if side == 0 else start
-            dr.eval(start, counts, left[side], ends[side])
-            given = {"blocks": batch.blocks, "boxes": Boxes.of(types, size, start, counts)}
-            result.append(Batch.of(types, batch.numbers, counts, start, tracer.record, batch.start, SHIFT, **given))
+        def take(size: tuple[int, int], side: int, lines) -> None:
+            start = ends[side] if side == 0 else ends[side] - lines
+            left[side] = left[side] - lines
+            ends[side] = start + lines if side == 0 else start
+            dr.eval(start, lines, left[side], ends[side])
+            given = {"blocks": batch.blocks, "boxes": Boxes.of(types, size, start, lines)}
+            result.append(Batch.of(types, batch.numbers, lines, start, tracer.record, batch.start, SHIFT, **given))
 
         for size in reversed(self.sizes):
-            lines = strata.lines(*size)
-            rounds = [some // lines * lines for some in left]
+            each = strata.lines(*size)
+            rounds = [some // each * each for some in left]
             dr.schedule(*rounds)
             for side, total in enumerate(sums(types, *rounds)):
                 if total >= LEAST:
