@@ -28,7 +28,7 @@ def split(counts, fired, own: int, sizes=strata.SIZES, blocks=None, small=None) 
     blocks = None if blocks is None else upload(TYPES.UInt32, np.asarray(blocks, np.uint32))
     small = None if small is None else upload(TYPES.Bool, np.asarray(small, bool))
     batch = lanes.Batch.of(TYPES, numbers, counts, fired, records, blocks=blocks)
-    tracer = SimpleNamespace(types=TYPES, own_lines=own, record=records, replicate=lambda number: 0, n_opaque=0)
+    tracer = SimpleNamespace(types=TYPES, own_lines=own, record=records, row=lambda number: number)
     return rounds.Rounds(sizes, small).split(tracer, batch, (3, 2, 1))
 
 

@@ -111,7 +111,7 @@ class BandTally:
         def fraction(rho):
             return wide(dr.gather(types.UInt32, rho, patch)) * 2.0**-32
 
-        patch = numbers - counters.tracer.replicate(numbers) * counters.tracer.n_opaque
+        patch = counters.tracer.row(numbers)
         quanta = dr.opaque(wide, float(counters.quanta))
         fired = counters.fired_upper.about(dr.gather(types.UInt32, counters.fired, numbers), numbers)
         hits_of = counters.hits.upper.about

@@ -60,7 +60,7 @@ class FarSides:
         """Return rows' transmittance, the hits of their other sides, and the numbers of these, UInt32; called in a kernel."""
         u32 = self.tracer.types.UInt32
         number = dr.arange(u32, self.tracer.total) if numbers is None else numbers
-        patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
+        patch = self.tracer.row(number)
         tau, beyond = dr.gather(u32, self.tau, patch), self.beyond(number)
         return tau, dr.gather(u32, arrivals, beyond, tau > 0), beyond
 

@@ -147,9 +147,13 @@ class LineTracer:
 
     # ---- rows, in kernels ------------------------------------------------------------------------------------------
 
+    def row(self, number):
+        """Return the row, counted within its replicate, from its number."""
+        return number - self.replicate(number) * self.n_opaque
+
     def record(self, number):
         """Return the two words of a row from its number: face and place, see `Geometry.patch_records`."""
-        return dr.gather(self.types.Array2u, self._records, number - self.replicate(number) * self.n_opaque)
+        return dr.gather(self.types.Array2u, self._records, self.row(number))
 
     def replicate(self, number):
         """Return the replicate of a row's number: its quotient by n. A product by the reciprocal gives it, at most one short."""

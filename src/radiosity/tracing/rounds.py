@@ -61,11 +61,10 @@ class Rounds:
     def split(self, tracer: LineTracer, batch: Batch, shifts: tuple[int, ...]) -> list[Batch]:
         """Return batches of the same lines: rounds of each size, then what is left, with ``shifts`` as in `Batch.filled`."""
         types, counts, least = tracer.types, batch.counts, strata.lines(*self.sizes[0])
-        if batch.total << SHIFT < LEAST:  # lanes have no more lines than that; to count them the host would wait
+        if batch.total << max(shifts, default=0) < LEAST:  # lanes have no more lines than that; to count them the host would wait
             return [batch]
         if self.small is not None:
-            row = batch.numbers - tracer.replicate(batch.numbers) * tracer.n_opaque
-            counts = dr.select(dr.gather(types.Bool, self.small, row), counts, 0)
+            counts = dr.select(dr.gather(types.Bool, self.small, tracer.row(batch.numbers)), counts, 0)
         if sums(types, dr.select(counts >= least, counts, 0))[0] < LEAST:
             return [batch]
         before = dr.select(batch.fired < tracer.own_lines, tracer.own_lines - batch.fired, 0)

@@ -126,7 +126,7 @@ def _walk(counters: FiringCounters, begun: Starts, tally) -> tuple[list[int], in
             dr.scatter_add(tally, power, slot * n_groups + g, active=going)
         fired = [before + power for before, power in zip(fired, powers, strict=True)]
         here = going & (slot < tracer.total)
-        patch = slot - tracer.replicate(slot) * tracer.n_opaque
+        patch = tracer.row(slot)
         rho = dr.gather(types.UInt32, counters.targets.rho, patch, here)
         albedo, across, tau = rho, types.Bool(False), None
         if panes is not None:

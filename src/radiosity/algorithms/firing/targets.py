@@ -55,7 +55,7 @@ class TargetCounts:
             rho, whole, fraction = self.rho, self.whole, self.fraction
         else:
             number = dr.arange(u32, self.tracer.total) if numbers is None else numbers
-            patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
+            patch = self.tracer.row(number)
             rho, whole, fraction = (dr.gather(u32, column, patch) for column in (self.rho, self.whole, self.fraction))
         low = wide(rho) * wide(arrivals) + wide(fraction) + wide(self.read(self.phase, numbers))
         if self.panes is not None:
@@ -68,7 +68,7 @@ class TargetCounts:
         A hit count of two words sends on rho times its upper word in whole lines.
         """
         u32, wide = self.types.UInt32, self.types.UInt64
-        patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
+        patch = self.tracer.row(number)
         whole, rho, fraction = (dr.gather(u32, column, patch) for column in (self.whole, self.rho, self.fraction))
         low = wide(rho) * wide(arrivals) + wide(fraction) + wide(self.read(self.phase, number))
         lines = wide(whole) + wide(rho) * wide(hits.upper.upper(arrivals, number))
@@ -86,7 +86,7 @@ class TargetCounts:
         On diffusing panes it does not: a hit there may raise the counts of both sides, which the next wavefront finds.
         """
         u32, wide = self.types.UInt32, self.types.UInt64
-        patch = number - self.tracer.replicate(number) * self.tracer.n_opaque
+        patch = self.tracer.row(number)
         rho = wide(dr.gather(u32, self.rho, patch, active))
         rest = wide(dr.gather(u32, self.fraction, patch, active)) + wide(dr.gather(u32, self.phase, number, active))
         low = rho * wide(before) + rest
